@@ -1,0 +1,2 @@
+#![no_std]
+//! Rigid-body dynamics.

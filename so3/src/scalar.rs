@@ -1,0 +1,144 @@
+//! The two scalars of the house, `f32` and `f64`, behind one sealed trait.
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A floating-point number that every crate of the workspace is generic over: `f32` or `f64`.
+///
+/// Arithmetic comes from the operators; elementary functions come only from [`crate::math`], so that
+/// host and target compute the same bits.
+pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'static {
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// ½.
+    const HALF: Self;
+    /// π.
+    const PI: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+    /// +∞.
+    const INFINITY: Self;
+    /// A quiet NaN.
+    const NAN: Self;
+    /// Largest finite number.
+    const MAX: Self;
+
+    /// The nearest number of this type to `value`.
+    fn of(value: f64) -> Self;
+    /// `self` as an `f64`: exact.
+    fn to_f64(self) -> f64;
+    /// Neither NaN nor infinite.
+    fn is_finite_number(self) -> bool;
+    /// Not a number.
+    fn is_nan_number(self) -> bool;
+
+    #[doc(hidden)]
+    fn libm_sqrt(self) -> Self;
+    #[doc(hidden)]
+    fn libm_sin_cos(self) -> (Self, Self);
+    #[doc(hidden)]
+    fn libm_tan(self) -> Self;
+    #[doc(hidden)]
+    fn libm_asin(self) -> Self;
+    #[doc(hidden)]
+    fn libm_acos(self) -> Self;
+    #[doc(hidden)]
+    fn libm_atan2(self, x: Self) -> Self;
+    #[doc(hidden)]
+    fn libm_exp(self) -> Self;
+    #[doc(hidden)]
+    fn libm_log(self) -> Self;
+    #[doc(hidden)]
+    fn libm_tanh(self) -> Self;
+    #[doc(hidden)]
+    fn libm_floor(self) -> Self;
+    #[doc(hidden)]
+    fn libm_copysign(self, sign: Self) -> Self;
+}
+
+macro_rules! scalar {
+    ($t:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
+        impl Scalar for $t {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
+            const PI: Self = core::$t::consts::PI;
+            const EPSILON: Self = $t::EPSILON;
+            const INFINITY: Self = $t::INFINITY;
+            const NAN: Self = $t::NAN;
+            const MAX: Self = $t::MAX;
+
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn is_finite_number(self) -> bool {
+                self.is_finite()
+            }
+            #[inline(always)]
+            fn is_nan_number(self) -> bool {
+                self.is_nan()
+            }
+            #[inline(always)]
+            fn libm_sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+            #[inline(always)]
+            fn libm_sin_cos(self) -> (Self, Self) {
+                libm::$sincos(self)
+            }
+            #[inline(always)]
+            fn libm_tan(self) -> Self {
+                libm::$tan(self)
+            }
+            #[inline(always)]
+            fn libm_asin(self) -> Self {
+                libm::$asin(self)
+            }
+            #[inline(always)]
+            fn libm_acos(self) -> Self {
+                libm::$acos(self)
+            }
+            #[inline(always)]
+            fn libm_atan2(self, x: Self) -> Self {
+                libm::$atan2(self, x)
+            }
+            #[inline(always)]
+            fn libm_exp(self) -> Self {
+                libm::$exp(self)
+            }
+            #[inline(always)]
+            fn libm_log(self) -> Self {
+                libm::$log(self)
+            }
+            #[inline(always)]
+            fn libm_tanh(self) -> Self {
+                libm::$tanh(self)
+            }
+            #[inline(always)]
+            fn libm_floor(self) -> Self {
+                libm::$floor(self)
+            }
+            #[inline(always)]
+            fn libm_copysign(self, sign: Self) -> Self {
+                libm::$copysign(self, sign)
+            }
+        }
+    };
+}
+
+scalar!(f32, sqrtf, sincosf, tanf, asinf, acosf, atan2f, expf, logf, tanhf, floorf, copysignf);
+scalar!(f64, sqrt, sincos, tan, asin, acos, atan2, exp, log, tanh, floor, copysign);
