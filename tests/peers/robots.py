@@ -1,0 +1,104 @@
+"""The robots of the peer scripts: a URDF, the joints locked in it, the base, and the frames of interest.
+
+URDF dynamics tags (damping, friction, armature) are zeroed, because they would enter Pinocchio's RNEA and ABA,
+and gravity is (0, 0, -9.81).
+"""
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+
+ROOT = Path(__file__).resolve().parents[2]
+MODELS = ROOT / "models"
+
+
+@dataclass
+class Robot:
+    """How to load one robot. `feet` are the contact frames; `contact` is 3 for points, 6 for surfaces."""
+
+    name: str
+    urdf: Path
+    lock: dict[str, float] = field(default_factory=dict)
+    floating: bool = True
+    feet: list[str] = field(default_factory=list)
+    contact: int = 3
+    frames: list[str] = field(default_factory=list)
+
+    def load(self) -> pin.Model:
+        root = (pin.JointModelFreeFlyer(),) if self.floating else ()
+        model = pin.buildModelFromUrdf(str(self.urdf), *root)
+        if self.lock:
+            at = pin.neutral(model)
+            for joint, value in self.lock.items():
+                if not model.existJointName(joint):
+                    raise SystemExit(f"{self.name}: no joint `{joint}` to lock in {self.urdf}")
+                j = model.joints[model.getJointId(joint)]
+                at[j.idx_q : j.idx_q + j.nq] = value if j.nq == 1 else [np.cos(value), np.sin(value)]
+            model = pin.buildReducedModel(model, [model.getJointId(j) for j in self.lock], at)
+        model.damping[:] = 0
+        for attr in ("friction", "lowerDryFrictionLimit", "upperDryFrictionLimit", "armature", "rotorInertia"):
+            if hasattr(model, attr):
+                getattr(model, attr)[:] = 0
+        model.gravity.linear = np.array([0.0, 0.0, -9.81])
+        return model
+
+
+ICUB_LOCKED = ["neck_pitch", "neck_roll", "neck_yaw"] + [
+    f"{side}_wrist_{joint}" for side in "lr" for joint in ("prosup", "pitch", "yaw")
+]
+
+A1 = Robot(
+    "a1",
+    MODELS / "a1.urdf",
+    feet=["FL_foot", "FR_foot", "RL_foot", "RR_foot"],
+    frames=["FL_calf", "imu_link"],
+)
+ICUB23 = Robot(
+    "icub23",
+    MODELS / "icub_gazebo_v2_5.urdf",
+    lock=dict.fromkeys(ICUB_LOCKED, 0.0),
+    feet=["l_sole", "r_sole"],
+    contact=6,
+    frames=["chest", "l_hand"],
+)
+ROBOTS = {r.name: r for r in (A1, ICUB23)}
+
+
+def random_q(model: pin.Model, rng: np.random.Generator) -> np.ndarray:
+    """A configuration: base in the unit cube, orientation uniform, joints inside their limits (or +-2 without)."""
+    q = pin.neutral(model)
+    for j in range(1, model.njoints):
+        joint = model.joints[j]
+        k = joint.idx_q
+        if joint.nq == 7:
+            q[k : k + 3] = rng.uniform(-1, 1, 3)
+            quat = rng.normal(size=4)
+            q[k + 3 : k + 7] = quat / np.linalg.norm(quat)
+        elif joint.nq == 2:
+            angle = rng.uniform(-np.pi, np.pi)
+            q[k : k + 2] = np.cos(angle), np.sin(angle)
+        elif joint.nq == 1:
+            lo, hi = model.lowerPositionLimit[k], model.upperPositionLimit[k]
+            if not (np.isfinite(lo) and np.isfinite(hi) and hi - lo < 100 and lo < hi):
+                lo, hi = -2.0, 2.0
+            q[k] = rng.uniform(lo, hi)
+        else:
+            raise SystemExit(f"joint {model.names[j]} ({joint.shortname()}) is not supported")
+    return q
+
+
+def random_state(model: pin.Model, rng: np.random.Generator):
+    """(q, v, a, tau): speeds to 2, accelerations to 5, torques to 20, all SI."""
+    nv = model.nv
+    return random_q(model, rng), rng.uniform(-2, 2, nv), rng.uniform(-5, 5, nv), rng.uniform(-20, 20, nv)
+
+
+def axis_of(model: pin.Model, j: int) -> np.ndarray:
+    """Joint axis in the joint frame (one degree of freedom)."""
+    data = model.createData()
+    v = np.zeros(model.nv)
+    v[model.idx_vs[j]] = 1.0
+    pin.forwardKinematics(model, data, pin.neutral(model), v)
+    motion = data.v[j]
+    return motion.angular.copy() if np.linalg.norm(motion.angular) > 0.5 else motion.linear.copy()

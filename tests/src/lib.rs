@@ -1,0 +1,5 @@
+#![doc = include_str!("../README.md")]
+//!
+//! This library holds the shared parts: golden files and states for benches.
+
+pub mod golden;
