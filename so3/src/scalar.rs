@@ -140,5 +140,9 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, sqrtf, sincosf, tanf, asinf, acosf, atan2f, expf, logf, tanhf, floorf, copysignf);
-scalar!(f64, sqrt, sincos, tan, asin, acos, atan2, exp, log, tanh, floor, copysign);
+scalar!(
+    f32, sqrtf, sincosf, tanf, asinf, acosf, atan2f, expf, logf, tanhf, floorf, copysignf
+);
+scalar!(
+    f64, sqrt, sincos, tan, asin, acos, atan2, exp, log, tanh, floor, copysign
+);

@@ -1,0 +1,41 @@
+//! The algorithms, one per file, each a fold over the tree.
+
+pub mod aba;
+pub mod crba;
+pub mod kinematics;
+pub mod rnea;
+
+use nalgebra::Vector3;
+use so3::Scalar;
+
+use crate::joint::JointKind;
+use crate::state::Posture;
+use crate::tree::At;
+
+/// Entry `i`, or the default beyond the end: the trees guarantee `i < N`, and no panic path remains
+/// where the compiler cannot see it.
+#[inline(always)]
+pub(crate) fn at<X: Copy + Default>(xs: &[X], i: usize) -> X {
+    xs.get(i).copied().unwrap_or_default()
+}
+
+/// Writes entry `i`; see [`at`].
+#[inline(always)]
+pub(crate) fn put<X>(xs: &mut [X], i: usize, x: X) {
+    if let Some(slot) = xs.get_mut(i) {
+        *slot = x;
+    }
+}
+
+/// A joint's rotation and offset in a posture.
+#[inline(always)]
+pub(crate) fn place<J: JointKind, T: Scalar, const N: usize>(
+    at_body: At<'_, T>,
+    posture: &Posture<T, N>,
+) -> (J::Rotation<T>, Vector3<T>) {
+    let i = at_body.index;
+    (
+        J::rotation(at_body.body, at(&posture.sin, i), at(&posture.cos, i)),
+        J::offset(at_body.body, at(&posture.q, i)),
+    )
+}

@@ -1,0 +1,265 @@
+//! Inverse dynamics: the recursive Newton–Euler algorithm.
+//!
+//! τ = M(q) ν̇ + C(q, ν) ν + g(q) − Σ Jᵀ f, the left side of paper A eq. (4) and of paper B eq. (1).
+//!
+//! In the form of Luh, Walker and Paul (1980): on the way down go angular velocity ω, angular
+//! acceleration ω̇ and the classical acceleration a of the body's origin, gravity included, all in body
+//! axes. With U = [ω̇]× + [ω]×² the acceleration field of the body is a + U r, hence
+//!
+//! - the child's origin at p: a' = Rᵀ(a + U p);
+//! - force: f = m a + U h;
+//! - moment about the origin: n = h × a + ax(U Σ − (U Σ)ᵀ), with Σ = ∫ r rᵀ dm;
+//!
+//! and forces add up on the way back. The linear velocity is not needed below the base.
+
+use nalgebra::{Matrix3, Vector3};
+use so3::Scalar;
+
+use super::{at, place, put};
+use crate::joint::{JointKind, JointRotation};
+use crate::spatial::{Force, Inertia, Motion};
+use crate::state::{Effort, Posture, Tangent};
+use crate::tree::{At, Fold, Tree};
+
+/// How a body moves, as its children need it.
+#[derive(Clone, Copy, Debug)]
+struct Field<T> {
+    omega: Vector3<T>,
+    alpha: Vector3<T>,
+    acceleration: Vector3<T>,
+    /// U = [ω̇]× + [ω]×².
+    gradient: Matrix3<T>,
+}
+
+impl<T: Scalar> Field<T> {
+    #[inline(always)]
+    fn new(omega: Vector3<T>, alpha: Vector3<T>, acceleration: Vector3<T>) -> Self {
+        let (xx, yy, zz) = (omega.x * omega.x, omega.y * omega.y, omega.z * omega.z);
+        let (xy, xz, yz) = (omega.x * omega.y, omega.x * omega.z, omega.y * omega.z);
+        let gradient = Matrix3::new(
+            -(yy + zz),
+            xy - alpha.z,
+            xz + alpha.y,
+            xy + alpha.z,
+            -(xx + zz),
+            yz - alpha.x,
+            xz - alpha.y,
+            yz + alpha.x,
+            -(xx + yy),
+        );
+        Self {
+            omega,
+            alpha,
+            acceleration,
+            gradient,
+        }
+    }
+
+    /// Force that gives a body this motion.
+    #[inline(always)]
+    fn force(&self, body: &Inertia<T>) -> Force<T> {
+        let (u, s) = (&self.gradient, &body.second);
+        let moment = Vector3::new(
+            (u.m31 * s.xy + u.m32 * s.yy + u.m33 * s.yz)
+                - (u.m21 * s.xz + u.m22 * s.yz + u.m23 * s.zz),
+            (u.m11 * s.xz + u.m12 * s.yz + u.m13 * s.zz)
+                - (u.m31 * s.xx + u.m32 * s.xy + u.m33 * s.xz),
+            (u.m21 * s.xx + u.m22 * s.xy + u.m23 * s.xz)
+                - (u.m11 * s.xy + u.m12 * s.yy + u.m13 * s.yz),
+        );
+        Force {
+            linear: self.acceleration * body.mass + u * body.first,
+            angular: body.first.cross(&self.acceleration) + moment,
+        }
+    }
+}
+
+struct Rnea<'a, T: Scalar, const N: usize> {
+    posture: &'a Posture<T, N>,
+    /// `None` stands for zero.
+    velocity: Option<&'a [T; N]>,
+    /// `None` stands for zero.
+    acceleration: Option<&'a [T; N]>,
+    /// Forces applied to the bodies, each in its body's frame; `None` stands for zero.
+    applied: Option<&'a [Force<T>; N]>,
+    effort: [T; N],
+}
+
+impl<T: Scalar, const N: usize> Rnea<'_, T, N> {
+    #[inline(always)]
+    fn coordinate(source: Option<&[T; N]>, here: At<'_, T>) -> T {
+        source.map_or(T::ZERO, |x| at(x, here.index) * here.body.sign)
+    }
+}
+
+impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
+    type Down = Field<T>;
+    /// Force that the body itself takes.
+    type Keep = Force<T>;
+    type Up = Force<T>;
+
+    #[inline(always)]
+    fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Field<T>) -> (Field<T>, Force<T>) {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let qd = Self::coordinate(self.velocity, here);
+        let qdd = Self::coordinate(self.acceleration, here);
+
+        let omega = rotation.down(&up.omega);
+        let alpha = rotation.down(&up.alpha);
+        let acceleration = rotation.down(&(up.acceleration + up.gradient * offset));
+        let field = if J::KIND.is_revolute() {
+            let alpha = J::add_cross_axis(J::along_axis(alpha, qdd), &omega, qd);
+            Field::new(J::along_axis(omega, qd), alpha, acceleration)
+        } else {
+            // The body slides in a turning frame: Coriolis acceleration 2 ω × ṗ.
+            let coriolis = J::add_cross_axis(acceleration, &omega, qd + qd);
+            Field::new(omega, alpha, J::along_axis(coriolis, qdd))
+        };
+        let mut force = field.force(&here.body.inertia());
+        if let Some(applied) = self.applied {
+            force = force - at(applied, here.index);
+        }
+        (field, force)
+    }
+
+    #[inline(always)]
+    fn up<J: JointKind>(
+        &mut self,
+        here: At<'_, T>,
+        own: &Force<T>,
+        children: Force<T>,
+    ) -> Force<T> {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let force = *own + children;
+        let along = J::component(if J::KIND.is_revolute() {
+            &force.angular
+        } else {
+            &force.linear
+        });
+        let rotor = at_rotor(self.acceleration, here);
+        put(&mut self.effort, here.index, along * here.body.sign + rotor);
+        let linear = rotation.up(&force.linear);
+        Force {
+            linear,
+            angular: rotation.up(&force.angular) + offset.cross(&linear),
+        }
+    }
+}
+
+/// Torque that turns the rotor behind the gear.
+#[inline(always)]
+fn at_rotor<T: Scalar, const N: usize>(acceleration: Option<&[T; N]>, here: At<'_, T>) -> T {
+    acceleration.map_or(T::ZERO, |x| at(x, here.index) * here.body.rotor_inertia)
+}
+
+/// Everything that can be switched off at compile time passes through here.
+#[inline(always)]
+pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: Option<&Tangent<T, N>>,
+    acceleration: Option<&Tangent<T, N>>,
+    gravity_w: &Vector3<T>,
+    applied: Option<(&Force<T>, &[Force<T>; N])>,
+) -> Effort<T, N> {
+    let gravity_b = posture.base.rotation.matrix().tr_mul(gravity_w);
+    let v = velocity.map_or(Motion::ZERO, |v| v.base);
+    let a = acceleration
+        .map_or(Motion::ZERO, |a| a.base)
+        .to_classical(&v);
+    let field = Field::new(v.angular, a.angular, a.linear - gravity_b);
+    let mut fold = Rnea {
+        posture,
+        velocity: velocity.map(|v| &v.joints),
+        acceleration: acceleration.map(|a| &a.joints),
+        applied: applied.map(|f| f.1),
+        effort: [T::ZERO; N],
+    };
+    let children = model.fold(&mut fold, &field);
+    let mut base = field.force(&model.base().inertia()) + children;
+    if let Some((applied, _)) = applied {
+        base = base - *applied;
+    }
+    Effort {
+        base,
+        joints: fold.effort,
+    }
+}
+
+/// Gravity in the world as a vector of the scalar, m/s².
+#[inline(always)]
+pub(crate) fn gravity<T: Scalar>() -> Vector3<T> {
+    Vector3::from(crate::GRAVITY.map(T::of))
+}
+
+/// Inverse dynamics: the effort that causes an acceleration, τ = M ν̇ + C ν + g.
+///
+/// Shapes: N joints; base wrench in base axes about the base's origin. For a fixed base, the base
+/// entries of `velocity` and `acceleration` should be zero and the base wrench is the reaction of the
+/// ground. Includes the rotors' inertia, but no friction (see
+/// [`joint_friction`](crate::algo::friction::joint_friction)).
+///
+/// Source: Luh, Walker, Paul 1980; Featherstone 2008, chapter 5; paper A eq. (4).
+#[inline]
+#[must_use]
+pub fn rnea<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    acceleration: &Tangent<T, N>,
+) -> Effort<T, N> {
+    sweep(
+        model,
+        posture,
+        Some(velocity),
+        Some(acceleration),
+        &gravity(),
+        None,
+    )
+}
+
+/// Inverse dynamics with forces applied from outside: τ = M ν̇ + C ν + g − Σ Jᵀ f.
+///
+/// `base_force` acts on the base in base axes about its origin; `forces[i]` on body i in its canonical
+/// frame about its origin (see [`Kinematics::to_body`](crate::Kinematics) for forces known in the world).
+#[inline]
+#[must_use]
+pub fn rnea_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    acceleration: &Tangent<T, N>,
+    base_force: &Force<T>,
+    forces: &[Force<T>; N],
+) -> Effort<T, N> {
+    let applied = Some((base_force, forces));
+    sweep(
+        model,
+        posture,
+        Some(velocity),
+        Some(acceleration),
+        &gravity(),
+        applied,
+    )
+}
+
+/// Coriolis, centrifugal and gravity terms, C(q, ν) ν + g(q): the effort at zero acceleration.
+#[inline]
+#[must_use]
+pub fn nonlinear_effects<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+) -> Effort<T, N> {
+    sweep(model, posture, Some(velocity), None, &gravity(), None)
+}
+
+/// The effort that holds the robot still against gravity, g(q).
+#[inline]
+#[must_use]
+pub fn generalized_gravity<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+) -> Effort<T, N> {
+    sweep(model, posture, None, None, &gravity(), None)
+}

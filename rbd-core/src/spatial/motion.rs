@@ -1,0 +1,158 @@
+//! Spatial motion vectors: velocities and accelerations.
+
+use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+
+use nalgebra::Vector3;
+use so3::Scalar;
+
+/// A spatial velocity or acceleration, expressed in one frame and about its origin.
+///
+/// Acceleration here is *spatial* (the derivative of the coordinates of the velocity in the moving
+/// frame); see [`Motion::to_classical`] for that of a material point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Velocity or acceleration of the point at the frame's origin, m/s or m/s².
+    pub linear: Vector3<T>,
+    /// Angular velocity or acceleration, rad/s or rad/s².
+    pub angular: Vector3<T>,
+}
+
+impl<T: Scalar> Motion<T> {
+    /// All six coordinates zero.
+    pub const ZERO: Self = Self {
+        linear: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
+        angular: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
+    };
+
+    /// From its linear and angular parts.
+    #[inline(always)]
+    #[must_use]
+    pub const fn new(linear: Vector3<T>, angular: Vector3<T>) -> Self {
+        Self { linear, angular }
+    }
+
+    /// From six coordinates, linear first.
+    #[inline(always)]
+    #[must_use]
+    pub const fn from_array([x, y, z, rx, ry, rz]: [T; 6]) -> Self {
+        Self {
+            linear: Vector3::new(x, y, z),
+            angular: Vector3::new(rx, ry, rz),
+        }
+    }
+
+    /// Its six coordinates, linear first.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_array(self) -> [T; 6] {
+        let (l, a) = (self.linear, self.angular);
+        [l.x, l.y, l.z, a.x, a.y, a.z]
+    }
+
+    /// Motion × motion: how `other` changes because its frame moves with `self`.
+    ///
+    /// (v, ω) × (v′, ω′) = (ω × v′ + v × ω′, ω × ω′).
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(&self, other: &Self) -> Self {
+        Self {
+            linear: self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
+            angular: self.angular.cross(&other.angular),
+        }
+    }
+
+    /// Motion ×* force, the dual of [`Motion::cross`]: (ω × f, ω × n + v × f).
+    #[inline(always)]
+    #[must_use]
+    pub fn cross_force(&self, force: &super::Force<T>) -> super::Force<T> {
+        super::Force {
+            linear: self.angular.cross(&force.linear),
+            angular: self.angular.cross(&force.angular) + self.linear.cross(&force.linear),
+        }
+    }
+
+    /// Power of a force on this velocity, or work on a displacement: v·f + ω·n, in W or J.
+    #[inline(always)]
+    #[must_use]
+    pub fn dot(&self, force: &super::Force<T>) -> T {
+        self.linear.dot(&force.linear) + self.angular.dot(&force.angular)
+    }
+
+    /// Classical acceleration of the point at the origin, from this spatial acceleration and the
+    /// velocity of the same frame: a + ω × v.
+    #[inline(always)]
+    #[must_use]
+    pub fn to_classical(&self, velocity: &Self) -> Self {
+        Self {
+            linear: self.linear + velocity.angular.cross(&velocity.linear),
+            angular: self.angular,
+        }
+    }
+
+    /// Spatial acceleration from this classical one: the inverse of [`Motion::to_classical`].
+    #[inline(always)]
+    #[must_use]
+    pub fn to_spatial(&self, velocity: &Self) -> Self {
+        Self {
+            linear: self.linear - velocity.angular.cross(&velocity.linear),
+            angular: self.angular,
+        }
+    }
+}
+
+impl<T: Scalar> Default for Motion<T> {
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl<T: Scalar> Add for Motion<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            linear: self.linear + other.linear,
+            angular: self.angular + other.angular,
+        }
+    }
+}
+
+impl<T: Scalar> AddAssign for Motion<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Scalar> Sub for Motion<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            linear: self.linear - other.linear,
+            angular: self.angular - other.angular,
+        }
+    }
+}
+
+impl<T: Scalar> Neg for Motion<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            linear: -self.linear,
+            angular: -self.angular,
+        }
+    }
+}
+
+impl<T: Scalar> Mul<T> for Motion<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self {
+            linear: self.linear * factor,
+            angular: self.angular * factor,
+        }
+    }
+}
