@@ -1,6 +1,7 @@
 """Golden values from Pinocchio: random states of a robot and what every algorithm of rbd-core must say about them.
 
     golden.py                                  writes tests/data/golden/{a1,icub23}.txt
+    golden.py --others DIR                     twelve robots of pip example-robot-data, and DIR/index.txt
     golden.py --urdf R.urdf [--lock j=v ...] [--base floating|fixed] [--frame f ...] --out FILE [--states N]
 
 The file is text. `#` starts a comment; every other line is `key rows cols value ...`, row-major, SI units, shortest
@@ -15,6 +16,7 @@ Quantities that Pinocchio defines otherwise than we do are built here from its k
 - `constrained.*`, `impulse.*`: KKT systems in long double, every foot held. The constraint is on the classical
   acceleration of the foot frame (and on its angular acceleration when `contact` is 6), world-aligned:
   M a + h = tau + J' f, J a + dJ v = 0; M (v+ - v) = J' L, J v+ = 0.
+- continuous joints are one angle in q (Pinocchio keeps cosine and sine).
 - `external.tau`: inverse dynamics when `external.FRAME` (wrench at the frame, world-aligned) acts on every foot.
 """
 import argparse
@@ -85,7 +87,7 @@ def state_lines(robot, model, rng, heavy):
     def add(key, value):
         put.append(line(key, value))
 
-    for key, value in (("q", q), ("v", v), ("a", a), ("tau", tau)):
+    for key, value in (("q", robots.as_angles(model, q)), ("v", v), ("a", a), ("tau", tau)):
         add(key, value)
     rnea = pin.rnea(model, data, q, v, a).copy()
     bias = pin.nonLinearEffects(model, data, q, v).copy()
@@ -99,12 +101,13 @@ def state_lines(robot, model, rng, heavy):
 
     # configurations
     q2, u = robots.random_q(model, rng), rng.uniform()
-    add("q2", q2)
-    add("step", v)
-    add("integrate", pin.integrate(model, q, v))
-    add("difference", pin.difference(model, q, q2))
-    add("fraction", u)
-    add("interpolate", pin.interpolate(model, q, q2, u))
+    if not robots.has_continuous(model):
+        add("q2", q2)
+        add("step", v)
+        add("integrate", pin.integrate(model, q, v))
+        add("difference", pin.difference(model, q, q2))
+        add("fraction", u)
+        add("interpolate", pin.interpolate(model, q, q2, u))
 
     # frames
     pin.forwardKinematics(model, data, q, v, a)
@@ -226,6 +229,10 @@ def check_kkt(robot, model, rng):
         raise SystemExit(f"{robot.name}: KKT and Pinocchio's constraint dynamics differ by {error:g}")
 
 
+def locked(robot) -> str:
+    return " ".join(f"{k}={v:g}" for k, v in robot.lock.items())
+
+
 def write(robot, out, states, heavy):
     model = robot.load()
     rng = np.random.default_rng(SEED)
@@ -236,12 +243,12 @@ def write(robot, out, states, heavy):
         "# Golden values from Pinocchio; written by tests/peers/golden.py, which explains the format. Do not edit.",
         f"# pinocchio {pin.__version__}, numpy {np.__version__}, seed {SEED}",
         f"# {robot.urdf.name} sha256 {hashlib.sha256(robot.urdf.read_bytes()).hexdigest()}",
-        f"# locked: {' '.join(f'{k}={v:g}' for k, v in robot.lock.items()) or 'none'}",
+        f"# locked: {locked(robot) or 'none'}",
         f"# joints: {' '.join(joints)}",
-        line("nq", model.nq),
+        line("nq", len(robots.as_angles(model, pin.neutral(model)))),
         line("nv", model.nv),
         line("floating", float(robot.floating)),
-        line("mass", sum(i.mass for i in model.inertias)),
+        line("mass", sum(i.mass for i in list(model.inertias)[1:])),
         line("contact", robot.contact),
         "# frames: parent joint counted from 0 in the order above, base -1; placement in that joint's frame",
     ]
@@ -260,6 +267,7 @@ def write(robot, out, states, heavy):
 
 def main():
     p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    p.add_argument("--others", type=Path, metavar="DIR")
     p.add_argument("--urdf", type=Path)
     p.add_argument("--name")
     p.add_argument("--lock", nargs="*", default=[], metavar="JOINT=VALUE")
@@ -269,6 +277,14 @@ def main():
     p.add_argument("--heavy", type=int, default=HEAVY)
     p.add_argument("--out", type=Path)
     args = p.parse_args()
+    if args.others is not None:
+        index = ["# name base urdf [joint=value ...]; golden values in NAME.txt"]
+        for robot in robots.others():
+            write(robot, args.others / f"{robot.name}.txt", 4, 1)
+            base = "floating" if robot.floating else "fixed"
+            index.append(f"{robot.name} {base} {robot.urdf} {locked(robot)}".rstrip())
+        (args.others / "index.txt").write_text("\n".join(index) + "\n")
+        return
     if args.urdf is None:
         for robot in robots.ROBOTS.values():
             write(robot, OUT / f"{robot.name}.txt", args.states, args.heavy)

@@ -65,6 +65,51 @@ ICUB23 = Robot(
 ROBOTS = {r.name: r for r in (A1, ICUB23)}
 
 
+def others() -> list[Robot]:
+    """Robots of pip `example-robot-data` that `saltus import` is checked against."""
+    data = Path(pin.__file__).resolve()
+    while not (data / "share" / "example-robot-data").is_dir():
+        if data == data.parent:
+            raise SystemExit("pip package example-robot-data is not installed")
+        data = data.parent
+    data = data / "share" / "example-robot-data" / "robots"
+    hands = {f"{side}_{finger}_joint": 0.1 for side in ("left", "right") for finger in
+             ("hand_thumb_0", "hand_thumb_1", "hand_thumb_2", "hand_middle_0", "hand_middle_1", "hand_index_0", "hand_index_1")}
+    return [
+        # quadrupeds
+        Robot("go2", data / "go2_description/urdf/go2.urdf", feet=["FL_foot", "FR_foot", "RL_foot", "RR_foot"]),
+        Robot("hyq", data / "hyq_description/robots/hyq_no_sensors.urdf", feet=["lf_foot", "rf_foot", "lh_foot", "rh_foot"]),
+        Robot("anymal_c", data / "anymal_c_simple_description/urdf/anymal.urdf", frames=["LF_FOOT", "RH_FOOT"]),
+        Robot("solo12", data / "solo_description/robots/solo12.urdf", feet=["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]),
+        # bipeds and humanoids
+        Robot("bolt", data / "bolt_description/robots/bolt.urdf", frames=["FL_FOOT", "FR_FOOT"]),
+        Robot("talos", data / "talos_data/robots/talos_reduced.urdf", feet=["left_sole_link", "right_sole_link"], contact=6),
+        Robot("g1", data / "g1_description/urdf/g1_29dof_with_hand_rev_1_0.urdf", lock=hands,
+              frames=["left_ankle_roll_link", "right_wrist_yaw_link"]),
+        Robot("romeo", data / "romeo_description/urdf/romeo_small.urdf", frames=["l_sole", "r_sole"]),
+        # arms on a fixed base: revolute, prismatic, continuous
+        Robot("ur5", data / "ur_description/urdf/ur5_robot.urdf", floating=False, frames=["tool0"]),
+        Robot("panda", data / "panda_description/urdf/panda.urdf", floating=False, frames=["panda_leftfinger", "panda_rightfinger"]),
+        Robot("kinova", data / "kinova_description/robots/kinova.urdf", floating=False, frames=["j2s6s200_link_6"]),
+        Robot("tiago", data / "tiago_description/robots/tiago_no_hand.urdf", floating=False, frames=["head_2_link"]),
+    ]
+
+
+def has_continuous(model: pin.Model) -> bool:
+    """A joint kept as (cos, sin) by Pinocchio; Saltus keeps its angle."""
+    return any(model.joints[j].nq == 2 for j in range(1, model.njoints))
+
+
+def as_angles(model: pin.Model, q: np.ndarray) -> np.ndarray:
+    """Pinocchio's configuration with one angle for each continuous joint."""
+    out = []
+    for j in range(1, model.njoints):
+        joint = model.joints[j]
+        x = q[joint.idx_q : joint.idx_q + joint.nq]
+        out += [np.arctan2(x[1], x[0])] if joint.nq == 2 else list(x)
+    return np.array(out)
+
+
 def random_q(model: pin.Model, rng: np.random.Generator) -> np.ndarray:
     """A configuration: base in the unit cube, orientation uniform, joints inside their limits (or +-2 without)."""
     q = pin.neutral(model)
