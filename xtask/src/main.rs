@@ -1,1 +1,50 @@
-fn main() {}
+//! The checks of the workspace, one command per file. `cargo xtask help` lists them.
+
+mod bare;
+mod board;
+mod cross;
+mod image;
+mod probe;
+mod qemu;
+mod run;
+mod smoke;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(
+    name = "cargo xtask",
+    about = "The checks of the Saltus workspace",
+    version
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build every control crate alone for the bare-metal targets.
+    Cross(cross::Args),
+    /// Link the image whose panic handler is an undefined symbol, and see the link fail with a panic introduced.
+    Smoke(smoke::Args),
+    /// Run the image under QEMU and compare its numbers with the host's bit for bit.
+    Qemu(qemu::Args),
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Cross(args) => cross::run(&args),
+        Command::Smoke(args) => smoke::run(&args),
+        Command::Qemu(args) => qemu::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Every public algorithm of the control crates, called on fixed inputs.
+//!
+//! One list of calls serves three proofs. Linked into the bare-metal image it shows that no panic is reachable; run
+//! there and on the host it shows that both compute the same bits; run there alone it gives instructions and stack.
+//! A [`Recorder`] decides what is done around a call and with its results.
+#![no_std]
+
+mod inputs;
+mod numbers;
+mod so3_math;
+
+#[cfg(feature = "introduce_panic")]
+mod introduced;
+
+use core::fmt;
+
+use so3::Scalar;
+
+pub use numbers::Numbers;
+
+/// What was called: `so3/f64/exp`, `a1/f32/rnea`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The robot, or the crate where no robot is concerned.
+    pub subject: &'static str,
+    /// `f32` or `f64`.
+    pub scalar: &'static str,
+    /// The algorithm: its public name.
+    pub algorithm: &'static str,
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.subject, self.scalar, self.algorithm)
+    }
+}
+
+/// Makes the calls, and takes what they return.
+pub trait Recorder {
+    /// Calls `work(input)` once. An implementation measures it if it can, and must hide `input` and the result from
+    /// the optimiser, or the call is computed at compile time and proves nothing.
+    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R;
+
+    /// Takes one number of the result of the last call.
+    fn value(&mut self, bits: u64);
+}
+
+/// The scalars the probe runs on.
+pub trait Real: Scalar + Numbers {
+    /// The name that stands in a [`Label`].
+    const NAME: &'static str;
+}
+
+impl Real for f32 {
+    const NAME: &'static str = "f32";
+}
+
+impl Real for f64 {
+    const NAME: &'static str = "f64";
+}
+
+/// Runs every algorithm in both scalars.
+pub fn run<R: Recorder>(recorder: &mut R) {
+    run_in::<f64, R>(recorder);
+    run_in::<f32, R>(recorder);
+    #[cfg(feature = "introduce_panic")]
+    introduced::run(recorder);
+}
+
+fn run_in<T: Real, R: Recorder>(recorder: &mut R) {
+    so3_math::run::<T, R>(&mut Subject {
+        recorder,
+        name: "so3",
+    });
+}
+
+/// One subject's calls on one recorder.
+struct Subject<'a, R> {
+    recorder: &'a mut R,
+    name: &'static str,
+}
+
+impl<R: Recorder> Subject<'_, R> {
+    /// Calls one algorithm and hands over every number it returns.
+    fn call<T: Real, I, O: Numbers>(
+        &mut self,
+        algorithm: &'static str,
+        input: I,
+        work: impl FnOnce(I) -> O,
+    ) {
+        let label = Label {
+            subject: self.name,
+            scalar: T::NAME,
+            algorithm,
+        };
+        let output = self.recorder.call(label, input, work);
+        output.visit(&mut |x| self.recorder.value(canonical_bits(x)));
+    }
+}
+
+/// The bits of `x`, with one pattern for all NaNs: IEEE 754 leaves sign and payload of a NaN to the processor, and
+/// x86 and ARM differ.
+fn canonical_bits(x: f64) -> u64 {
+    if x.is_nan() {
+        f64::NAN.to_bits()
+    } else {
+        x.to_bits()
+    }
+}

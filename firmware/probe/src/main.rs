@@ -1,0 +1,43 @@
+//! The probe on the host: writes what the image writes, without cost lines.
+
+use core::hint::black_box;
+use std::io::{BufWriter, StdoutLock, Write, stdout};
+
+use saltus_probe::{Label, Recorder, run};
+
+struct Host {
+    out: BufWriter<StdoutLock<'static>>,
+    failed: Option<std::io::Error>,
+}
+
+impl Host {
+    fn keep_error(&mut self, result: std::io::Result<()>) {
+        if let Err(error) = result {
+            self.failed.get_or_insert(error);
+        }
+    }
+}
+
+impl Recorder for Host {
+    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
+        let result = writeln!(self.out, "call {label}");
+        self.keep_error(result);
+        black_box(work(black_box(input)))
+    }
+
+    fn value(&mut self, bits: u64) {
+        let result = writeln!(self.out, "value {bits:016x}");
+        self.keep_error(result);
+    }
+}
+
+fn main() -> std::io::Result<()> {
+    let mut host = Host {
+        out: BufWriter::new(stdout().lock()),
+        failed: None,
+    };
+    run(&mut host);
+    let result = host.out.flush();
+    host.keep_error(result);
+    host.failed.map_or(Ok(()), Err)
+}

@@ -1,0 +1,96 @@
+//! How the numbers of a result are listed.
+
+use nalgebra::{Const, Matrix, Quaternion, Rotation3, Storage, Unit};
+use so3::Scalar;
+
+/// A result made of numbers, which it lists in a fixed order. `f32` widens to `f64` exactly.
+pub trait Numbers {
+    /// Hands every number to `take`.
+    fn visit(&self, take: &mut impl FnMut(f64));
+}
+
+impl Numbers for f32 {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        take(f64::from(*self));
+    }
+}
+
+impl Numbers for f64 {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        take(*self);
+    }
+}
+
+impl Numbers for bool {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        take(f64::from(u8::from(*self)));
+    }
+}
+
+impl<N: Numbers + ?Sized> Numbers for &N {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        (**self).visit(take);
+    }
+}
+
+impl<N: Numbers> Numbers for [N] {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.iter().for_each(|n| n.visit(take));
+    }
+}
+
+impl<N: Numbers, const K: usize> Numbers for [N; K] {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.as_slice().visit(take);
+    }
+}
+
+impl<A: Numbers, B: Numbers> Numbers for (A, B) {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.0.visit(take);
+        self.1.visit(take);
+    }
+}
+
+impl<A: Numbers, B: Numbers, C: Numbers> Numbers for (A, B, C) {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.0.visit(take);
+        self.1.visit(take);
+        self.2.visit(take);
+    }
+}
+
+/// Nothing is handed over for an absent result, so an unexpected `None` shows as a missing value.
+impl<N: Numbers> Numbers for Option<N> {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.iter().for_each(|n| n.visit(take));
+    }
+}
+
+impl<N: Numbers, E> Numbers for Result<N, E> {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.iter().for_each(|n| n.visit(take));
+    }
+}
+
+impl<T, const R: usize, const C: usize, S> Numbers for Matrix<T, Const<R>, Const<C>, S>
+where
+    T: Scalar + Numbers,
+    S: Storage<T, Const<R>, Const<C>>,
+{
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.iter().for_each(|x| x.visit(take));
+    }
+}
+
+impl<T: Scalar + Numbers> Numbers for Rotation3<T> {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.matrix().visit(take);
+    }
+}
+
+impl<T: Scalar + Numbers> Numbers for Unit<Quaternion<T>> {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.as_ref().coords.visit(take);
+    }
+}

@@ -1,0 +1,70 @@
+//! `so3::math`: the elementary functions.
+
+use so3::math;
+
+use crate::inputs::Stream;
+use crate::{Real, Recorder, Subject};
+
+/// Where elementary functions change their method: zeros, subnormals, the ends of the reduced range, huge arguments,
+/// and what is not a number.
+const EDGES: [f64; 18] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    1e-310,
+    1e-40,
+    -1e-8,
+    core::f64::consts::FRAC_PI_4,
+    core::f64::consts::FRAC_PI_2,
+    -core::f64::consts::PI,
+    100.0,
+    -1e5,
+    1e22,
+    -1e300,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+];
+
+/// Random arguments per range.
+const DRAWS: usize = 24;
+
+pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, R>) {
+    for x in EDGES {
+        functions(on, T::of(x));
+    }
+    let mut stream = Stream::new(1);
+    for _ in 0..DRAWS {
+        functions::<T, R>(on, stream.next(1.0));
+        functions::<T, R>(on, stream.next(7.0));
+        functions::<T, R>(on, stream.next(2000.0));
+        let (y, x): (T, T) = (stream.next(3.0), stream.next(3.0));
+        on.call::<T, _, _>("atan2", (y, x), |(y, x)| math::atan2(y, x));
+    }
+    for y in EDGES {
+        for x in EDGES {
+            let (y, x) = (T::of(y), T::of(x));
+            on.call::<T, _, _>("atan2", (y, x), |(y, x)| math::atan2(y, x));
+            on.call::<T, _, _>("min", (y, x), |(y, x)| math::min(y, x));
+            on.call::<T, _, _>("max", (y, x), |(y, x)| math::max(y, x));
+            on.call::<T, _, _>("copysign", (y, x), |(y, x)| math::copysign(y, x));
+        }
+    }
+}
+
+fn functions<T: Real, R: Recorder>(on: &mut Subject<'_, R>, x: T) {
+    on.call::<T, _, _>("sqrt", x, math::sqrt);
+    on.call::<T, _, _>("sin", x, math::sin);
+    on.call::<T, _, _>("cos", x, math::cos);
+    on.call::<T, _, _>("sin_cos", x, math::sin_cos);
+    on.call::<T, _, _>("tan", x, math::tan);
+    on.call::<T, _, _>("asin", x, math::asin);
+    on.call::<T, _, _>("acos", x, math::acos);
+    on.call::<T, _, _>("exp", x, math::exp);
+    on.call::<T, _, _>("log", x, math::log);
+    on.call::<T, _, _>("tanh", x, math::tanh);
+    on.call::<T, _, _>("floor", x, math::floor);
+    on.call::<T, _, _>("abs", x, math::abs);
+}

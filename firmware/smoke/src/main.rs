@@ -1,0 +1,103 @@
+//! The bare-metal image of the probe.
+//!
+//! It links only if no panic is reachable: the panic handler calls a function that exists nowhere, so the handler
+//! must have been removed as unreachable. `cargo xtask smoke` builds it, and builds it again with a panic introduced
+//! to see the link fail. `cargo xtask qemu` runs it and compares its numbers with the host's.
+#![no_std]
+#![no_main]
+
+mod console;
+mod meter;
+
+use core::panic::PanicInfo;
+
+use cortex_m_rt::{entry, exception};
+use cortex_m_semihosting::debug;
+use saltus_probe::{Label, Recorder};
+
+use crate::console::Console;
+use crate::meter::Meter;
+
+struct Target {
+    console: Console,
+    meter: Meter,
+}
+
+impl Recorder for Target {
+    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
+        let (result, cost) = self.meter.measure(input, work);
+        self.console.text("call ");
+        self.console.text(label.subject);
+        self.console.text("/");
+        self.console.text(label.scalar);
+        self.console.text("/");
+        self.console.text(label.algorithm);
+        self.console.text("\ncost ");
+        self.console.hex(u64::from(cost.ticks));
+        self.console.text(" ");
+        self.console.hex(u64::from(cost.stack));
+        self.console.text("\n");
+        result
+    }
+
+    fn value(&mut self, bits: u64) {
+        self.console.text("value ");
+        self.console.hex(bits);
+        self.console.text("\n");
+    }
+}
+
+/// Lengths of the counted loop by which the host learns what a tick is.
+const LOOPS: [(&str, u32); 2] = [("1000", 1000), ("2000", 2000)];
+
+#[entry]
+fn main() -> ! {
+    let (Some(core), Some(console)) = (cortex_m::Peripherals::take(), Console::open()) else {
+        finish(debug::EXIT_FAILURE)
+    };
+    let mut target = Target {
+        console,
+        meter: Meter::new(core.SYST),
+    };
+    for (algorithm, turns) in LOOPS {
+        let label = Label {
+            subject: "clock",
+            scalar: "loop",
+            algorithm,
+        };
+        target.call(label, turns, meter::counted_loop);
+    }
+    saltus_probe::run(&mut target);
+    let status = if target.console.close() {
+        debug::EXIT_SUCCESS
+    } else {
+        debug::EXIT_FAILURE
+    };
+    finish(status)
+}
+
+fn finish(status: debug::ExitStatus) -> ! {
+    loop {
+        debug::exit(status);
+    }
+}
+
+#[exception]
+unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
+    finish(debug::EXIT_FAILURE)
+}
+
+#[exception]
+unsafe fn DefaultHandler(_: i16) {
+    finish(debug::EXIT_FAILURE)
+}
+
+unsafe extern "C" {
+    /// Defined nowhere: a reference that survives optimisation is a link error with this name.
+    safe fn saltus_panic_is_reachable() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    saltus_panic_is_reachable()
+}

@@ -1,0 +1,123 @@
+//! Instructions and stack of one call.
+//!
+//! Time: under QEMU's `-icount` every instruction takes the same virtual time, so SysTick counts instructions.
+//! Stack: the memory below the stack pointer is painted before the call; the deepest word that lost its paint after
+//! the call is the high-water mark.
+
+use core::hint::black_box;
+
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+
+/// SysTick counts 24 bits.
+const RELOAD: u32 = 0x00ff_ffff;
+
+/// Bytes below the stack pointer that are watched.
+const WINDOW: u32 = 128 * 1024;
+
+const PAINT: u32 = 0xa5a5_a5a5;
+
+/// What no measurement returns: the counter or the window was too small.
+pub(crate) const SATURATED: u32 = u32::MAX;
+
+/// What a call cost.
+pub(crate) struct Cost {
+    /// SysTick periods, or [`SATURATED`].
+    pub(crate) ticks: u32,
+    /// Bytes of stack below the caller's frame, or [`SATURATED`].
+    pub(crate) stack: u32,
+}
+
+pub(crate) struct Meter {
+    timer: SYST,
+}
+
+impl Meter {
+    pub(crate) fn new(mut timer: SYST) -> Self {
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(RELOAD);
+        timer.clear_current();
+        timer.enable_counter();
+        Self { timer }
+    }
+
+    /// Calls `work(input)` and measures it, hiding both ends from the optimiser.
+    #[inline(never)]
+    pub(crate) fn measure<I, R>(&mut self, input: I, work: impl FnOnce(I) -> R) -> (R, Cost) {
+        let top = paint();
+        self.timer.clear_current();
+        let _ = self.timer.has_wrapped();
+        let start = SYST::get_current();
+        let result = frame(input, work);
+        let ticks = start.wrapping_sub(SYST::get_current()) & RELOAD;
+        let ticks = if self.timer.has_wrapped() {
+            SATURATED
+        } else {
+            ticks
+        };
+        (
+            result,
+            Cost {
+                ticks,
+                stack: depth_below(top),
+            },
+        )
+    }
+}
+
+/// The measured call in a frame of its own, so that its locals lie below the mark.
+#[inline(never)]
+fn frame<I, R>(input: I, work: impl FnOnce(I) -> R) -> R {
+    black_box(work(black_box(input)))
+}
+
+/// Paints the window below the stack pointer, and returns the stack pointer.
+///
+/// All in one piece of assembly, because the compiler may move a read of the stack pointer across a push.
+#[inline(always)]
+fn paint() -> u32 {
+    let top: u32;
+    // SAFETY: nothing below the stack pointer is live, no interrupt is enabled, and every board's memory map leaves
+    // far more than the window between the stack and static data. The code pushes nothing.
+    unsafe {
+        core::arch::asm!(
+            "mov {top}, sp",
+            "mov {address}, sp",
+            "2: str {paint}, [{address}, #-4]!",
+            "subs {words}, {words}, #1",
+            "bne 2b",
+            top = out(reg) top,
+            address = out(reg) _,
+            paint = in(reg) PAINT,
+            words = inout(reg) WINDOW / 4 => _,
+            options(nostack),
+        );
+    }
+    top
+}
+
+/// Bytes between `top` and the deepest word that is not painted any more.
+#[inline(always)]
+fn depth_below(top: u32) -> u32 {
+    let bottom = top - WINDOW;
+    // SAFETY: the window is memory of the stack, as in `paint`; this only reads.
+    let painted = |address: u32| unsafe { (address as *const u32).read_volatile() } == PAINT;
+    match (bottom..top).step_by(4).find(|&address| !painted(address)) {
+        Some(deepest) if deepest > bottom => top - deepest,
+        Some(_) => SATURATED,
+        None => 0,
+    }
+}
+
+/// Two instructions per turn, whatever the compiler does.
+pub(crate) fn counted_loop(turns: u32) {
+    // SAFETY: touches one register and the flags; `turns` is not zero.
+    unsafe {
+        core::arch::asm!(
+            "2: subs {left}, {left}, #1",
+            "bne 2b",
+            left = inout(reg) turns => _,
+            options(nomem, nostack),
+        );
+    }
+}
