@@ -1,5 +1,7 @@
 //! The two scalars of the house, `f32` and `f64`, behind one sealed trait.
 
+use crate::math::sin_cos::{sin_cos_f32, sin_cos_f64};
+
 mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
@@ -42,6 +44,10 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     #[doc(hidden)]
     fn libm_sqrt(self) -> Self;
     #[doc(hidden)]
+    const SIN_COS_BOUND: Self;
+    #[doc(hidden)]
+    fn sin_cos_within_bound(self) -> (Self, Self);
+    #[doc(hidden)]
     fn libm_sin_cos(self) -> (Self, Self);
     #[doc(hidden)]
     fn libm_tan(self) -> Self;
@@ -64,7 +70,7 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
 }
 
 macro_rules! scalar {
-    ($t:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
+    ($t:ident, $sin_cos_bound:expr, $sin_cos_kernel:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -96,7 +102,12 @@ macro_rules! scalar {
             fn libm_sqrt(self) -> Self {
                 libm::$sqrt(self)
             }
+            const SIN_COS_BOUND: Self = $sin_cos_bound;
             #[inline(always)]
+            fn sin_cos_within_bound(self) -> (Self, Self) {
+                $sin_cos_kernel(self)
+            }
+            #[cold]
             fn libm_sin_cos(self) -> (Self, Self) {
                 libm::$sincos(self)
             }
@@ -141,8 +152,34 @@ macro_rules! scalar {
 }
 
 scalar!(
-    f32, sqrtf, sincosf, tanf, asinf, acosf, atan2f, expf, logf, tanhf, floorf, copysignf
+    f32,
+    402.0,
+    sin_cos_f32,
+    sqrtf,
+    sincosf,
+    tanf,
+    asinf,
+    acosf,
+    atan2f,
+    expf,
+    logf,
+    tanhf,
+    floorf,
+    copysignf
 );
 scalar!(
-    f64, sqrt, sincos, tan, asin, acos, atan2, exp, log, tanh, floor, copysign
+    f64,
+    3216.0,
+    sin_cos_f64,
+    sqrt,
+    sincos,
+    tan,
+    asin,
+    acos,
+    atan2,
+    exp,
+    log,
+    tanh,
+    floor,
+    copysign
 );
