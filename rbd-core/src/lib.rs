@@ -10,9 +10,19 @@ pub mod state;
 pub mod table;
 pub mod tree;
 
-pub use algo::aba::{AbaWorkspace, aba};
+pub use algo::aba::{AbaWorkspace, aba, aba_with_forces};
+pub use algo::centroidal::{
+    CentroidalMap, CentroidalState, centroidal_bias, centroidal_map, centroidal_momentum_rate,
+    centroidal_state,
+};
+pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
 pub use algo::crba::{MassMatrix, crba};
+pub use algo::friction::joint_friction;
+pub use algo::jacobian::{FrameJacobian, frame_jacobian, joint_jacobians};
 pub use algo::kinematics::{Kinematics, forward_kinematics};
+pub use algo::motion::{
+    Axes, BodyMotions, bias_accelerations, forward_accelerations, forward_velocities,
+};
 pub use algo::rnea::{generalized_gravity, nonlinear_effects, rnea, rnea_with_forces};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};

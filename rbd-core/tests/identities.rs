@@ -10,8 +10,11 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use rbd_core::joint::Kind;
 use rbd_core::{
-    AbaWorkspace, BaseBody, BaseKind, Body, Configuration, Effort, Force, Inertia, Link,
-    MassMatrix, Motion, Posture, Symmetric3, TableModel, Tangent, Transform, aba, crba, rnea,
+    AbaWorkspace, Axes, BaseBody, BaseKind, Body, BodyMotions, CentroidalMap, ComJacobian,
+    Configuration, Effort, Force, Frame, FrameJacobian, Inertia, Kinematics, Link, MassMatrix,
+    Motion, Posture, Symmetric3, TableModel, Tangent, Transform, aba, bias_accelerations,
+    centroidal_bias, centroidal_map, centroidal_momentum_rate, centroidal_state, com_jacobian,
+    crba, forward_accelerations, forward_kinematics, frame_jacobian, rnea,
 };
 
 const CAP: usize = 24;
@@ -187,6 +190,76 @@ proptest! {
             let (x, y) = (again.coordinate(i), tau.coordinate(i));
             prop_assert!((x - y).abs() <= 1e-9 * size(&tau).max(1.0), "row {i}: {x} {y}");
         }
+    }
+
+    #[test]
+    fn jacobians_carry_velocity_and_force(
+        model in model(), (q, [v, a]) in state(), link in 0..2 * CAP, rot in rotation(), arm in vector(0.3),
+    ) {
+        use rbd_core::Tree;
+        let v = masked(&model, v);
+        let posture = Posture::new(&model, &q);
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(&model, &posture, &mut kinematics);
+        let mut motions = BodyMotions::ZERO;
+        forward_accelerations(&model, &posture, &v, &masked(&model, a), &mut motions);
+        let link = if link < model.joint_count() { Link::Joint(link) } else { Link::Base };
+        let row = |i: usize| [rot.matrix()[(i, 0)], rot.matrix()[(i, 1)], rot.matrix()[(i, 2)]];
+        let frame = Frame { link, offset: arm.into(), rotation: [row(0), row(1), row(2)] };
+        let pose = kinematics.frame(&frame);
+        for axes in [Axes::Local, Axes::LocalWorldAligned, Axes::World] {
+            let mut jac = FrameJacobian::ZERO;
+            frame_jacobian(&model, &kinematics, &frame, axes, &mut jac);
+            let direct = axes.motion(&pose, &motions.frame_velocity(&frame));
+            let through = jac.mul(&v);
+            for (x, y) in direct.to_array().into_iter().zip(through.to_array()) {
+                prop_assert!(close(x, y, 30.0), "{axes:?}: {x} {y}");
+            }
+            // Power of a wrench is the same on both sides.
+            let wrench = Force::new(arm, pose.translation);
+            prop_assert!(close(through.dot(&wrench), v.dot(&jac.tr_mul(&wrench)), 100.0));
+        }
+        // J ν̇ + J̇ν is the acceleration.
+        let mut bias = BodyMotions::ZERO;
+        bias_accelerations(&model, &posture, &v, &mut bias);
+        let mut jac = FrameJacobian::ZERO;
+        frame_jacobian(&model, &kinematics, &frame, Axes::Local, &mut jac);
+        let sum = jac.mul(&masked(&model, a)) + bias.frame_acceleration(&frame);
+        for (x, y) in motions.frame_acceleration(&frame).to_array().into_iter().zip(sum.to_array()) {
+            prop_assert!(close(x, y, 1e3), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn centroidal_quantities_agree(model in model(), (q, [v, a]) in state()) {
+        let v = masked(&model, v);
+        let posture = Posture::new(&model, &q);
+        let mut map = CentroidalMap::ZERO;
+        centroidal_map(&model, &posture, &mut map);
+        let state = centroidal_state(&model, &posture, &v);
+        let scale = size(&Effort { base: state.momentum_w, joints: [0.0; CAP] });
+        for (x, y) in map.momentum(&v).to_array().into_iter().zip(state.momentum_w.to_array()) {
+            prop_assert!(close(x, y, scale), "momentum {x} {y}");
+        }
+        let mut jac = ComJacobian::ZERO;
+        let com = com_jacobian(&model, &posture, &mut jac);
+        prop_assert!((com.position_w - state.com_w).norm() < 1e-12);
+        prop_assert!((map.com_w - state.com_w).norm() < 1e-12);
+        prop_assert!((jac.mul(&v) - state.com_velocity_w).norm() < 1e-10);
+        let mut m = MassMatrix::ZERO;
+        crba(&model, &posture, &mut m);
+        prop_assert!(close(m.kinetic_energy(&v), state.kinetic_energy, state.kinetic_energy));
+        // The rate of momentum is the sum of external forces but gravity.
+        let rate = centroidal_momentum_rate(&model, &posture, &v, &a);
+        let bias = centroidal_bias(&model, &posture, &v) + map.momentum(&a);
+        let tau = rnea(&model, &posture, &v, &a);
+        let weight = map.mass * 9.81;
+        let force_w = posture.base().rotation * tau.base.linear;
+        for (x, y) in rate.to_array().into_iter().zip(bias.to_array()) {
+            prop_assert!(close(x, y, size(&tau)), "rate {x} {y}");
+        }
+        prop_assert!(close(rate.linear.z, force_w.z - weight, size(&tau)));
+        prop_assert!(close(rate.linear.x, force_w.x, size(&tau)));
     }
 }
 

@@ -1,8 +1,13 @@
 //! The algorithms, one per file, each a fold over the tree.
 
 pub mod aba;
+pub mod centroidal;
+pub mod com;
 pub mod crba;
+pub mod friction;
+pub mod jacobian;
 pub mod kinematics;
+pub mod motion;
 pub mod rnea;
 
 use nalgebra::Vector3;

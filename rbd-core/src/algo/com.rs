@@ -1,0 +1,217 @@
+//! Centre of mass: position and Jacobian. Its velocity and acceleration are the linear centroidal
+//! momentum and its rate over the mass.
+
+use nalgebra::{Matrix3, Vector3};
+use so3::Scalar;
+
+use super::crba::unit_force;
+use super::{at, place, put};
+use crate::joint::{JointKind, JointRotation};
+use crate::spatial::{Inertia, Symmetric3};
+use crate::state::{Posture, Tangent};
+use crate::tree::{At, Fold, Nothing, Tree};
+
+/// Mass and first moment of a subtree.
+#[derive(Clone, Copy, Debug)]
+struct Moments<T> {
+    mass: T,
+    first: Vector3<T>,
+}
+
+impl<T: Scalar> Default for Moments<T> {
+    fn default() -> Self {
+        Self {
+            mass: T::ZERO,
+            first: Vector3::zeros(),
+        }
+    }
+}
+
+impl<T: Scalar> core::ops::Add for Moments<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            mass: self.mass + o.mass,
+            first: self.first + o.first,
+        }
+    }
+}
+
+struct Com<'a, T: Scalar, const N: usize> {
+    posture: &'a Posture<T, N>,
+    /// m ∂c/∂q_j on its way to the base; `None` when only the position is wanted.
+    columns: Option<&'a mut [Vector3<T>; N]>,
+}
+
+impl<T: Scalar, const N: usize> Fold<T> for Com<'_, T, N> {
+    type Down = Nothing;
+    type Keep = Nothing;
+    type Up = Moments<T>;
+
+    #[inline(always)]
+    fn down<J: JointKind>(&mut self, _: At<'_, T>, _: &Nothing) -> (Nothing, Nothing) {
+        (Nothing, Nothing)
+    }
+
+    #[inline(always)]
+    fn up<J: JointKind>(
+        &mut self,
+        here: At<'_, T>,
+        _: &Nothing,
+        children: Moments<T>,
+    ) -> Moments<T> {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let mass = here.body.mass + children.mass;
+        let first = Vector3::from(here.body.first) + children.first;
+        if let Some(columns) = &mut self.columns {
+            let subtree = Inertia {
+                mass,
+                first,
+                second: Symmetric3::ZERO,
+            };
+            let column = unit_force::<J, T>(&subtree).linear * here.body.sign;
+            put(*columns, here.index, column);
+            for j in here.index..here.end {
+                let turned = rotation.up(&at(*columns, j));
+                put(*columns, j, turned);
+            }
+        }
+        Moments {
+            mass,
+            first: rotation.up(&first) + offset * mass,
+        }
+    }
+}
+
+/// Mass and centre of mass of the whole robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CenterOfMass<T: Scalar> {
+    /// Mass, kg.
+    pub mass: T,
+    /// Position in the world, m; the base's origin for a massless robot.
+    pub position_w: Vector3<T>,
+}
+
+/// Jacobian of the centre of mass, 3 × (6 + N), world axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ComJacobian<T: Scalar, const N: usize> {
+    /// Per base linear velocity in base axes: R_wb.
+    pub base_linear: Matrix3<T>,
+    /// Per base angular velocity in base axes: −R_wb \[c_b\]×.
+    pub base_angular: Matrix3<T>,
+    /// Columns of the joints.
+    pub joints: [Vector3<T>; N],
+}
+
+impl<T: Scalar, const N: usize> ComJacobian<T, N> {
+    /// All zero: only storage.
+    pub const ZERO: Self = {
+        let zero = Symmetric3::<T>::ZERO;
+        let matrix = Matrix3::new(
+            zero.xx, zero.xx, zero.xx, zero.xx, zero.xx, zero.xx, zero.xx, zero.xx, zero.xx,
+        );
+        let column = Vector3::new(zero.xx, zero.xx, zero.xx);
+        Self {
+            base_linear: matrix,
+            base_angular: matrix,
+            joints: [column; N],
+        }
+    };
+
+    /// J ν: velocity of the centre of mass in the world, m/s.
+    #[must_use]
+    pub fn mul(&self, velocity: &Tangent<T, N>) -> Vector3<T> {
+        let base =
+            self.base_linear * velocity.base.linear + self.base_angular * velocity.base.angular;
+        let joints = self.joints.iter().zip(velocity.joints);
+        joints.fold(base, |sum, (column, x)| sum + column * x)
+    }
+}
+
+/// Mass and centre of mass in the world: c = Σ mᵢ cᵢ / m.
+#[inline]
+#[must_use]
+pub fn center_of_mass<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+) -> CenterOfMass<T> {
+    let (mass, com_b) = collect(
+        model,
+        &mut Com {
+            posture,
+            columns: None,
+        },
+    );
+    CenterOfMass {
+        mass,
+        position_w: posture.base.point(&com_b),
+    }
+}
+
+/// Centre of mass and its Jacobian: ċ = J ν, the J_c of paper B eq. (3b).
+#[inline]
+pub fn com_jacobian<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    out: &mut ComJacobian<T, N>,
+) -> CenterOfMass<T> {
+    let (mass, com_b) = collect(
+        model,
+        &mut Com {
+            posture,
+            columns: Some(&mut out.joints),
+        },
+    );
+    let rot_wb = posture.base.rotation.matrix();
+    let per_mass = if mass > T::ZERO {
+        T::ONE / mass
+    } else {
+        T::ZERO
+    };
+    for column in &mut out.joints {
+        *column = rot_wb * *column * per_mass;
+    }
+    out.base_linear = *rot_wb;
+    out.base_angular = -(rot_wb * com_b.cross_matrix());
+    CenterOfMass {
+        mass,
+        position_w: posture.base.point(&com_b),
+    }
+}
+
+/// Mass, and centre of mass in base axes.
+#[inline(always)]
+fn collect<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    fold: &mut Com<'_, T, N>,
+) -> (T, Vector3<T>) {
+    let children = model.fold(fold, &Nothing);
+    let base = model.base();
+    let mass = base.mass + children.mass;
+    let first = Vector3::from(base.first) + children.first;
+    (
+        mass,
+        if mass > T::ZERO {
+            first * (T::ONE / mass)
+        } else {
+            Vector3::zeros()
+        },
+    )
+}
+
+/// Centre of mass in base axes.
+#[inline(always)]
+pub(crate) fn com_in_base<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+) -> Vector3<T> {
+    collect(
+        model,
+        &mut Com {
+            posture,
+            columns: None,
+        },
+    )
+    .1
+}
