@@ -171,10 +171,7 @@ impl<T: Scalar, const N: usize> Posture<T, N> {
         for (x, body) in q.iter_mut().zip(model.bodies()) {
             *x *= body.sign;
         }
-        let (mut sin, mut cos) = ([T::ZERO; N], [T::ZERO; N]);
-        for ((&x, s), c) in q.iter().zip(&mut sin).zip(&mut cos) {
-            (*s, *c) = math::sin_cos(x);
-        }
+        let (sin, cos) = math::sin_cos_array(&q);
         Self {
             base: configuration.base,
             q,

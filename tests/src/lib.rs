@@ -3,3 +3,4 @@
 //! This library holds the shared parts: golden files and states for benches.
 
 pub mod golden;
+pub mod tables;
