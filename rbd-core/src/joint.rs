@@ -251,17 +251,23 @@ impl<T: Scalar, const AXIS: usize> JointRotation<T> for AxisRotation<T, AXIS> {
 
     #[inline(always)]
     fn up_matrix(&self, m: &Matrix3<T>) -> Matrix3<T> {
-        let columns = [0, 1, 2].map(|j| self.up(&m.column(j).into_owned()));
-        let half = Matrix3::from_columns(&columns);
-        let rows = [0, 1, 2].map(|i| self.up(&half.row(i).transpose()).transpose());
-        Matrix3::from_rows(&rows)
+        // Columns of R M, then rows of (R M) Rᵀ.
+        let x = self.up(&Vector3::new(m.m11, m.m21, m.m31));
+        let y = self.up(&Vector3::new(m.m12, m.m22, m.m32));
+        let z = self.up(&Vector3::new(m.m13, m.m23, m.m33));
+        let a = self.up(&Vector3::new(x.x, y.x, z.x));
+        let b = self.up(&Vector3::new(x.y, y.y, z.y));
+        let c = self.up(&Vector3::new(x.z, y.z, z.z));
+        Matrix3::new(a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z)
     }
 
     #[inline(always)]
     fn after(&self, p: &Matrix3<T>) -> Matrix3<T> {
         // Rows of P R are Rᵀ applied to the rows of P.
-        let rows = [0, 1, 2].map(|i| self.down(&p.row(i).transpose()).transpose());
-        Matrix3::from_rows(&rows)
+        let a = self.down(&Vector3::new(p.m11, p.m12, p.m13));
+        let b = self.down(&Vector3::new(p.m21, p.m22, p.m23));
+        let c = self.down(&Vector3::new(p.m31, p.m32, p.m33));
+        Matrix3::new(a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z)
     }
 }
 
