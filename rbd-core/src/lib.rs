@@ -10,7 +10,7 @@ pub mod state;
 pub mod table;
 pub mod tree;
 
-pub use algo::aba::{AbaWorkspace, aba, aba_with_forces};
+pub use algo::aba::{AbaWorkspace, aba, aba_with_forces, mass_solve};
 pub use algo::centroidal::{
     CentroidalMap, CentroidalState, centroidal_bias, centroidal_map, centroidal_momentum_rate,
     centroidal_state,
@@ -18,12 +18,13 @@ pub use algo::centroidal::{
 pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
 pub use algo::crba::{MassMatrix, crba};
 pub use algo::friction::joint_friction;
+pub use algo::gravity::generalized_gravity;
 pub use algo::jacobian::{FrameJacobian, frame_jacobian, joint_jacobians};
 pub use algo::kinematics::{Kinematics, forward_kinematics};
 pub use algo::motion::{
     Axes, BodyMotions, bias_accelerations, forward_accelerations, forward_velocities,
 };
-pub use algo::rnea::{generalized_gravity, nonlinear_effects, rnea, rnea_with_forces};
+pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};

@@ -1,14 +1,17 @@
-//! Forward dynamics: the articulated-body algorithm, as a bias and a sweep.
+//! Forward dynamics: the articulated-body algorithm.
 //!
-//! With c = C ν + g − Σ Jᵀ f from one inverse-dynamics sweep at zero acceleration, M ν̇ = τ − c is
-//! solved without forming M: on the way up each subtree appears as an articulated inertia A and a bias
-//! force p; at joint i with U = A S, D = Sᵀ U + rotor, u = τ_i − c_i − Sᵀ p the parent feels
-//! A − U Uᵀ/D and p + U u/D; on the way down ν̇_i = (u − Uᵀ a)/D (Featherstone 2008, chapter 7).
-//! Splitting the velocity terms off makes the sweep cheaper and serves M⁻¹ as well.
+//! One way in and one way out. On the way down goes the motion that the bodies would have at zero
+//! generalised acceleration, as in [`rnea`](super::rnea), and gives each body its bias force. On the way up
+//! each subtree appears as an articulated inertia A and a force p; at joint i with U = A S,
+//! D = Sᵀ U + rotor and u = τ_i − Sᵀ p the parent feels A − U Uᵀ/D and p + U u/D. On the way out a is the
+//! *additional* acceleration, ν̇_i = (u − Uᵀ a)/D (Featherstone 2008, chapter 7). With the bias in the
+//! forces, the articulated recursion itself has no velocity terms, and the same code solves M x = b.
 
+use nalgebra::Vector3;
 use so3::Scalar;
 
-use super::rnea::{gravity, sweep};
+use super::gravity::gravity;
+use super::rnea::Field;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::BaseKind;
@@ -82,52 +85,59 @@ impl<T: Scalar> core::ops::Add for Articulated<T> {
 
 struct Inward<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
-    /// τ − c.
-    drive: &'a [T; N],
+    /// Joint velocities; `None` when the robot is at rest and weightless.
+    velocity: Option<&'a [T; N]>,
+    /// Forces applied to the bodies, each in its body's frame; `None` stands for zero.
+    applied: Option<&'a [Force<T>; N]>,
+    effort: &'a [T; N],
     joints: &'a mut [Pivot<T>; N],
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Inward<'_, T, N> {
-    type Down = Nothing;
-    type Keep = Nothing;
+    type Down = Field<T>;
+    /// Bias force of the body.
+    type Keep = Force<T>;
     type Up = Articulated<T>;
 
     #[inline(always)]
-    fn down<J: JointKind>(&mut self, _: At<'_, T>, _: &Nothing) -> (Nothing, Nothing) {
-        (Nothing, Nothing)
+    fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Field<T>) -> (Field<T>, Force<T>) {
+        let Some(velocity) = self.velocity else {
+            return (*up, Force::ZERO);
+        };
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let qd = at(velocity, here.index) * here.body.sign;
+        let field = up.child::<J>(&rotation, &offset, qd, T::ZERO);
+        let mut force = field.force(&here.body.inertia());
+        if let Some(applied) = self.applied {
+            force = force - at(applied, here.index);
+        }
+        (field, force)
     }
 
     #[inline(always)]
     fn up<J: JointKind>(
         &mut self,
         here: At<'_, T>,
-        _: &Nothing,
+        own: &Force<T>,
         children: Articulated<T>,
     ) -> Articulated<T> {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
         let whole = ArticulatedInertia::from(here.body.inertia()) + children.inertia;
-        let (force, along, bias) = if J::KIND.is_revolute() {
+        let bias = *own + children.bias;
+        let (force, along, felt) = if J::KIND.is_revolute() {
             let angular = J::column(&whole.angular);
             let force = Force {
                 linear: J::matrix_column(&whole.cross),
                 angular,
             };
-            (
-                force,
-                J::component(&angular),
-                J::component(&children.bias.angular),
-            )
+            (force, J::component(&angular), J::component(&bias.angular))
         } else {
             let linear = J::column(&whole.linear);
             let force = Force {
                 linear,
                 angular: J::matrix_row(&whole.cross),
             };
-            (
-                force,
-                J::component(&linear),
-                J::component(&children.bias.linear),
-            )
+            (force, J::component(&linear), J::component(&bias.linear))
         };
         let pivot = along + here.body.rotor_inertia;
         let inverse = if pivot > T::ZERO {
@@ -135,7 +145,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Inward<'_, T, N> {
         } else {
             T::ZERO
         };
-        let drive = (at(self.drive, here.index) * here.body.sign - bias) * inverse;
+        let drive = (at(self.effort, here.index) * here.body.sign - felt) * inverse;
         put(
             self.joints,
             here.index,
@@ -147,7 +157,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Inward<'_, T, N> {
         );
 
         let rest = whole.without(&force, inverse);
-        let bias = children.bias + force * drive;
+        let bias = bias + force * drive;
         let turned = ArticulatedInertia {
             linear: rotation.up_symmetric(&rest.linear),
             cross: rotation.up_matrix(&rest.cross),
@@ -205,30 +215,29 @@ impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
     }
 }
 
-/// Solves M(q) x = b by the articulated sweep.
+/// The way in, the base, and the way out.
 #[inline(always)]
-pub(crate) fn solve<T: Scalar, M: Tree<T, N>, const N: usize>(
+fn accelerate<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
-    posture: &Posture<T, N>,
-    ws: &mut AbaWorkspace<T, N>,
-    b: &Effort<T, N>,
+    mut inward: Inward<'_, T, N>,
+    base_motion: &Field<T>,
+    base_bias: &Force<T>,
+    base_effort: &Force<T>,
 ) -> Tangent<T, N> {
-    let mut inward = Inward {
-        posture,
-        drive: &b.joints,
-        joints: &mut ws.joints,
-    };
-    let children = model.fold(&mut inward, &Nothing);
+    let children = model.fold(&mut inward, base_motion);
     let base = match model.base_kind() {
         BaseKind::Floating => {
             let whole = ArticulatedInertia::from(model.base().inertia()) + children.inertia;
-            whole.solve(&(b.base - children.bias))
+            whole.solve(&(*base_effort - children.bias - *base_bias))
         }
         BaseKind::Fixed => Motion::ZERO,
     };
+    let Inward {
+        posture, joints, ..
+    } = inward;
     let mut outward = Outward {
         posture,
-        joints: &ws.joints,
+        joints,
         acceleration: [T::ZERO; N],
     };
     model.fold(&mut outward, &base);
@@ -241,9 +250,8 @@ pub(crate) fn solve<T: Scalar, M: Tree<T, N>, const N: usize>(
 /// Forward dynamics: the acceleration ν̇ = M⁻¹(τ − C ν − g) under an effort.
 ///
 /// `effort.base` is the wrench applied to the base (zero for a free robot). Joint friction is not
-/// included: subtract it from `effort` (paper A eq. (4) has it as B_fric τ_fric).
-///
-/// A joint that carries no inertia at all does not accelerate.
+/// included: add [`joint_friction`](crate::joint_friction) to `effort` (paper A eq. (4) has it as
+/// B_fric τ_fric). A joint that carries no inertia at all does not accelerate.
 #[inline]
 #[must_use]
 pub fn aba<T: Scalar, M: Tree<T, N>, const N: usize>(
@@ -253,19 +261,11 @@ pub fn aba<T: Scalar, M: Tree<T, N>, const N: usize>(
     effort: &Effort<T, N>,
     ws: &mut AbaWorkspace<T, N>,
 ) -> Tangent<T, N> {
-    let bias = sweep(model, posture, Some(velocity), None, &gravity(), None);
-    let mut drive = Effort {
-        base: effort.base - bias.base,
-        joints: effort.joints,
-    };
-    for (x, y) in drive.joints.iter_mut().zip(bias.joints) {
-        *x -= y;
-    }
-    solve(model, posture, ws, &drive)
+    forward(model, posture, velocity, effort, None, ws)
 }
 
 /// Forward dynamics with forces applied from outside, each in its body's canonical frame: see
-/// [`rnea_with_forces`](crate::rnea_with_forces).
+/// [`rnea_with_forces`](crate::rnea_with_forces). A force on the base belongs in `effort.base`.
 #[inline]
 #[must_use]
 pub fn aba_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
@@ -276,21 +276,52 @@ pub fn aba_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
     forces: &[Force<T>; N],
     ws: &mut AbaWorkspace<T, N>,
 ) -> Tangent<T, N> {
-    let none = Force::ZERO;
-    let bias = sweep(
-        model,
+    forward(model, posture, velocity, effort, Some(forces), ws)
+}
+
+#[inline(always)]
+fn forward<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    effort: &Effort<T, N>,
+    applied: Option<&[Force<T>; N]>,
+    ws: &mut AbaWorkspace<T, N>,
+) -> Tangent<T, N> {
+    let field = Field::base(posture, &velocity.base, &Motion::ZERO, &gravity());
+    let bias = field.force(&model.base().inertia());
+    let inward = Inward {
         posture,
-        Some(velocity),
-        None,
-        &gravity(),
-        Some((&none, forces)),
-    );
-    let mut drive = Effort {
-        base: effort.base - bias.base,
-        joints: effort.joints,
+        velocity: Some(&velocity.joints),
+        applied,
+        effort: &effort.joints,
+        joints: &mut ws.joints,
     };
-    for (x, y) in drive.joints.iter_mut().zip(bias.joints) {
-        *x -= y;
-    }
-    solve(model, posture, ws, &drive)
+    accelerate(model, inward, &field, &bias, &effort.base)
+}
+
+/// Solves M(q) x = b without forming M.
+#[inline]
+#[must_use]
+pub fn mass_solve<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    b: &Effort<T, N>,
+    ws: &mut AbaWorkspace<T, N>,
+) -> Tangent<T, N> {
+    let zero = Vector3::zeros();
+    let inward = Inward {
+        posture,
+        velocity: None,
+        applied: None,
+        effort: &b.joints,
+        joints: &mut ws.joints,
+    };
+    accelerate(
+        model,
+        inward,
+        &Field::new(zero, zero, zero),
+        &Force::ZERO,
+        &b.base,
+    )
 }

@@ -9,8 +9,9 @@ use so3::Scalar;
 
 use super::com::com_in_base;
 use super::crba::unit_force;
+use super::gravity::gravity;
 use super::motion::carried;
-use super::rnea::{gravity, sweep};
+use super::rnea::sweep;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
@@ -315,7 +316,7 @@ fn momentum_rate<T: Scalar, M: Tree<T, N>, const N: usize>(
     acceleration: Option<&Tangent<T, N>>,
 ) -> Force<T> {
     let still = Vector3::zeros();
-    let effort = sweep(model, posture, Some(velocity), acceleration, &still, None);
+    let effort = sweep(model, posture, velocity, acceleration, &still, None);
     let com_b = com_in_base(model, posture);
     about_com(posture, &com_b, &effort.base)
 }

@@ -7,15 +7,26 @@ use so3::Scalar;
 use super::crba::unit_force;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
+use crate::model::Body;
 use crate::spatial::{Inertia, Symmetric3};
 use crate::state::{Posture, Tangent};
 use crate::tree::{At, Fold, Nothing, Tree};
 
 /// Mass and first moment of a subtree.
 #[derive(Clone, Copy, Debug)]
-struct Moments<T> {
-    mass: T,
-    first: Vector3<T>,
+pub(crate) struct Moments<T> {
+    pub(crate) mass: T,
+    pub(crate) first: Vector3<T>,
+}
+
+impl<T: Scalar> Moments<T> {
+    #[inline(always)]
+    pub(crate) fn of(body: &Body<T>) -> Self {
+        Self {
+            mass: body.mass,
+            first: Vector3::from(body.first),
+        }
+    }
 }
 
 impl<T: Scalar> Default for Moments<T> {
@@ -62,8 +73,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Com<'_, T, N> {
         children: Moments<T>,
     ) -> Moments<T> {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
-        let mass = here.body.mass + children.mass;
-        let first = Vector3::from(here.body.first) + children.first;
+        let Moments { mass, first } = Moments::of(here.body) + children;
         if let Some(columns) = &mut self.columns {
             let subtree = Inertia {
                 mass,

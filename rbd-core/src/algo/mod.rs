@@ -5,6 +5,7 @@ pub mod centroidal;
 pub mod com;
 pub mod crba;
 pub mod friction;
+pub mod gravity;
 pub mod jacobian;
 pub mod kinematics;
 pub mod motion;

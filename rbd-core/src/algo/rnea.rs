@@ -15,6 +15,7 @@
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
+use super::gravity::gravity;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::spatial::{Force, Inertia, Motion};
@@ -23,7 +24,7 @@ use crate::tree::{At, Fold, Tree};
 
 /// How a body moves, as its children need it.
 #[derive(Clone, Copy, Debug)]
-struct Field<T> {
+pub(crate) struct Field<T> {
     omega: Vector3<T>,
     alpha: Vector3<T>,
     acceleration: Vector3<T>,
@@ -33,7 +34,7 @@ struct Field<T> {
 
 impl<T: Scalar> Field<T> {
     #[inline(always)]
-    fn new(omega: Vector3<T>, alpha: Vector3<T>, acceleration: Vector3<T>) -> Self {
+    pub(crate) fn new(omega: Vector3<T>, alpha: Vector3<T>, acceleration: Vector3<T>) -> Self {
         let (xx, yy, zz) = (omega.x * omega.x, omega.y * omega.y, omega.z * omega.z);
         let (xy, xz, yz) = (omega.x * omega.y, omega.x * omega.z, omega.y * omega.z);
         let gradient = Matrix3::new(
@@ -55,9 +56,44 @@ impl<T: Scalar> Field<T> {
         }
     }
 
+    /// Field of the body behind a joint, from that of its parent.
+    #[inline(always)]
+    pub(crate) fn child<J: JointKind>(
+        &self,
+        rotation: &J::Rotation<T>,
+        offset: &Vector3<T>,
+        qd: T,
+        qdd: T,
+    ) -> Self {
+        let omega = rotation.down(&self.omega);
+        let alpha = rotation.down(&self.alpha);
+        let acceleration = rotation.down(&(self.acceleration + self.gradient * offset));
+        if J::KIND.is_revolute() {
+            let alpha = J::add_cross_axis(J::along_axis(alpha, qdd), &omega, qd);
+            Self::new(J::along_axis(omega, qd), alpha, acceleration)
+        } else {
+            // The body slides in a turning frame: Coriolis acceleration 2 ω × ṗ.
+            let coriolis = J::add_cross_axis(acceleration, &omega, qd + qd);
+            Self::new(omega, alpha, J::along_axis(coriolis, qdd))
+        }
+    }
+
+    /// Field of the base: gravity enters as an acceleration of the world the other way.
+    #[inline(always)]
+    pub(crate) fn base<const N: usize>(
+        posture: &Posture<T, N>,
+        velocity: &Motion<T>,
+        acceleration: &Motion<T>,
+        gravity_w: &Vector3<T>,
+    ) -> Self {
+        let gravity_b = posture.base.rotation.matrix().tr_mul(gravity_w);
+        let a = acceleration.to_classical(velocity);
+        Self::new(velocity.angular, a.angular, a.linear - gravity_b)
+    }
+
     /// Force that gives a body this motion.
     #[inline(always)]
-    fn force(&self, body: &Inertia<T>) -> Force<T> {
+    pub(crate) fn force(&self, body: &Inertia<T>) -> Force<T> {
         let (u, s) = (&self.gradient, &body.second);
         let moment = Vector3::new(
             (u.m31 * s.xy + u.m32 * s.yy + u.m33 * s.yz)
@@ -76,20 +112,12 @@ impl<T: Scalar> Field<T> {
 
 struct Rnea<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
-    /// `None` stands for zero.
-    velocity: Option<&'a [T; N]>,
+    velocity: &'a [T; N],
     /// `None` stands for zero.
     acceleration: Option<&'a [T; N]>,
     /// Forces applied to the bodies, each in its body's frame; `None` stands for zero.
     applied: Option<&'a [Force<T>; N]>,
     effort: [T; N],
-}
-
-impl<T: Scalar, const N: usize> Rnea<'_, T, N> {
-    #[inline(always)]
-    fn coordinate(source: Option<&[T; N]>, here: At<'_, T>) -> T {
-        source.map_or(T::ZERO, |x| at(x, here.index) * here.body.sign)
-    }
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
@@ -101,20 +129,13 @@ impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
     #[inline(always)]
     fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Field<T>) -> (Field<T>, Force<T>) {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
-        let qd = Self::coordinate(self.velocity, here);
-        let qdd = Self::coordinate(self.acceleration, here);
+        let sign = here.body.sign;
+        let qd = at(self.velocity, here.index) * sign;
+        let qdd = self
+            .acceleration
+            .map_or(T::ZERO, |x| at(x, here.index) * sign);
 
-        let omega = rotation.down(&up.omega);
-        let alpha = rotation.down(&up.alpha);
-        let acceleration = rotation.down(&(up.acceleration + up.gradient * offset));
-        let field = if J::KIND.is_revolute() {
-            let alpha = J::add_cross_axis(J::along_axis(alpha, qdd), &omega, qd);
-            Field::new(J::along_axis(omega, qd), alpha, acceleration)
-        } else {
-            // The body slides in a turning frame: Coriolis acceleration 2 ω × ṗ.
-            let coriolis = J::add_cross_axis(acceleration, &omega, qd + qd);
-            Field::new(omega, alpha, J::along_axis(coriolis, qdd))
-        };
+        let field = up.child::<J>(&rotation, &offset, qd, qdd);
         let mut force = field.force(&here.body.inertia());
         if let Some(applied) = self.applied {
             force = force - at(applied, here.index);
@@ -157,20 +178,16 @@ fn at_rotor<T: Scalar, const N: usize>(acceleration: Option<&[T; N]>, here: At<'
 pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
     posture: &Posture<T, N>,
-    velocity: Option<&Tangent<T, N>>,
+    velocity: &Tangent<T, N>,
     acceleration: Option<&Tangent<T, N>>,
     gravity_w: &Vector3<T>,
     applied: Option<(&Force<T>, &[Force<T>; N])>,
 ) -> Effort<T, N> {
-    let gravity_b = posture.base.rotation.matrix().tr_mul(gravity_w);
-    let v = velocity.map_or(Motion::ZERO, |v| v.base);
-    let a = acceleration
-        .map_or(Motion::ZERO, |a| a.base)
-        .to_classical(&v);
-    let field = Field::new(v.angular, a.angular, a.linear - gravity_b);
+    let a = acceleration.map_or(Motion::ZERO, |a| a.base);
+    let field = Field::base(posture, &velocity.base, &a, gravity_w);
     let mut fold = Rnea {
         posture,
-        velocity: velocity.map(|v| &v.joints),
+        velocity: &velocity.joints,
         acceleration: acceleration.map(|a| &a.joints),
         applied: applied.map(|f| f.1),
         effort: [T::ZERO; N],
@@ -184,12 +201,6 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
         base,
         joints: fold.effort,
     }
-}
-
-/// Gravity in the world as a vector of the scalar, m/s².
-#[inline(always)]
-pub(crate) fn gravity<T: Scalar>() -> Vector3<T> {
-    Vector3::from(crate::GRAVITY.map(T::of))
 }
 
 /// Inverse dynamics: the effort that causes an acceleration, τ = M ν̇ + C ν + g.
@@ -211,7 +222,7 @@ pub fn rnea<T: Scalar, M: Tree<T, N>, const N: usize>(
     sweep(
         model,
         posture,
-        Some(velocity),
+        velocity,
         Some(acceleration),
         &gravity(),
         None,
@@ -236,7 +247,7 @@ pub fn rnea_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
     sweep(
         model,
         posture,
-        Some(velocity),
+        velocity,
         Some(acceleration),
         &gravity(),
         applied,
@@ -251,15 +262,5 @@ pub fn nonlinear_effects<T: Scalar, M: Tree<T, N>, const N: usize>(
     posture: &Posture<T, N>,
     velocity: &Tangent<T, N>,
 ) -> Effort<T, N> {
-    sweep(model, posture, Some(velocity), None, &gravity(), None)
-}
-
-/// The effort that holds the robot still against gravity, g(q).
-#[inline]
-#[must_use]
-pub fn generalized_gravity<T: Scalar, M: Tree<T, N>, const N: usize>(
-    model: &M,
-    posture: &Posture<T, N>,
-) -> Effort<T, N> {
-    sweep(model, posture, None, None, &gravity(), None)
+    sweep(model, posture, velocity, None, &gravity(), None)
 }
