@@ -10,6 +10,7 @@ use core::ops::Add;
 
 use so3::Scalar;
 
+use crate::algo::{at, put};
 use crate::joint::{
     JointKind, Kind, PrismaticTilted, PrismaticX, PrismaticY, PrismaticZ, RevoluteTilted,
     RevoluteX, RevoluteY, RevoluteZ,
@@ -159,11 +160,11 @@ pub fn walk<T: Scalar, F: Fold<T>, const N: usize>(
         let (down, keep) = by_kind!(body.kind, J => {
             fold.down::<J>(At { index, end: body.subtree_end, body }, &parent)
         });
-        downs[index] = down;
-        keeps[index] = keep;
+        put(&mut downs, index, down);
+        put(&mut keeps, index, keep);
     }
     for (index, body) in bodies.iter().enumerate().take(count).rev() {
-        let (keep, children) = (keeps[index], ups[index]);
+        let (keep, children) = (at(&keeps, index), at(&ups, index));
         let up = by_kind!(body.kind, J => {
             fold.up::<J>(At { index, end: body.subtree_end, body }, &keep, children)
         });
