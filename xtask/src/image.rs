@@ -14,9 +14,13 @@ const PACKAGE: &str = "saltus-smoke";
 
 /// The command that builds the image.
 pub(crate) fn command(board: &Board, core: Choice) -> Result<Command> {
+    command_with(board, core, board.rustflags)
+}
+
+fn command_with(board: &Board, core: Choice, rustflags: &[&str]) -> Result<Command> {
     let bare = Bare::find(board.target, core)?;
     println!("{}: {}; {bare}", board.name, board.processor);
-    let mut build = bare.build_with(board.rustflags);
+    let mut build = bare.build_with(rustflags);
     build
         .current_dir(run::root().join("firmware"))
         .args(["--package", PACKAGE, "--locked"])
@@ -26,10 +30,23 @@ pub(crate) fn command(board: &Board, core: Choice) -> Result<Command> {
 
 /// Builds the image and returns where it is.
 pub(crate) fn build(board: &Board, core: Choice) -> Result<PathBuf> {
-    let mut build = command(board, core)?;
-    build
-        .args(["--quiet", "--message-format=json-render-diagnostics"])
-        .stderr(Stdio::inherit());
+    build_with(board, core, board.rustflags, &[])
+}
+
+/// As [`build`], with other compiler flags and with features.
+pub(crate) fn build_with(
+    board: &Board,
+    core: Choice,
+    rustflags: &[&str],
+    features: &[&str],
+) -> Result<PathBuf> {
+    let mut build = command_with(board, core, rustflags)?;
+    build.args([
+        "--quiet",
+        "--message-format=json-render-diagnostics",
+        "--features",
+    ]);
+    build.arg(features.join(",")).stderr(Stdio::inherit());
     let messages = run::stdout(&mut build)?;
     let executable = messages
         .lines()

@@ -4,6 +4,7 @@ mod bare;
 mod board;
 mod cross;
 mod image;
+mod panics;
 mod probe;
 mod qemu;
 mod run;

@@ -9,7 +9,7 @@ use object::{Object, ObjectSymbol};
 
 use crate::bare::Choice;
 use crate::board::{self, Board};
-use crate::{image, run};
+use crate::{image, panics, run};
 
 /// The function the panic handler calls.
 const UNDEFINED: &str = "saltus_panic_is_reachable";
@@ -33,13 +33,27 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
+/// How the linker says that a panic is reachable.
+fn undefined() -> String {
+    format!("undefined symbol: {UNDEFINED}")
+}
+
 fn links_without_panic(board: &Board, core: Choice) -> Result<()> {
-    let path = image::build(board, core).with_context(|| {
-        format!(
-            "{} does not link: if {UNDEFINED} is undefined, a panic is reachable",
-            board.name
-        )
-    })?;
+    let mut build = image::command(board, core)?;
+    let output = run::output(&mut build)?;
+    if !output.status.success() {
+        let errors = String::from_utf8_lossy(&output.stderr);
+        if !errors.contains(&undefined()) {
+            bail!("the image does not build:\n{errors}");
+        }
+        let found = panics::find(board, core)?;
+        bail!(
+            "a panic is reachable from {} places:\n{}",
+            found.len(),
+            found.join("\n")
+        );
+    }
+    let path = image::build(board, core)?;
     let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
     let elf = object::File::parse(&*bytes)?;
     let names: Vec<&str> = elf
@@ -68,7 +82,7 @@ fn fails_with_panic(board: &Board, core: Choice) -> Result<()> {
     }
     let errors = String::from_utf8_lossy(&output.stderr);
     ensure!(
-        errors.contains(&format!("undefined symbol: {UNDEFINED}")),
+        errors.contains(&undefined()),
         "the build with a panic introduced failed for another reason:\n{errors}"
     );
     println!("  with a panic introduced: {UNDEFINED} is undefined, as it must be");

@@ -22,7 +22,6 @@ impl Stream {
     }
 
     /// The next `N` numbers.
-    #[expect(dead_code, reason = "the robots' states need it")]
     pub(crate) fn array<T: Scalar, const N: usize>(&mut self, half_width: f64) -> [T; N] {
         core::array::from_fn(|_| self.next(half_width))
     }

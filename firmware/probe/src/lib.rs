@@ -6,7 +6,9 @@
 #![no_std]
 
 mod inputs;
+mod kinds;
 mod numbers;
+mod rbd;
 mod so3_math;
 
 #[cfg(feature = "introduce_panic")]
@@ -14,6 +16,8 @@ mod introduced;
 
 use core::fmt;
 
+use kinds::Kinds;
+use rbd_core::Tree;
 use so3::Scalar;
 
 pub use numbers::Numbers;
@@ -67,11 +71,16 @@ pub fn run<R: Recorder>(recorder: &mut R) {
     introduced::run(recorder);
 }
 
-fn run_in<T: Real, R: Recorder>(recorder: &mut R) {
-    so3_math::run::<T, R>(&mut Subject {
+fn run_in<T: Real, R: Recorder>(recorder: &mut R)
+where
+    Kinds: Tree<T, { kinds::JOINTS }>,
+{
+    let on = &mut Subject {
         recorder,
         name: "so3",
-    });
+    };
+    so3_math::run::<T, R>(on);
+    rbd::run(on, ["kinds", "kinds-table"], &Kinds);
 }
 
 /// One subject's calls on one recorder.
@@ -81,13 +90,13 @@ struct Subject<'a, R> {
 }
 
 impl<R: Recorder> Subject<'_, R> {
-    /// Calls one algorithm and hands over every number it returns.
+    /// Calls one algorithm, hands over every number it returns, and returns them.
     fn call<T: Real, I, O: Numbers>(
         &mut self,
         algorithm: &'static str,
         input: I,
         work: impl FnOnce(I) -> O,
-    ) {
+    ) -> O {
         let label = Label {
             subject: self.name,
             scalar: T::NAME,
@@ -95,6 +104,7 @@ impl<R: Recorder> Subject<'_, R> {
         };
         let output = self.recorder.call(label, input, work);
         output.visit(&mut |x| self.recorder.value(canonical_bits(x)));
+        output
     }
 }
 

@@ -1,6 +1,8 @@
 //! How the numbers of a result are listed.
 
-use nalgebra::{Const, Matrix, Quaternion, Rotation3, Storage, Unit};
+mod rbd;
+
+use nalgebra::{Quaternion, Rotation3, SMatrix, Unit};
 use so3::Scalar;
 
 /// A result made of numbers, which it lists in a fixed order. `f32` widens to `f64` exactly.
@@ -73,13 +75,9 @@ impl<N: Numbers, E> Numbers for Result<N, E> {
     }
 }
 
-impl<T, const R: usize, const C: usize, S> Numbers for Matrix<T, Const<R>, Const<C>, S>
-where
-    T: Scalar + Numbers,
-    S: Storage<T, Const<R>, Const<C>>,
-{
+impl<T: Scalar + Numbers, const R: usize, const C: usize> Numbers for SMatrix<T, R, C> {
     fn visit(&self, take: &mut impl FnMut(f64)) {
-        self.iter().for_each(|x| x.visit(take));
+        self.as_slice().visit(take);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{Real, Recorder, Subject};
 
 /// Where elementary functions change their method: zeros, subnormals, the ends of the reduced range, huge arguments,
 /// and what is not a number.
-const EDGES: [f64; 18] = [
+const EDGES: [f64; 20] = [
     0.0,
     -0.0,
     1.0,
@@ -21,6 +21,8 @@ const EDGES: [f64; 18] = [
     -core::f64::consts::PI,
     100.0,
     -1e5,
+    402.0,
+    3217.0,
     1e22,
     -1e300,
     f64::INFINITY,
@@ -40,6 +42,8 @@ pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, R>) {
         functions::<T, R>(on, stream.next(1.0));
         functions::<T, R>(on, stream.next(7.0));
         functions::<T, R>(on, stream.next(2000.0));
+        let angles = stream.array::<T, 12>(500.0);
+        on.call::<T, _, _>("sin_cos_array", &angles, math::sin_cos_array);
         let (y, x): (T, T) = (stream.next(3.0), stream.next(3.0));
         on.call::<T, _, _>("atan2", (y, x), |(y, x)| math::atan2(y, x));
     }
