@@ -11,6 +11,10 @@ pub mod table;
 pub mod tree;
 
 pub use algo::aba::{AbaWorkspace, aba, aba_with_forces, mass_solve};
+pub use algo::aba_derivatives::{
+    AbaDerivatives, AbaDerivativesWorkspace, aba_derivatives, aba_derivatives_with_forces,
+};
+pub use algo::blocks::BlockMatrix;
 pub use algo::centroidal::{
     CentroidalMap, CentroidalState, centroidal_bias, centroidal_map, centroidal_momentum_rate,
     centroidal_state,
@@ -21,10 +25,14 @@ pub use algo::friction::joint_friction;
 pub use algo::gravity::generalized_gravity;
 pub use algo::jacobian::{FrameJacobian, frame_jacobian, joint_jacobians};
 pub use algo::kinematics::{Kinematics, forward_kinematics};
+pub use algo::minv::{MassFactors, mass_matrix_inverse};
 pub use algo::motion::{
     Axes, BodyMotions, bias_accelerations, forward_accelerations, forward_velocities,
 };
 pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
+pub use algo::rnea_derivatives::{
+    DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
+};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};

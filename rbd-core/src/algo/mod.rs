@@ -1,6 +1,8 @@
 //! The algorithms, one per file, each a fold over the tree.
 
 pub mod aba;
+pub mod aba_derivatives;
+pub mod blocks;
 pub mod centroidal;
 pub mod com;
 pub mod crba;
@@ -8,8 +10,11 @@ pub mod friction;
 pub mod gravity;
 pub mod jacobian;
 pub mod kinematics;
+pub mod minv;
 pub mod motion;
 pub mod rnea;
+pub mod rnea_derivatives;
+mod sweep;
 
 use nalgebra::Vector3;
 use so3::Scalar;

@@ -1,0 +1,173 @@
+//! Analytic derivatives of forward dynamics, ∂ν̇/∂q, ∂ν̇/∂ν and ∂ν̇/∂τ = M⁻¹.
+//!
+//! From τ(q, ν, ν̇(q, ν, τ)) = τ: ∂ν̇/∂q = −M⁻¹ ∂τ/∂q and ∂ν̇/∂ν = −M⁻¹ ∂τ/∂ν, the derivatives of
+//! inverse dynamics at the acceleration that forward dynamics gives (Carpentier, Mansard, "Analytical
+//! derivatives of rigid body dynamics algorithms", RSS 2018). M comes with those derivatives and is
+//! factored along the branches of the tree, see [`minv`](super::minv).
+
+use so3::Scalar;
+
+use super::aba::{AbaWorkspace, aba, aba_with_forces};
+use super::blocks::BlockMatrix;
+use super::minv::MassFactors;
+use super::rnea_derivatives::{
+    DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
+};
+use crate::spatial::{Force, Motion};
+use crate::state::{Effort, Posture, Tangent};
+use crate::tree::Tree;
+
+/// Derivatives of forward dynamics at one state, and the acceleration itself.
+///
+/// The change of acceleration to first order is dν̇ = `by_position` dq + `by_velocity` dν +
+/// `by_effort` dτ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AbaDerivatives<T, const N: usize> {
+    /// ν̇.
+    pub acceleration: Tangent<T, N>,
+    /// ∂ν̇/∂q, per displacement in the tangent space.
+    pub by_position: BlockMatrix<T, N>,
+    /// ∂ν̇/∂ν.
+    pub by_velocity: BlockMatrix<T, N>,
+    /// ∂ν̇/∂τ = M⁻¹.
+    pub by_effort: BlockMatrix<T, N>,
+}
+
+impl<T: Scalar, const N: usize> AbaDerivatives<T, N> {
+    /// All zero: only storage.
+    pub const ZERO: Self = Self {
+        acceleration: Tangent::ZERO,
+        by_position: BlockMatrix::ZERO,
+        by_velocity: BlockMatrix::ZERO,
+        by_effort: BlockMatrix::ZERO,
+    };
+
+    /// Change of the acceleration, to first order, for small changes of configuration, velocity and
+    /// effort.
+    #[must_use]
+    pub fn change(
+        &self,
+        position: &Tangent<T, N>,
+        velocity: &Tangent<T, N>,
+        effort: &Effort<T, N>,
+    ) -> Tangent<T, N> {
+        let part = |m: &BlockMatrix<T, N>, base: [T; 6], joints: &[T; N]| {
+            let (base, joints) = m.mul(base, joints);
+            Tangent {
+                base: Motion::from_array(base),
+                joints,
+            }
+        };
+        part(
+            &self.by_position,
+            position.base.to_array(),
+            &position.joints,
+        ) + part(
+            &self.by_velocity,
+            velocity.base.to_array(),
+            &velocity.joints,
+        ) + part(&self.by_effort, effort.base.to_array(), &effort.joints)
+    }
+}
+
+/// Scratch of [`aba_derivatives`]: that of forward dynamics, of the derivatives of inverse dynamics, and
+/// their results; [`AbaDerivativesWorkspace::factors`] can solve with M afterwards.
+#[derive(Clone, Copy, Debug)]
+pub struct AbaDerivativesWorkspace<T, const N: usize> {
+    aba: AbaWorkspace<T, N>,
+    inverse_dynamics: DerivativesWorkspace<T, N>,
+    efforts: RneaDerivatives<T, N>,
+    factors: MassFactors<T, N>,
+}
+
+impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
+    /// All zero.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            aba: AbaWorkspace::new(),
+            inverse_dynamics: DerivativesWorkspace::new(),
+            efforts: RneaDerivatives::ZERO,
+            factors: MassFactors::new(),
+        }
+    }
+
+    /// Factors of M at the state of the last call.
+    #[must_use]
+    pub const fn factors(&self) -> &MassFactors<T, N> {
+        &self.factors
+    }
+
+    /// Derivatives of inverse dynamics at the state of the last call.
+    #[must_use]
+    pub const fn inverse_dynamics(&self) -> &RneaDerivatives<T, N> {
+        &self.efforts
+    }
+
+    /// From the derivatives of inverse dynamics to those of forward dynamics.
+    #[inline(always)]
+    fn finish<M: Tree<T, N>>(&mut self, model: &M, out: &mut AbaDerivatives<T, N>) {
+        self.factors.factor(model, &self.efforts.by_acceleration);
+        self.factors.inverse(&mut out.by_effort);
+        out.by_position = -self.efforts.by_position;
+        self.factors.solve_columns(&mut out.by_position);
+        out.by_velocity = -self.efforts.by_velocity;
+        self.factors.solve_columns(&mut out.by_velocity);
+    }
+}
+
+impl<T: Scalar, const N: usize> Default for AbaDerivativesWorkspace<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Derivatives of [`aba`] with respect to configuration, velocity and effort, and its value.
+///
+/// For a fixed base the rows of the base are zero, and the base columns of ∂ν̇/∂q tell what happens
+/// when its mount is tilted.
+#[inline]
+pub fn aba_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    effort: &Effort<T, N>,
+    ws: &mut AbaDerivativesWorkspace<T, N>,
+    out: &mut AbaDerivatives<T, N>,
+) {
+    out.acceleration = aba(model, posture, velocity, effort, &mut ws.aba);
+    rnea_derivatives(
+        model,
+        posture,
+        velocity,
+        &out.acceleration,
+        &mut ws.inverse_dynamics,
+        &mut ws.efforts,
+    );
+    ws.finish(model, out);
+}
+
+/// Derivatives of [`aba_with_forces`], the forces held constant in the axes of the bodies on which they
+/// act (see [`rnea_derivatives_with_forces`]).
+#[inline]
+pub fn aba_derivatives_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    effort: &Effort<T, N>,
+    forces: &[Force<T>; N],
+    ws: &mut AbaDerivativesWorkspace<T, N>,
+    out: &mut AbaDerivatives<T, N>,
+) {
+    out.acceleration = aba_with_forces(model, posture, velocity, effort, forces, &mut ws.aba);
+    rnea_derivatives_with_forces(
+        model,
+        posture,
+        velocity,
+        &out.acceleration,
+        forces,
+        &mut ws.inverse_dynamics,
+        &mut ws.efforts,
+    );
+    ws.finish(model, out);
+}

@@ -1,0 +1,202 @@
+//! Analytic derivatives against central differences on the manifold, on random trees, and the inverse of
+//! the mass matrix against the matrix.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "tests"
+)]
+
+mod common;
+
+use common::{CAP, Model, joints, masked, model, motion, state};
+use nalgebra::{Rotation3, SMatrix};
+use proptest::prelude::*;
+use rbd_core::{
+    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, BaseKind, BlockMatrix, Configuration,
+    DerivativesWorkspace, Effort, Force, MassFactors, MassMatrix, Motion, Posture, RneaDerivatives,
+    Tangent, Transform, Tree, aba, crba, rnea, rnea_derivatives, rnea_derivatives_with_forces,
+    rnea_with_forces,
+};
+
+const V: usize = 6 + CAP;
+type Dense = SMatrix<f64, V, V>;
+
+/// The configuration a small displacement away, in base axes.
+fn displaced(q: &Configuration<f64, CAP>, d: &Tangent<f64, CAP>) -> Configuration<f64, CAP> {
+    let base = &q.base;
+    let mut out = *q;
+    out.base = Transform::new(
+        base.rotation * Rotation3::from_scaled_axis(d.base.angular),
+        base.translation + base.rotation * d.base.linear,
+    );
+    for (x, y) in out.joints.iter_mut().zip(d.joints) {
+        *x += y;
+    }
+    out
+}
+
+/// Derivative of a vector of V entries along every coordinate, by central differences with Richardson's
+/// extrapolation: error of order h⁴.
+fn differences(count: usize, f: impl Fn(&Tangent<f64, CAP>) -> [f64; V]) -> Dense {
+    let h = 2e-3;
+    let mut out = Dense::zeros();
+    for j in 0..6 + count {
+        let unit = Tangent::unit(j);
+        let slope = |h: f64| {
+            let (plus, minus) = (f(&(unit * h)), f(&(unit * -h)));
+            core::array::from_fn::<f64, V, _>(|i| (plus[i] - minus[i]) / (2.0 * h))
+        };
+        let (coarse, fine) = (slope(h), slope(h / 2.0));
+        for i in 0..V {
+            out[(i, j)] = (4.0 * fine[i] - coarse[i]) / 3.0;
+        }
+    }
+    out
+}
+
+fn entries(e: &Effort<f64, CAP>) -> [f64; V] {
+    core::array::from_fn(|i| e.coordinate(i))
+}
+
+fn coordinates(t: &Tangent<f64, CAP>) -> [f64; V] {
+    core::array::from_fn(|i| t.coordinate(i))
+}
+
+/// Largest difference relative to the largest entry (at least 1).
+fn distance(a: &Dense, b: &Dense) -> f64 {
+    (a - b).amax() / a.amax().max(b.amax()).max(1.0)
+}
+
+fn forces() -> impl Strategy<Value = [Force<f64>; CAP]> {
+    prop::array::uniform24(motion(5.0).prop_map(|m| Force::new(m.linear, m.angular)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn rnea_derivatives_are_differences(model in model(), (q, [v, a]) in state(), f in forces()) {
+        let (v, a) = (masked(&model, v), masked(&model, a));
+        let n = model.joint_count();
+        let posture = Posture::new(&model, &q);
+        let (mut ws, mut d) = (DerivativesWorkspace::new(), RneaDerivatives::ZERO);
+        rnea_derivatives(&model, &posture, &v, &a, &mut ws, &mut d);
+
+        let tau = |p: &Posture<f64, CAP>, v: &Tangent<f64, CAP>, a: &Tangent<f64, CAP>| {
+            entries(&rnea(&model, p, v, a))
+        };
+        let by_q = differences(n, |d| tau(&Posture::new(&model, &displaced(&q, d)), &v, &a));
+        let by_v = differences(n, |d| tau(&posture, &(v + *d), &a));
+        prop_assert!(distance(&d.by_position.to_dense(), &by_q) < 1e-8);
+        prop_assert!(distance(&d.by_velocity.to_dense(), &by_v) < 1e-8);
+        let mut m = MassMatrix::ZERO;
+        crba(&model, &posture, &mut m);
+        prop_assert!(distance(&d.by_acceleration.to_dense(), &m.to_dense()) < 1e-12);
+
+        rnea_derivatives_with_forces(&model, &posture, &v, &a, &f, &mut ws, &mut d);
+        let by_q = differences(n, |d| {
+            let p = Posture::new(&model, &displaced(&q, d));
+            entries(&rnea_with_forces(&model, &p, &v, &a, &Force::ZERO, &f))
+        });
+        prop_assert!(distance(&d.by_position.to_dense(), &by_q) < 1e-8);
+        prop_assert!(distance(&d.by_velocity.to_dense(), &by_v) < 1e-8);
+    }
+
+    #[test]
+    fn aba_derivatives_are_differences(model in model(), (q, [v, t]) in state()) {
+        let (v, t) = (masked(&model, v), masked(&model, t));
+        let n = model.joint_count();
+        let posture = Posture::new(&model, &q);
+        let tau = Effort {
+            base: Force::new(t.base.linear, t.base.angular),
+            joints: t.joints,
+        };
+        let mut ws = AbaDerivativesWorkspace::new();
+        let mut d = AbaDerivatives::ZERO;
+        rbd_core::aba_derivatives(&model, &posture, &v, &tau, &mut ws, &mut d);
+
+        let qdd = |p: &Posture<f64, CAP>, v: &Tangent<f64, CAP>, tau: &Effort<f64, CAP>| {
+            coordinates(&aba(&model, p, v, tau, &mut AbaWorkspace::new()))
+        };
+        prop_assert_eq!(coordinates(&d.acceleration), qdd(&posture, &v, &tau));
+        let by_q = differences(n, |d| qdd(&Posture::new(&model, &displaced(&q, d)), &v, &tau));
+        let mut by_v = differences(n, |d| qdd(&posture, &(v + *d), &tau));
+        if model.base_kind() == BaseKind::Fixed {
+            prop_assert!(d.by_position.base.as_flattened().iter().all(|&x| x == 0.0));
+            prop_assert!(by_v.rows(0, 6).amax() == 0.0);
+        }
+        // M⁻¹ amplifies rounding by the condition of M: judge relative to the largest entry.
+        prop_assert!(distance(&d.by_position.to_dense(), &by_q) < 1e-6, "{}", distance(&d.by_position.to_dense(), &by_q));
+        by_v -= d.by_velocity.to_dense();
+        prop_assert!(by_v.amax() < 1e-6 * d.by_velocity.to_dense::<V>().amax().max(1.0));
+    }
+
+    #[test]
+    fn the_inverse_inverts(model in model(), (q, [x, _]) in state()) {
+        let n = model.joint_count();
+        let posture = Posture::new(&model, &q);
+        let mut m = MassMatrix::ZERO;
+        crba(&model, &posture, &mut m);
+        let (mut factors, mut inverse) = (MassFactors::new(), BlockMatrix::ZERO);
+        rbd_core::mass_matrix_inverse(&model, &m, &mut factors, &mut inverse);
+        let (m, w): (Dense, Dense) = (m.to_dense(), inverse.to_dense());
+        let first = if model.base_kind() == BaseKind::Fixed { 6 } else { 0 };
+        // Outside of the coordinates that the robot has, the product shall be zero.
+        let mut identity = Dense::zeros();
+        for i in first..6 + n {
+            identity[(i, i)] = 1.0;
+        }
+        let product = identity * m * w;
+        let condition = m.amax() * w.amax();
+        let off = (product - identity).amax();
+        prop_assert!(off < 1e-13 * condition.max(10.0), "{off} at condition {condition}");
+        prop_assert!((w - w.transpose()).amax() <= 1e-13 * w.amax() * condition);
+
+        // solve(x) is the product with the inverse.
+        let x = masked(&model, x);
+        let effort = Effort { base: Force::new(x.base.linear, x.base.angular), joints: x.joints };
+        let y = coordinates(&factors.solve(&effort));
+        let (base, joints) = inverse.mul(effort.base.to_array(), &effort.joints);
+        for (a, b) in base.into_iter().chain(joints).zip(y) {
+            prop_assert!((a - b).abs() < 1e-12 * condition * w.amax());
+        }
+    }
+
+    #[test]
+    fn first_order_change(model in model(), (q, [v, a]) in state(), dq in joints(1.0)) {
+        let (v, a) = (masked(&model, v), masked(&model, a));
+        let d = masked(&model, Tangent { base: Motion::ZERO, joints: dq });
+        let mut out = RneaDerivatives::ZERO;
+        let posture = Posture::new(&model, &q);
+        rnea_derivatives(&model, &posture, &v, &a, &mut DerivativesWorkspace::new(), &mut out);
+        let h = 1e-6;
+        let d = d * h;
+        let before = rnea(&model, &posture, &v, &a);
+        let after = rnea(&model, &Posture::new(&model, &displaced(&q, &d)), &(v + d), &(a + d));
+        let error = entries(&(after - before - out.change(&d, &d, &d)));
+        let size = entries(&before).into_iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+        prop_assert!(error.into_iter().all(|e| e.abs() < 1e-8 * size * h.sqrt() * 10.0));
+    }
+}
+
+#[test]
+fn massless_joints_do_not_answer() {
+    use rbd_core::{BaseBody, Body};
+    let base = BaseBody {
+        mass: 2.0,
+        first: [0.0; 3],
+        second: [0.01, 0.02, 0.03, 0.0, 0.0, 0.0],
+    };
+    let model = Model::new(BaseKind::Floating, base, &[Body::EMPTY]).unwrap();
+    let posture = Posture::new(&model, &Configuration::NEUTRAL);
+    let mut m = MassMatrix::ZERO;
+    crba(&model, &posture, &mut m);
+    let mut factors = MassFactors::new();
+    let mut inverse = BlockMatrix::ZERO;
+    rbd_core::mass_matrix_inverse(&model, &m, &mut factors, &mut inverse);
+    assert!(inverse.joints.as_flattened().iter().all(|&x| x == 0.0));
+    assert!((inverse.base[0][0] - 0.5).abs() < 1e-15);
+    let a = factors.solve(&Effort::unit(6));
+    assert_eq!(a, Tangent::ZERO);
+}
