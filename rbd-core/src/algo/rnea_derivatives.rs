@@ -22,8 +22,8 @@ use so3::Scalar;
 
 use super::blocks::BlockMatrix;
 use super::crba::MassMatrix;
+use super::gravity::gravity;
 use super::put;
-use super::rnea::gravity;
 use super::sweep::{Axis, Composite, Response, Sweep, Visit, sweep};
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent, basis};
