@@ -1,0 +1,216 @@
+//! Plain-loop kernels on padded, column-major matrices.
+//!
+//! A matrix with `R` rows and `C` columns is `[[T; R]; C]`. Inner loops run over a whole column, whose
+//! length is a constant, so the compiler turns them into vector code on any target; outer loops skip
+//! zero multipliers, which is how the sparsity of a stage is exploited without describing it.
+
+use so3::Scalar;
+
+/// `y += factor · x`.
+#[inline(always)]
+pub(crate) fn add_scaled<T: Scalar, const N: usize>(y: &mut [T; N], factor: T, x: &[T; N]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * *x;
+    }
+}
+
+/// `xᵀ y`, summed in eight lanes so that it vectorises under strict rounding.
+#[inline(always)]
+pub(crate) fn dot<T: Scalar, const N: usize>(x: &[T; N], y: &[T; N]) -> T {
+    let mut lanes = [T::ZERO; 8];
+    let (x8, x_rest) = x.as_chunks::<8>();
+    let (y8, y_rest) = y.as_chunks::<8>();
+    for (x, y) in x8.iter().zip(y8) {
+        for ((lane, x), y) in lanes.iter_mut().zip(x).zip(y) {
+            *lane += *x * *y;
+        }
+    }
+    for ((lane, x), y) in lanes.iter_mut().zip(x_rest).zip(y_rest) {
+        *lane += *x * *y;
+    }
+    let [a, b, c, d, e, f, g, h] = lanes;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// `out += matrix · weights`, skipping zero weights.
+#[inline(always)]
+pub(crate) fn add_product<T: Scalar, const R: usize, const C: usize>(
+    out: &mut [T; R],
+    matrix: &[[T; R]; C],
+    weights: &[T; C],
+) {
+    for (column, weight) in matrix.iter().zip(weights) {
+        if *weight != T::ZERO {
+            add_scaled(out, *weight, column);
+        }
+    }
+}
+
+/// `out += matrixᵀ · x`.
+#[inline(always)]
+pub(crate) fn add_transposed_product<T: Scalar, const R: usize, const C: usize>(
+    out: &mut [T; C],
+    matrix: &[[T; R]; C],
+    x: &[T; R],
+) {
+    for (out, column) in out.iter_mut().zip(matrix) {
+        *out += dot(column, x);
+    }
+}
+
+/// The transpose.
+#[inline(always)]
+pub(crate) fn transpose<T: Scalar, const R: usize, const C: usize>(
+    matrix: &[[T; R]; C],
+) -> [[T; C]; R] {
+    let mut out = [[T::ZERO; C]; R];
+    for (j, column) in matrix.iter().enumerate() {
+        for (row, value) in out.iter_mut().zip(column) {
+            if let Some(slot) = row.get_mut(j) {
+                *slot = *value;
+            }
+        }
+    }
+    out
+}
+
+/// `matrix += weight · row · rowᵀ`, skipping zero entries of `row`.
+#[inline(always)]
+pub(crate) fn add_outer<T: Scalar, const N: usize>(
+    matrix: &mut [[T; N]; N],
+    weight: T,
+    row: &[T; N],
+) {
+    for (column, entry) in matrix.iter_mut().zip(row) {
+        if *entry != T::ZERO {
+            add_scaled(column, weight * *entry, row);
+        }
+    }
+}
+
+/// `max(largest, |x|)` where a NaN wins, so that no broken number passes as small.
+#[inline(always)]
+pub(crate) fn larger<T: Scalar>(largest: T, x: T) -> T {
+    let magnitude = so3::math::abs(x);
+    if magnitude <= largest {
+        largest
+    } else {
+        magnitude
+    }
+}
+
+/// `L D Lᵀ` of the leading `n` × `n` block of a symmetric matrix, lower triangle, in place.
+///
+/// Afterwards column `j` holds column `j` of the unit-lower `L` below the diagonal, and `inverse_pivots`
+/// the inverses of `D`. Returns false at the first pivot that is not above `floor`: the block is not
+/// positive definite.
+#[inline(always)]
+#[must_use]
+pub(crate) fn factor<T: Scalar, const N: usize>(
+    matrix: &mut [[T; N]; N],
+    inverse_pivots: &mut [T; N],
+    n: usize,
+    floor: T,
+) -> bool {
+    for j in 0..N {
+        if j >= n {
+            break;
+        }
+        let mut column = matrix[j];
+        let pivot = column[j];
+        if !(pivot > floor && pivot.is_finite_number()) {
+            return false;
+        }
+        let inverse = T::ONE / pivot;
+        for k in (j + 1)..N {
+            if k >= n {
+                break;
+            }
+            let weight = column[k] * inverse;
+            if weight != T::ZERO {
+                add_scaled(&mut matrix[k], -weight, &column);
+            }
+        }
+        for value in &mut column {
+            *value *= inverse;
+        }
+        matrix[j] = column;
+        inverse_pivots[j] = inverse;
+    }
+    true
+}
+
+/// Solves `L z = y` in place for several right-hand sides at once: `rows[j]` is row `j` of `y`.
+#[inline(always)]
+pub(crate) fn solve_lower<T: Scalar, const N: usize, const M: usize>(
+    factor: &[[T; N]; N],
+    rows: &mut [[T; M]; N],
+    n: usize,
+) {
+    for j in 0..N {
+        if j >= n {
+            break;
+        }
+        let row = rows[j];
+        for k in (j + 1)..N {
+            if k >= n {
+                break;
+            }
+            add_scaled(&mut rows[k], -factor[j][k], &row);
+        }
+    }
+}
+
+/// Solves `Lᵀ z = y` in place for several right-hand sides at once: `rows[j]` is row `j` of `y`.
+#[inline(always)]
+pub(crate) fn solve_upper<T: Scalar, const N: usize, const M: usize>(
+    factor: &[[T; N]; N],
+    rows: &mut [[T; M]; N],
+    n: usize,
+) {
+    for j in (0..N).rev() {
+        if j >= n {
+            continue;
+        }
+        let row = rows[j];
+        for i in 0..j {
+            add_scaled(&mut rows[i], -factor[i][j], &row);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factor_and_solves_reproduce_the_matrix() {
+        // A = Gᵀ G + I of a fixed G; the leading 3 × 3 block is solved against A x = b.
+        let a: [[f64; 4]; 4] = [
+            [4.0, 1.0, -0.5, 9.0],
+            [1.0, 3.0, 0.7, 9.0],
+            [-0.5, 0.7, 2.0, 9.0],
+            [9.0; 4],
+        ];
+        let (mut l, mut inverse) = (a, [0.0; 4]);
+        assert!(factor(&mut l, &mut inverse, 3, 0.0));
+        let mut x = [[1.0], [2.0], [3.0], [0.0]];
+        solve_lower(&l, &mut x, 3);
+        for (x, d) in x.iter_mut().zip(&inverse) {
+            x[0] *= d;
+        }
+        solve_upper(&l, &mut x, 3);
+        for i in 0..3 {
+            let b: f64 = (0..3).map(|j| a[j][i] * x[j][0]).sum();
+            assert!((b - (i as f64 + 1.0)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_indefinite_block_is_refused() {
+        let mut a: [[f64; 2]; 2] = [[1.0, 2.0], [2.0, 1.0]];
+        assert!(!factor(&mut a, &mut [0.0; 2], 2, 0.0));
+        let mut nan: [[f64; 2]; 2] = [[f64::NAN, 0.0], [0.0, 1.0]];
+        assert!(!factor(&mut nan, &mut [0.0; 2], 2, 0.0));
+    }
+}

@@ -1,0 +1,18 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod check;
+mod iterate;
+mod kernel;
+mod problem;
+mod riccati;
+mod rows;
+mod settings;
+mod solver;
+mod stage;
+
+pub use check::{DerivativeErrors, derivative_errors};
+pub use problem::{Derivatives, Dims, Evaluated, Problem, Values};
+pub use settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
+pub use solver::Solver;
+pub use stage::Stage;

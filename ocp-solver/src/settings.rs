@@ -1,0 +1,210 @@
+//! Options, progress and outcome of a solve.
+
+use so3::Scalar;
+
+/// How the barrier parameter µ goes to zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Barrier {
+    /// Every iteration anew from the complementarity of the iterate (the rule of LOQO); fastest.
+    Adaptive,
+    /// From `initial_mu` down, whenever the barrier problem is solved well enough; steadier, slower.
+    Monotone,
+    /// Adaptive, and from the guess again with the monotone rule if the adaptive one stalls.
+    #[default]
+    AdaptiveThenMonotone,
+}
+
+/// Options of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Settings<T> {
+    /// Largest number of iterations, over all attempts.
+    pub max_iterations: usize,
+    /// Largest violation of dynamics and rows at a solution, in their own units.
+    pub primal_tolerance: T,
+    /// Largest entry of the gradient of the Lagrangian at a solution, relative to the mean multiplier
+    /// where that is above 100.
+    pub dual_tolerance: T,
+    /// Largest product of a distance to a bound and its multiplier at a solution, scaled likewise.
+    pub complementarity_tolerance: T,
+    /// Rule for the barrier parameter.
+    pub barrier: Barrier,
+    /// First µ of the monotone rule.
+    pub initial_mu: T,
+    /// Factor of the adaptive rule.
+    pub adaptive_factor: T,
+    /// Multiplier every bound starts with under the adaptive rule.
+    pub initial_multiplier: T,
+    /// Distance slacks keep from their bounds at the start.
+    pub bound_push: T,
+    /// Proximal weight ρ of equality rows.
+    pub equality_weight: T,
+    /// The adaptive rule has stalled after this many steps in a row shorter than `stall_step`.
+    pub stall_count: usize,
+    /// See `stall_count`.
+    pub stall_step: T,
+}
+
+impl<T: Scalar> Settings<T> {
+    /// The defaults.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            max_iterations: 300,
+            primal_tolerance: T::of(1e-8),
+            dual_tolerance: T::of(1e-6),
+            complementarity_tolerance: T::of(1e-6),
+            barrier: Barrier::default(),
+            initial_mu: T::of(0.1),
+            adaptive_factor: T::of(0.03),
+            initial_multiplier: T::ONE,
+            bound_push: T::of(1e-2),
+            equality_weight: T::of(1e4),
+            stall_count: 3,
+            stall_step: T::of(0.03),
+        }
+    }
+}
+
+impl<T: Scalar> Default for Settings<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What the observer sees after every iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Progress<T> {
+    /// Iterations so far.
+    pub iteration: usize,
+    /// Cost of the iterate.
+    pub cost: T,
+    /// Residuals of the iterate.
+    pub residual: Residual<T>,
+    /// Barrier parameter of the step that led here.
+    pub mu: T,
+    /// Primal step length.
+    pub primal_step: T,
+    /// Dual step length.
+    pub dual_step: T,
+    /// Shift of the Hessian that made it positive definite.
+    pub shift: T,
+    /// 0 for the first barrier rule, 1 after a restart.
+    pub attempt: usize,
+}
+
+/// Residuals of the optimality conditions, largest entries.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Residual<T> {
+    /// Violation of dynamics and rows.
+    pub primal: T,
+    /// Gradient of the Lagrangian, scaled.
+    pub dual: T,
+    /// Distance × multiplier, scaled.
+    pub complementarity: T,
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Status {
+    /// All residuals are within their tolerances.
+    Solved,
+    /// The iteration limit was reached first.
+    IterationLimit,
+    /// The observer asked to stop.
+    Cancelled,
+    /// Steps became too short to make progress.
+    Stalled,
+    /// The Hessian could not be made positive definite.
+    Indefinite,
+    /// The problem returned a NaN or an infinity where the solve could not step around it.
+    NotFinite,
+}
+
+/// Outcome of a solve; states and controls are left in the stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Solution<T> {
+    /// How it ended. Unless [`Status::Solved`], the stages hold the best iterate seen.
+    pub status: Status,
+    /// Iterations, over all attempts.
+    pub iterations: usize,
+    /// Cost of the returned iterate.
+    pub cost: T,
+    /// Residuals of the returned iterate.
+    pub residual: Residual<T>,
+    /// Last barrier parameter.
+    pub mu: T,
+    /// Factorisations, including those repeated with a shifted Hessian.
+    pub factorisations: usize,
+    /// Restarts under another barrier rule.
+    pub restarts: usize,
+}
+
+/// Data that cannot be solved with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The slice of stages must hold exactly `intervals + 1` nodes.
+    StageCount {
+        /// Nodes of the problem.
+        needed: usize,
+        /// Length of the slice.
+        given: usize,
+    },
+    /// A node asks for more controls or rows than the const sizes hold.
+    Dims {
+        /// The node.
+        stage: usize,
+    },
+    /// A row has a NaN bound, or its lower bound is above its upper bound.
+    Bounds {
+        /// The node.
+        stage: usize,
+        /// The row.
+        row: usize,
+    },
+    /// The guess gives a cost, gap or row that is not finite.
+    Guess {
+        /// The node.
+        stage: usize,
+    },
+    /// A setting is not a positive finite number (tolerances, weights) or is zero (limits).
+    Setting(&'static str),
+}
+
+impl core::fmt::Display for Error {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::StageCount { needed, given } => {
+                write!(
+                    f,
+                    "{given} stages given, {needed} needed: one per node, intervals + 1"
+                )
+            }
+            Self::Dims { stage } => {
+                write!(
+                    f,
+                    "node {stage} has more controls or rows than NU and NI hold: raise them"
+                )
+            }
+            Self::Bounds { stage, row } => {
+                write!(
+                    f,
+                    "row {row} of node {stage}: bounds must be numbers with lower <= upper"
+                )
+            }
+            Self::Guess { stage } => {
+                write!(
+                    f,
+                    "the guess is not finite at node {stage}: start from finite values"
+                )
+            }
+            Self::Setting(name) => write!(f, "setting `{name}` must be positive and finite"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}

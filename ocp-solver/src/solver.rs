@@ -1,0 +1,400 @@
+//! The interior-point iteration.
+
+use crate::iterate::{self, Merit};
+use crate::problem::Problem;
+use crate::riccati::{factorise, solve_start, substitute};
+use crate::rows::Complementarity;
+use crate::settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
+use crate::stage::Stage;
+use core::ops::ControlFlow;
+use so3::Scalar;
+use so3::math::{max, min};
+
+/// The solver: settings only; all state lives in the stages.
+#[derive(Clone, Copy, Debug)]
+pub struct Solver<T> {
+    /// Options.
+    pub settings: Settings<T>,
+}
+
+/// State of one attempt that is not per node.
+struct Run<T, const NX: usize> {
+    free: [bool; NX],
+    adaptive: bool,
+    mu: T,
+    /// Last Hessian shift that was needed.
+    shift: T,
+    short_steps: usize,
+    iterations: usize,
+    factorisations: usize,
+    attempt: usize,
+    best: Residual<T>,
+    best_cost: T,
+    best_score: T,
+}
+
+impl<T: Scalar> Solver<T> {
+    /// A solver with the given settings.
+    #[must_use]
+    pub const fn new(settings: Settings<T>) -> Self {
+        Self { settings }
+    }
+
+    /// Solves from the guess in the stages and leaves the solution there.
+    ///
+    /// # Errors
+    /// Data that cannot be solved with, see [`Error`]; outcomes of a solve are [`Status`]es.
+    pub fn solve<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        problem: &P,
+        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
+    ) -> Result<Solution<T>, Error> {
+        self.settings.check()?;
+        prepare(problem, stages)?;
+        let mut run = Run::new(problem, self.settings.barrier != Barrier::Monotone);
+        let mut status = self.attempt(problem, stages, &mut run, &mut observer);
+        let may_restart = matches!(
+            status,
+            Status::Stalled | Status::NotFinite | Status::Indefinite
+        );
+        if may_restart && self.settings.barrier == Barrier::AdaptiveThenMonotone {
+            for stage in stages.iter_mut() {
+                (stage.state, stage.control) = stage.guess;
+            }
+            let _ = iterate::evaluate(problem, stages);
+            run.adaptive = false;
+            run.attempt = 1;
+            status = self.attempt(problem, stages, &mut run, &mut observer);
+        }
+        if status != Status::Solved {
+            for stage in stages.iter_mut() {
+                (stage.state, stage.control) = stage.best;
+            }
+            let _ = iterate::evaluate(problem, stages);
+        }
+        Ok(Solution {
+            status,
+            iterations: run.iterations,
+            cost: run.best_cost,
+            residual: run.best,
+            mu: run.mu,
+            factorisations: run.factorisations,
+            restarts: run.attempt,
+        })
+    }
+
+    /// One descent under one barrier rule, from evaluated values.
+    fn attempt<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        problem: &P,
+        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        run: &mut Run<T, NX>,
+        observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
+    ) -> Status {
+        let settings = &self.settings;
+        run.mu = settings.initial_mu;
+        run.shift = T::ZERO;
+        run.short_steps = 0;
+        for stage in stages.iter_mut() {
+            stage.costate = [T::ZERO; NX];
+            let mu = (!run.adaptive).then_some(settings.initial_mu);
+            stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
+        }
+        let mut point = iterate::merit(stages);
+        let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
+        loop {
+            iterate::differentiate(problem, stages);
+            let mut complementarity = Complementarity::new();
+            for stage in stages.iter() {
+                stage.add_complementarity(&mut complementarity);
+            }
+            let residual = iterate::residual(stages, &run.free, point.worst, &complementarity);
+            run.remember(settings, stages, &point, &residual);
+            let progress = Progress {
+                iteration: run.iterations,
+                cost: point.cost,
+                residual,
+                mu: run.mu,
+                primal_step,
+                dual_step,
+                shift: used_shift,
+                attempt: run.attempt,
+            };
+            if observer(&progress).is_break() {
+                return Status::Cancelled;
+            }
+            if settings.is_solved(&residual) {
+                run.best = residual;
+                run.best_cost = point.cost;
+                return Status::Solved;
+            }
+            if run.iterations >= settings.max_iterations {
+                return Status::IterationLimit;
+            }
+            run.iterations = run.iterations.saturating_add(1);
+            self.update_mu(run, &residual, &complementarity);
+
+            for stage in stages.iter_mut() {
+                stage.condense_rows(run.mu, settings.equality_weight);
+            }
+            used_shift = match self.newton(stages, run) {
+                Ok(shift) => shift,
+                Err(status) => return status,
+            };
+            let fraction = max(T::of(0.99), T::ONE - run.mu);
+            (primal_step, dual_step) = (T::ONE, T::ONE);
+            for stage in stages.iter_mut() {
+                let (primal, dual) = stage.step_rows(run.mu, fraction);
+                primal_step = min(primal_step, primal);
+                dual_step = min(dual_step, dual);
+            }
+            let mut trial = iterate::try_step(problem, stages, primal_step);
+            let mut halvings = 0u8;
+            while !trial.is_finite() {
+                halvings = halvings.wrapping_add(1);
+                if halvings > 20 {
+                    return Status::NotFinite;
+                }
+                primal_step *= T::HALF;
+                trial = iterate::try_step(problem, stages, primal_step);
+            }
+            let floor = max(run.mu, settings.smallest_mu());
+            iterate::accept(
+                stages,
+                primal_step,
+                dual_step,
+                settings.equality_weight,
+                floor,
+            );
+            point = iterate::merit(stages);
+            if primal_step < settings.stall_step {
+                run.short_steps = run.short_steps.saturating_add(1);
+            } else {
+                run.short_steps = 0;
+            }
+            let patience = if run.adaptive {
+                settings.stall_count
+            } else {
+                settings.stall_count.saturating_mul(10)
+            };
+            if run.short_steps >= patience {
+                return Status::Stalled;
+            }
+        }
+    }
+
+    /// Barrier parameter of the next step.
+    fn update_mu<const NX: usize>(
+        &self,
+        run: &mut Run<T, NX>,
+        residual: &Residual<T>,
+        complementarity: &Complementarity<T>,
+    ) {
+        let settings = &self.settings;
+        let smallest = settings.smallest_mu();
+        if complementarity.count <= T::ZERO {
+            run.mu = smallest;
+        } else if run.adaptive {
+            // LOQO: the more uneven the products, the more centring.
+            let mean = complementarity.sum / complementarity.count;
+            let evenness = complementarity.smallest / mean;
+            let bend = min(T::of(0.05) * (T::ONE - evenness) / evenness, T::TWO);
+            run.mu = max(
+                settings.adaptive_factor * bend * bend * bend * mean,
+                smallest,
+            );
+        } else {
+            // The barrier problem is solved to ten times µ: go on to the next.
+            for _ in 0..8 {
+                let gap = max(
+                    complementarity.largest - run.mu,
+                    run.mu - complementarity.smallest,
+                );
+                let error = max(max(residual.primal, residual.dual), gap);
+                if error > T::of(10.0) * run.mu || run.mu <= smallest {
+                    break;
+                }
+                let power = run.mu * so3::math::sqrt(run.mu);
+                run.mu = max(min(T::of(0.2) * run.mu, power), smallest);
+            }
+        }
+    }
+
+    /// Factorises with the least shift that makes the Hessian positive definite and computes the step.
+    fn newton<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        stages: &mut [Stage<T, X, NX, NU, NI>],
+        run: &mut Run<T, NX>,
+    ) -> Result<T, Status> {
+        let mut shift = T::ZERO;
+        for _ in 0..40 {
+            run.factorisations = run.factorisations.saturating_add(1);
+            if factorise(stages, shift)
+                && let Some(first) = stages.first()
+            {
+                let mut start = [T::ZERO; NX];
+                let riccati = &first.riccati;
+                if solve_start(&riccati.hessian, &riccati.gradient, &run.free, &mut start) {
+                    substitute(stages, start);
+                    if shift > T::ZERO {
+                        run.shift = shift;
+                    }
+                    return Ok(shift);
+                }
+            }
+            shift = if shift > T::ZERO {
+                shift * T::of(if run.shift > T::ZERO { 8.0 } else { 100.0 })
+            } else if run.shift > T::ZERO {
+                max(run.shift / T::of(3.0), T::of(1e-12))
+            } else {
+                T::of(1e-4)
+            };
+            if shift > T::of(1e12) {
+                break;
+            }
+        }
+        Err(Status::Indefinite)
+    }
+}
+
+impl<T: Scalar, const NX: usize> Run<T, NX> {
+    fn new<P: Problem<T, NX, NU, NI>, const NU: usize, const NI: usize>(
+        problem: &P,
+        adaptive: bool,
+    ) -> Self {
+        let mut free = [false; NX];
+        for (i, free) in free.iter_mut().enumerate() {
+            *free = problem.is_free_at_start(i);
+        }
+        let none = Residual {
+            primal: T::INFINITY,
+            dual: T::INFINITY,
+            complementarity: T::INFINITY,
+        };
+        Self {
+            free,
+            adaptive,
+            mu: T::ZERO,
+            shift: T::ZERO,
+            short_steps: 0,
+            iterations: 0,
+            factorisations: 0,
+            attempt: 0,
+            best: none,
+            best_cost: T::INFINITY,
+            best_score: T::INFINITY,
+        }
+    }
+
+    /// Keeps the iterate if it is the closest to a solution so far.
+    fn remember<X: Copy, const NU: usize, const NI: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        stages: &mut [Stage<T, X, NX, NU, NI>],
+        point: &Merit<T>,
+        residual: &Residual<T>,
+    ) {
+        let score = max(
+            max(
+                residual.primal / settings.primal_tolerance,
+                residual.dual / settings.dual_tolerance,
+            ),
+            residual.complementarity / settings.complementarity_tolerance,
+        );
+        if score < self.best_score || self.best_cost == T::INFINITY {
+            self.best_score = score;
+            self.best = *residual;
+            self.best_cost = point.cost;
+            for stage in stages.iter_mut() {
+                stage.best = (stage.state, stage.control);
+            }
+        }
+    }
+}
+
+impl<T: Scalar> Settings<T> {
+    fn smallest_mu(&self) -> T {
+        self.complementarity_tolerance * T::of(0.1)
+    }
+
+    fn is_solved(&self, residual: &Residual<T>) -> bool {
+        residual.primal <= self.primal_tolerance
+            && residual.dual <= self.dual_tolerance
+            && residual.complementarity <= self.complementarity_tolerance
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        for (value, name) in [
+            (self.primal_tolerance, "primal_tolerance"),
+            (self.dual_tolerance, "dual_tolerance"),
+            (self.complementarity_tolerance, "complementarity_tolerance"),
+            (self.initial_mu, "initial_mu"),
+            (self.adaptive_factor, "adaptive_factor"),
+            (self.initial_multiplier, "initial_multiplier"),
+            (self.bound_push, "bound_push"),
+            (self.equality_weight, "equality_weight"),
+            (self.stall_step, "stall_step"),
+        ] {
+            if !(value > T::ZERO && value.is_finite_number()) {
+                return Err(Error::Setting(name));
+            }
+        }
+        if self.max_iterations == 0 {
+            return Err(Error::Setting("max_iterations"));
+        }
+        Ok(())
+    }
+}
+
+/// Reads sizes and bounds, checks them, and evaluates the guess.
+fn prepare<
+    T: Scalar,
+    P: Problem<T, NX, NU, NI>,
+    const NX: usize,
+    const NU: usize,
+    const NI: usize,
+>(
+    problem: &P,
+    stages: &mut [Stage<T, P::State, NX, NU, NI>],
+) -> Result<(), Error> {
+    let needed = problem.intervals().saturating_add(1);
+    if stages.len() != needed {
+        return Err(Error::StageCount {
+            needed,
+            given: stages.len(),
+        });
+    }
+    for (k, stage) in stages.iter_mut().enumerate() {
+        stage.dims = problem.dims(k);
+        if k.saturating_add(1) == needed {
+            stage.dims.controls = 0;
+        }
+        if stage.dims.controls > NU || stage.dims.rows() > NI {
+            return Err(Error::Dims { stage: k });
+        }
+        stage.bounds = ([T::ZERO; NI], [T::ZERO; NI]);
+        problem.bounds(k, &mut stage.bounds.0, &mut stage.bounds.1);
+        let rows = stage.row_count();
+        for (row, (lower, upper)) in stage
+            .bounds
+            .0
+            .iter()
+            .zip(&stage.bounds.1)
+            .enumerate()
+            .take(rows)
+        {
+            if lower.is_nan_number() || upper.is_nan_number() || *lower > *upper {
+                return Err(Error::Bounds { stage: k, row });
+            }
+        }
+        stage.values = crate::problem::Values::new();
+        stage.trial.values = crate::problem::Values::new();
+        stage.derivatives = crate::problem::Derivatives::new();
+        stage.guess = (stage.state, stage.control);
+    }
+    match iterate::evaluate(problem, stages) {
+        Some(stage) => Err(Error::Guess { stage }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,169 @@
+//! Problems whose optimum is known in closed form.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{BrysonDenham, LeastTime};
+use core::ops::ControlFlow;
+use ocp_solver::{Barrier, Error, Settings, Solver, Stage, Status, derivative_errors};
+
+fn least_time(intervals: usize) -> Vec<Stage<f64, [f64; 3], 8, 4, 4>> {
+    let mut stages = vec![Stage::new([0.0; 3]); intervals + 1];
+    for (k, stage) in stages.iter_mut().enumerate() {
+        stage.state = [k as f64 / intervals as f64, 0.0, 1.0];
+    }
+    stages[0].state[0] = 0.0;
+    stages
+}
+
+#[test]
+fn the_least_time_over_a_metre_is_two_seconds_bang_bang() {
+    let problem = LeastTime {
+        intervals: 20,
+        longest: 10.0,
+    };
+    for barrier in [Barrier::Adaptive, Barrier::Monotone] {
+        let mut stages = least_time(20);
+        let mut settings = Settings::new();
+        settings.barrier = barrier;
+        let solution = Solver::new(settings)
+            .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+            .unwrap();
+        assert_eq!(solution.status, Status::Solved, "{solution:?}");
+        assert!((solution.cost - 2.0).abs() < 1e-5, "{}", solution.cost);
+        for (k, stage) in stages.iter().enumerate().take(20) {
+            let side = if k < 10 { 1.0 } else { -1.0 };
+            assert!(
+                (stage.control[0] - side).abs() < 1e-3,
+                "{k}: {}",
+                stage.control[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn bryson_and_denham_touch_the_wall_at_the_known_cost() {
+    // J = 4 / (9 l) for l ≤ 1/6; the piecewise-constant control comes close from above.
+    let wall = 1.0 / 9.0;
+    let problem = BrysonDenham {
+        intervals: 120,
+        wall,
+    };
+    let mut stages = vec![Stage::new([0.0, 0.0]); 121];
+    stages[0].state = [0.0, 1.0];
+    let solution = Solver::new(Settings::new())
+        .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_eq!(solution.status, Status::Solved);
+    let known = 4.0 / (9.0 * wall);
+    assert!(
+        (solution.cost / known - 1.0).abs() < 2e-3,
+        "{} {known}",
+        solution.cost
+    );
+    let highest = stages
+        .iter()
+        .map(|stage| stage.state[0])
+        .fold(0.0, f64::max);
+    assert!(highest <= wall + 1e-8 && highest > wall - 1e-4);
+}
+
+#[test]
+fn derivatives_agree_with_differences() {
+    let problem = LeastTime {
+        intervals: 5,
+        longest: 10.0,
+    };
+    for k in 0..6 {
+        let next = (k < 5).then_some([0.3, 0.2, 1.7]);
+        let errors = derivative_errors(
+            &problem,
+            k,
+            &[0.1, -0.4, 1.7],
+            &[0.7, 0.0, 0.0, 0.0],
+            next.as_ref(),
+            1e-6,
+        );
+        assert!(errors.worst() < 1e-8, "{errors:?}");
+    }
+}
+
+#[test]
+fn an_infeasible_problem_is_never_called_solved() {
+    // A metre takes two seconds; one and a half are allowed.
+    let problem = LeastTime {
+        intervals: 20,
+        longest: 1.5,
+    };
+    let mut stages = least_time(20);
+    let solution = Solver::new(Settings::new())
+        .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_ne!(solution.status, Status::Solved);
+    assert!(solution.residual.primal > 1e-3);
+}
+
+#[test]
+fn the_observer_cancels_and_limits_hold() {
+    let problem = LeastTime {
+        intervals: 20,
+        longest: 10.0,
+    };
+    let mut stages = least_time(20);
+    let solver = Solver::new(Settings::new());
+    let stop = |p: &ocp_solver::Progress<f64>| {
+        if p.iteration == 3 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let solution = solver.solve(&problem, &mut stages, stop).unwrap();
+    assert_eq!(
+        (solution.status, solution.iterations),
+        (Status::Cancelled, 3)
+    );
+
+    let mut settings = Settings::new();
+    settings.max_iterations = 2;
+    let mut stages = least_time(20);
+    let solution = Solver::new(settings)
+        .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_eq!(
+        (solution.status, solution.iterations),
+        (Status::IterationLimit, 2)
+    );
+}
+
+#[test]
+fn bad_data_is_refused_by_name() {
+    let problem = LeastTime {
+        intervals: 20,
+        longest: 10.0,
+    };
+    let solver = Solver::new(Settings::new());
+    let go = |_: &ocp_solver::Progress<f64>| ControlFlow::Continue(());
+    let mut short = least_time(10);
+    let error = solver.solve(&problem, &mut short, go).unwrap_err();
+    assert_eq!(
+        error,
+        Error::StageCount {
+            needed: 21,
+            given: 11
+        }
+    );
+    let mut broken = least_time(20);
+    broken[4].state[1] = f64::NAN;
+    assert!(matches!(
+        solver.solve(&problem, &mut broken, go),
+        Err(Error::Guess { .. })
+    ));
+    let mut settings = Settings::new();
+    settings.equality_weight = f64::NAN;
+    let error = Solver::new(settings)
+        .solve(&problem, &mut least_time(20), go)
+        .unwrap_err();
+    assert_eq!(error, Error::Setting("equality_weight"));
+}

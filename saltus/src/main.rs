@@ -1,0 +1,33 @@
+//! Plans jumps of legged robots.
+
+mod cmd;
+mod reference;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(version, about)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Plan a jump.
+    Plan(cmd::plan::Args),
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Plan(args) => cmd::plan::run(&args),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(message) => {
+            eprintln!("saltus: {message}");
+            ExitCode::from(1)
+        }
+    }
+}

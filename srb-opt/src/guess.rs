@@ -1,0 +1,106 @@
+//! The initial guess of the reference problem: ballistic flight, reference rotation, weight on the feet.
+
+use crate::dynamics::force_unit;
+use crate::problem::Problem;
+use crate::rotation::about_axis;
+use crate::state::State;
+use nalgebra::{Matrix3, Vector3};
+use ocp_solver::Stage;
+use so3::Scalar;
+use so3::math::sin_cos;
+
+impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
+    /// Writes the guess into the stages.
+    ///
+    /// The centre of mass stays at the start until the last phase and then flies to the goal; its
+    /// velocity ramps up to lift-off linearly in time; the rotation is the reference; forces share the
+    /// weight. `perturb` gives the offset of every number that is added to the guess, in units of m,
+    /// m/s, rad, rad/s, s and 50 N: pass `|| T::ZERO` for the plain guess.
+    pub fn write_guess<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI>],
+        mut perturb: impl FnMut() -> T,
+    ) {
+        let (mut durations, mut total, mut flight) = ([T::ZERO; PHASES], T::ZERO, T::ZERO);
+        for (slot, phase) in durations.iter_mut().zip(self.used_phases()) {
+            *slot = phase.duration_guess;
+            total += *slot;
+            flight = *slot;
+        }
+        let lift_off = total - flight;
+        let across = self.goal_w - self.start_w;
+        let up = Vector3::new(T::ZERO, T::ZERO, self.gravity * T::HALF * flight);
+        let take_off = across / flight + up;
+        // The guess of the durations is moved inside their bounds after the noise.
+        let mut moved = durations;
+        for (slot, phase) in moved.iter_mut().zip(self.used_phases()) {
+            let margin = T::of(0.01) * (phase.max_duration - phase.min_duration);
+            let wanted = *slot + perturb();
+            *slot = wanted.clamp(phase.min_duration + margin, phase.max_duration - margin);
+        }
+        let noise = |perturb: &mut dyn FnMut() -> T| Vector3::new(perturb(), perturb(), perturb());
+        let unit = force_unit(self);
+        let last = self.intervals();
+        let (mut time, mut dt) = (T::ZERO, T::ONE);
+        let mut before: Option<(Matrix3<T>, Vector3<T>)> = None;
+        for (k, stage) in stages.iter_mut().enumerate() {
+            let mut state = State::new();
+            let angle = self.reference_angle(k);
+            state.durations = moved;
+            state.reference = sin_cos(angle);
+            let in_flight = time - lift_off;
+            if in_flight <= T::of(1e-12) {
+                state.pos_w = self.start_w;
+                state.vel_w = take_off
+                    * (if lift_off > T::ZERO {
+                        time / lift_off
+                    } else {
+                        T::ZERO
+                    });
+            } else {
+                let fall = Vector3::new(T::ZERO, T::ZERO, self.gravity * in_flight);
+                state.pos_w = self.start_w + (take_off - fall * T::HALF) * in_flight;
+                state.vel_w = take_off - fall;
+            }
+            let mut step_dt = dt;
+            let mut turn = angle - self.reference_angle(k.saturating_sub(1));
+            let mut moved_dt = dt;
+            if let Some((i, phase)) = self.phase_of(k).filter(|_| k < last) {
+                let share = T::ONE / T::of(phase.intervals.max(1) as f64);
+                step_dt = durations.get(i).copied().unwrap_or(T::ONE) * share;
+                moved_dt = moved.get(i).copied().unwrap_or(T::ONE) * share;
+                turn = self.reference_angle(k.saturating_add(1)) - angle;
+            }
+            state.omega_b = self.axis * (turn / step_dt);
+            let mut rotation = about_axis(&self.axis, state.reference.0, state.reference.1);
+            if k == 0 {
+                (state.vel_w, state.omega_b) = (Vector3::zeros(), Vector3::zeros());
+            } else {
+                if k < last {
+                    state.pos_w += noise(&mut perturb);
+                }
+                state.vel_w += noise(&mut perturb);
+                rotation *= crate::rotation::exp(&noise(&mut perturb));
+                state.omega_b += noise(&mut perturb);
+            }
+            match &before {
+                Some((from, w)) => state.attach(&rotation, from, w),
+                None => state.rot_wb = rotation,
+            }
+            before = Some((state.rot_wb, state.omega_b * moved_dt));
+            stage.control = [T::ZERO; NU];
+            let feet = self.contacts(k).count();
+            let share = T::TWO / T::of(feet.max(1) as f64);
+            let (triples, _) = stage.control.as_chunks_mut::<3>();
+            for [x, y, z] in triples.iter_mut().take(feet) {
+                *z = share;
+                for value in [x, y, z] {
+                    *value += perturb() * T::of(50.0) / unit;
+                }
+            }
+            stage.state = state;
+            time += step_dt;
+            dt = step_dt;
+        }
+    }
+}

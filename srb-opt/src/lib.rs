@@ -1,0 +1,18 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod dynamics;
+mod error;
+mod guess;
+mod problem;
+mod rotation;
+mod rows;
+mod state;
+mod transcription;
+mod violation;
+
+pub use error::Error;
+pub use problem::{Edge, Foot, Phase, Problem, Reference, Weights};
+pub use rows::row_capacity;
+pub use state::{OMEGA, POSITION, ROTATION, State, TIMES, VELOCITY};
+pub use violation::{Judgement, Sample};

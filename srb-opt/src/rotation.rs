@@ -1,0 +1,164 @@
+//! Rotations as problem (2) uses them: the Taylor-4 exponential and the smoothed logarithm error.
+
+use nalgebra::{Matrix3, Vector3};
+use so3::Scalar;
+use so3::math::{atan2, sin_cos, sqrt};
+
+/// `hat(v) x = v × x`.
+#[inline(always)]
+pub(crate) fn hat<T: Scalar>(v: &Vector3<T>) -> Matrix3<T> {
+    Matrix3::new(T::ZERO, -v.z, v.y, v.z, T::ZERO, -v.x, -v.y, v.x, T::ZERO)
+}
+
+/// Vector of the antisymmetric part of a matrix: `vee((E − Eᵀ)/2)`.
+#[inline(always)]
+pub(crate) fn vee_skew<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
+    Vector3::new(e.m32 - e.m23, e.m13 - e.m31, e.m21 - e.m12) * T::HALF
+}
+
+/// Derivative of [`vee_skew`] of `E Exp(θ)` at θ = 0: `½ (tr(E) I − Eᵀ)`.
+#[inline(always)]
+pub(crate) fn vee_skew_derivative<T: Scalar>(e: &Matrix3<T>) -> Matrix3<T> {
+    (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF
+}
+
+/// Degree-4 Taylor exponential `I + A + A²/2 + A³/6 + A⁴/24`, `A = hat(w)` (paper A, Remark 1).
+///
+/// By `A³ = −|w|² A` it is `I + (1 − |w|²/6) A + (1/2 − |w|²/24) A²`.
+#[inline(always)]
+pub(crate) fn exp4<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
+    let (a, s) = (hat(w), w.norm_squared());
+    let linear = T::ONE - s / T::of(6.0);
+    let square = T::HALF - s / T::of(24.0);
+    Matrix3::identity() + a * linear + (a * a) * square
+}
+
+/// Right Jacobian of the exponential to the same order: `exp4(w + δ) ≈ exp4(w) Exp(J δ)`.
+#[inline(always)]
+pub(crate) fn exp4_jacobian<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
+    let (a, s) = (hat(w), w.norm_squared());
+    let linear = s / T::of(24.0) - T::HALF;
+    let square = (T::ONE - s / T::of(20.0)) / T::of(6.0);
+    Matrix3::identity() + a * linear + (a * a) * square
+}
+
+/// Exact exponential.
+#[inline(always)]
+pub(crate) fn exp<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
+    let s = w.norm_squared();
+    let (linear, square) = if s < T::of(1e-8) {
+        (T::ONE - s / T::of(6.0), T::HALF - s / T::of(24.0))
+    } else {
+        let angle = sqrt(s);
+        let (sin, cos) = sin_cos(angle);
+        (sin / angle, (T::ONE - cos) / s)
+    };
+    let a = hat(w);
+    Matrix3::identity() + a * linear + (a * a) * square
+}
+
+/// Logarithm of a matrix that is a rotation up to a small drift, angle below π.
+#[inline(always)]
+pub(crate) fn log<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
+    let v = vee_skew(e);
+    let s = v.norm_squared();
+    let cos = (e.trace() - T::ONE) * T::HALF;
+    if s < T::of(1e-12) && cos > T::ZERO {
+        return v * (T::ONE + s / T::of(6.0));
+    }
+    let sin = sqrt(s);
+    v * (atan2(sin, cos) / sin)
+}
+
+/// Rotation by the angle whose sine and cosine are given about a unit axis.
+#[inline(always)]
+pub(crate) fn about_axis<T: Scalar>(axis: &Vector3<T>, sin: T, cos: T) -> Matrix3<T> {
+    let a = hat(axis);
+    Matrix3::identity() + a * sin + (a * a) * (T::ONE - cos)
+}
+
+/// Inverse of a matrix near a rotation: the adjugate over the determinant.
+#[inline(always)]
+pub(crate) fn inverse<T: Scalar>(m: &Matrix3<T>) -> Matrix3<T> {
+    let (a, b, c) = (m.column(0), m.column(1), m.column(2));
+    let (x, y, z) = (b.cross(&c), c.cross(&a), a.cross(&b));
+    let inverse = T::ONE / a.dot(&x);
+    Matrix3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]) * inverse
+}
+
+/// Smoothed logarithm error of `E`: `e = s atan2(r, c)/r`, `s = vee((E − Eᵀ)/2)`, `c = (tr E − 1)/2`,
+/// `r = √(s·s + ε)`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LogError<T> {
+    /// The error vector.
+    pub(crate) error: Vector3<T>,
+    s: Vector3<T>,
+    c: T,
+    r: T,
+    angle: T,
+}
+
+impl<T: Scalar> LogError<T> {
+    #[inline(always)]
+    pub(crate) fn new(e: &Matrix3<T>, epsilon: T) -> Self {
+        let s = vee_skew(e);
+        let c = (e.trace() - T::ONE) * T::HALF;
+        let r = sqrt(s.norm_squared() + epsilon);
+        let angle = atan2(r, c);
+        Self {
+            error: s * (angle / r),
+            s,
+            c,
+            r,
+            angle,
+        }
+    }
+
+    /// Derivative of the error of `E Exp(θ)` at θ = 0.
+    #[inline(always)]
+    pub(crate) fn derivative(&self, e: &Matrix3<T>) -> Matrix3<T> {
+        let Self { s, c, r, angle, .. } = *self;
+        let ds = vee_skew_derivative(e);
+        // h = atan2(r, c)/r;  dr = sᵀ ds / r,  dc = −sᵀ θ.
+        let square = r * r + c * c;
+        let by_r = (c / square - angle / r) / r;
+        let by_c = -T::ONE / square;
+        let dh = (s.transpose() * ds) * (by_r / r) - s.transpose() * by_c;
+        ds * (angle / r) + s * dh
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_error_derivative_matches_differences() {
+        let e = exp(&Vector3::new(0.4f64, -0.9, 1.3));
+        let h = 1e-6;
+        let exact = LogError::new(&e, 1e-6).derivative(&e);
+        for j in 0..3 {
+            let mut w = Vector3::zeros();
+            w[j] = h;
+            let plus = LogError::new(&(e * exp(&w)), 1e-6).error;
+            let minus = LogError::new(&(e * exp(&-w)), 1e-6).error;
+            let column = (plus - minus) / (2.0 * h);
+            assert!((column - exact.column(j)).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn exp_and_log_are_inverse_and_taylor_is_close() {
+        let w = Vector3::new(0.1f64, -0.2, 0.15);
+        assert!((log(&exp(&w)) - w).norm() < 1e-14);
+        assert!((exp4(&w) - exp(&w)).norm() < 1e-4);
+        assert!((inverse(&exp4(&w)) * exp4(&w) - Matrix3::identity()).norm() < 1e-14);
+        let h = 1e-5;
+        for j in 0..3 {
+            let mut step = Vector3::zeros();
+            step[j] = h;
+            let difference = log(&(inverse(&exp(&(w - step))) * exp(&(w + step)))) / (2.0 * h);
+            assert!((difference - exp4_jacobian(&w).column(j)).norm() < 1e-5);
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Constraint rows of problem (2): reach, clearance, friction, forces, durations, goal.
+//!
+//! Order at a node, state rows first: reach of the feet in contact (3 rows each), clearance of the eight
+//! corners; then, at node 0, the durations and their sum, or, at the last node, goal position,
+//! goal rotation and its trace. Control rows follow: per foot four sides of the friction pyramid and
+//! the normal force.
+
+use crate::dynamics::force_unit;
+use crate::problem::Problem;
+use crate::rotation::{hat, vee_skew, vee_skew_derivative};
+use crate::state::{POSITION, ROTATION, State, TIMES, add_block, put};
+use nalgebra::{Matrix3, Vector3};
+use ocp_solver::{Derivatives, Dims, Values};
+use so3::Scalar;
+use so3::math::sin_cos;
+
+/// Rows a node can have at most: the least `NI` for a number of feet and phases.
+#[must_use]
+pub const fn row_capacity(feet: usize, phases: usize) -> usize {
+    let middle = 8 + 8 * feet;
+    let start = phases + 1 + 5 * feet;
+    let end = 8 + 7;
+    let most = if middle > start { middle } else { start };
+    if most > end { most } else { end }
+}
+
+impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
+    /// Feet in contact over interval `k`; none at the last node.
+    #[inline(always)]
+    pub(crate) fn contacts(&self, k: usize) -> impl Iterator<Item = &crate::problem::Foot<T>> {
+        let on = if k < self.intervals() {
+            self.phase_of(k)
+        } else {
+            None
+        };
+        let flags = on.map_or([false; FEET], |(_, phase)| phase.contacts);
+        self.feet
+            .iter()
+            .zip(flags)
+            .filter(|(_, on)| *on)
+            .map(|(foot, _)| foot)
+    }
+
+    pub(crate) fn row_dims(&self, k: usize) -> Dims {
+        let feet = self.contacts(k).count();
+        let reach = if k == 0 { 0 } else { feet.saturating_mul(3) };
+        let clearance = if k == 0 { 0 } else { 8 };
+        let special = if k == 0 {
+            self.phase_count.saturating_add(1)
+        } else if k == self.intervals() {
+            7
+        } else {
+            0
+        };
+        Dims {
+            controls: feet.saturating_mul(3),
+            state_rows: reach + clearance + special,
+            control_rows: feet.saturating_mul(5),
+            mixed_rows: 0,
+        }
+    }
+
+    pub(crate) fn row_bounds<const NI: usize>(
+        &self,
+        k: usize,
+        lower: &mut [T; NI],
+        upper: &mut [T; NI],
+    ) {
+        let mut rows = lower.iter_mut().zip(upper.iter_mut());
+        let mut push = |l: T, h: T| {
+            if let Some((lower, upper)) = rows.next() {
+                (*lower, *upper) = (l, h);
+            }
+        };
+        if k > 0 {
+            for foot in self.contacts(k) {
+                for ((l, h), centre) in self
+                    .reach_lower
+                    .iter()
+                    .zip(&self.reach_upper)
+                    .zip(&foot.nominal_b)
+                {
+                    push(*l + *centre, *h + *centre);
+                }
+            }
+            for _ in 0..8 {
+                push(self.clearance, T::INFINITY);
+            }
+        }
+        if k == 0 {
+            for phase in self.used_phases() {
+                push(phase.min_duration, phase.max_duration);
+            }
+            push(self.min_total, self.max_total);
+        }
+        if k == self.intervals() {
+            for goal in &self.goal_w {
+                push(*goal, *goal);
+            }
+            for _ in 0..3 {
+                push(T::ZERO, T::ZERO);
+            }
+            push(self.min_final_trace, T::INFINITY);
+        }
+        let unit = force_unit(self);
+        for _ in self.contacts(k) {
+            for _ in 0..4 {
+                push(T::ZERO, T::INFINITY);
+            }
+            push(T::ZERO, self.max_force / unit);
+        }
+    }
+
+    /// Final rotation error `Rgᵀ R`.
+    fn final_error(&self, rot: &Matrix3<T>) -> Matrix3<T> {
+        let (sin, cos) = sin_cos(self.angle);
+        crate::rotation::about_axis(&self.axis, sin, cos).transpose() * rot
+    }
+
+    #[inline(always)]
+    pub(crate) fn row_values<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        k: usize,
+        state: &State<T, PHASES>,
+        control: &[T; NU],
+        values: &mut Values<T, NX, NI>,
+    ) {
+        let mut rows = values.rows.iter_mut();
+        let mut push = |value: T| {
+            if let Some(row) = rows.next() {
+                *row = value;
+            }
+        };
+        if k > 0 {
+            let body_from_world = state.rot_wb.transpose();
+            for foot in self.contacts(k) {
+                let seen = body_from_world * (foot.pos_wf - state.pos_w);
+                seen.iter().for_each(|value| push(*value));
+            }
+            for corner in &self.corners {
+                let point = state.pos_w + state.rot_wb * corner;
+                push(point.z - self.ground(&point));
+            }
+        }
+        if k == 0 {
+            let mut sum = T::ZERO;
+            for duration in state.durations.iter().take(self.phase_count) {
+                push(*duration);
+                sum += *duration;
+            }
+            push(sum);
+        }
+        if k == self.intervals() {
+            state.pos_w.iter().for_each(|value| push(*value));
+            let error = self.final_error(&state.rot_wb);
+            vee_skew(&error).iter().for_each(|value| push(*value));
+            push(error.trace());
+        }
+        let (triples, _) = control.as_chunks::<3>();
+        for (_, [x, y, z]) in self.contacts(k).zip(triples) {
+            let limit = self.friction * *z;
+            for value in [limit - *x, limit + *x, limit - *y, limit + *y, *z] {
+                push(value);
+            }
+        }
+    }
+
+    /// Gradients of the rows, and `Σ y ∇²c` added to the Hessian.
+    #[inline(always)]
+    pub(crate) fn differentiate_rows<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        k: usize,
+        state: &State<T, PHASES>,
+        values: &Values<T, NX, NI>,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let rot = &state.rot_wb;
+        let body_from_world = rot.transpose();
+        let mut at = 0usize;
+        if k > 0 {
+            for foot in self.contacts(k) {
+                let seen = body_from_world * (foot.pos_wf - state.pos_w);
+                let turned = hat(&seen);
+                for i in 0..3 {
+                    let Some(row) = d.rows_x.get_mut(at + i) else {
+                        return;
+                    };
+                    put(row, POSITION, &(-body_from_world.row(i).transpose()));
+                    put(row, ROTATION, &turned.row(i).transpose());
+                }
+                let part = |i: usize| y.get(at + i).copied().unwrap_or(T::ZERO);
+                let y = Vector3::new(part(0), part(1), part(2));
+                bend(&mut d.hessian_xx, &y, &seen);
+                let mixed = -(hat(&y) * body_from_world);
+                add_block(&mut d.hessian_xx, ROTATION, POSITION, &mixed);
+                add_block(&mut d.hessian_xx, POSITION, ROTATION, &mixed.transpose());
+                at += 3;
+            }
+            for corner in &self.corners {
+                let (Some(row), Some(value), Some(y)) =
+                    (d.rows_x.get_mut(at), values.rows.get(at), y.get(at))
+                else {
+                    return;
+                };
+                let mut normal = Vector3::new(T::ZERO, T::ZERO, T::ONE);
+                if let Some(edge) = &self.edge {
+                    // The ground's tanh is known from the row value: no second evaluation.
+                    let height = state.pos_w.z + (rot * corner).z - *value;
+                    if edge.drop != T::ZERO {
+                        let t = -T::TWO * height / edge.drop - T::ONE;
+                        let slope = edge.drop * T::HALF * (T::ONE - t * t) * edge.sign / edge.width;
+                        normal[edge.axis.min(1)] = slope;
+                    }
+                }
+                let normal_b = body_from_world * normal;
+                put(row, POSITION, &normal);
+                put(row, ROTATION, &corner.cross(&normal_b));
+                bend(&mut d.hessian_xx, &(normal_b * *y), corner);
+                at += 1;
+            }
+        }
+        if k == 0 {
+            for i in 0..self.phase_count.min(PHASES) {
+                if let Some(row) = d.rows_x.get_mut(at + i) {
+                    row[TIMES + i] = T::ONE;
+                }
+                if let Some(row) = d.rows_x.get_mut(at + self.phase_count) {
+                    row[TIMES + i] = T::ONE;
+                }
+            }
+            at += self.phase_count + 1;
+        }
+        if k == self.intervals() {
+            let error = self.final_error(rot);
+            let by_rotation = vee_skew_derivative(&error);
+            for i in 0..3 {
+                if let Some(row) = d.rows_x.get_mut(at + i) {
+                    row[POSITION + i] = T::ONE;
+                }
+                if let Some(row) = d.rows_x.get_mut(at + 3 + i) {
+                    put(row, ROTATION, &by_rotation.row(i).transpose());
+                }
+            }
+            if let Some(row) = d.rows_x.get_mut(at + 6) {
+                put(row, ROTATION, &(vee_skew(&error) * -T::TWO));
+            }
+            at += 7;
+        }
+        let mu = self.friction;
+        let sides = [
+            [-T::ONE, T::ZERO, mu],
+            [T::ONE, T::ZERO, mu],
+            [T::ZERO, -T::ONE, mu],
+            [T::ZERO, T::ONE, mu],
+            [T::ZERO, T::ZERO, T::ONE],
+        ];
+        for (slot, _) in self.contacts(k).enumerate() {
+            for side in &sides {
+                let Some(row) = d.rows_u.get_mut(at) else {
+                    return;
+                };
+                for (entry, value) in row.iter_mut().skip(3 * slot).zip(side) {
+                    *entry = *value;
+                }
+                at += 1;
+            }
+        }
+    }
+}
+
+/// Adds the rotation Hessian of `yᵀ Exp(−θ) c` (equal to that of `yᵀ Exp(θ) c`):
+/// `½ (y cᵀ + c yᵀ) − (y·c) I`.
+#[inline(always)]
+fn bend<T: Scalar, const NX: usize>(h: &mut [[T; NX]; NX], y: &Vector3<T>, c: &Vector3<T>) {
+    let outer = (y * c.transpose() + c * y.transpose()) * T::HALF;
+    add_block(
+        h,
+        ROTATION,
+        ROTATION,
+        &(outer - Matrix3::from_diagonal_element(y.dot(c))),
+    );
+}

@@ -1,0 +1,143 @@
+//! Stage derivatives against finite differences.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{NI, NU, NX, jump};
+use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Stage, Values, derivative_errors};
+use proptest::prelude::*;
+use srb_opt::State;
+
+type Node = Stage<f64, State<f64, 4>, NX, NU, NI>;
+
+/// The guess with noise from a small generator.
+fn nodes(seed: u32, noise: f64) -> Vec<Node> {
+    let problem = jump();
+    let mut stages = vec![Node::new(State::new()); problem.intervals() + 1];
+    let mut state = seed;
+    problem.write_guess(&mut stages, || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        noise * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
+    });
+    stages
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..24) {
+        let problem = jump();
+        let mut stages = nodes(seed, 0.3);
+        // The Jacobian of the rotation gap is exact where the gap is zero.
+        let (x, u) = (stages[k].state, stages[k].control);
+        let mut next = stages[k + 1].state;
+        let dt = x.durations[problem.phase_of(k).unwrap().0] / problem.phase_of(k).unwrap().1.intervals as f64;
+        let w = x.omega_b * dt;
+        let a = nalgebra::Matrix3::new(0.0, -w.z, w.y, w.z, 0.0, -w.x, -w.y, w.x, 0.0);
+        next.rot_wb = x.rot_wb
+            * (nalgebra::Matrix3::identity() + a + a * a / 2.0 + a * a * a / 6.0 + a * a * a * a / 24.0);
+        stages[k + 1].state = next;
+        let errors = derivative_errors::<f64, _, NX, NU, NI>(&problem, k, &x, &u, Some(&next), 1e-6);
+        // Rotation rows carry the fourth-order defect of the Taylor exponential.
+        let defect = w.norm_squared() * w.norm_squared() / 24.0;
+        prop_assert!(errors.cost < 1e-6 && errors.rows < 1e-6, "{errors:?}");
+        prop_assert!(errors.dynamics < 2e-6 + 2.0 * defect, "{errors:?} {defect}");
+    }
+}
+
+#[test]
+fn first_derivatives_of_the_last_node() {
+    let problem = jump();
+    let stages = nodes(7, 0.1);
+    let last = stages.last().unwrap();
+    let errors = derivative_errors::<f64, _, NX, NU, NI>(
+        &problem,
+        24,
+        &last.state,
+        &last.control,
+        None,
+        1e-6,
+    );
+    assert!(errors.worst() < 1e-7, "{errors:?}");
+}
+
+/// Second differences of the Lagrangian against the Hessian blocks that are claimed exact: everything
+/// bilinear in a duration, force × position and rotation, reach and clearance.
+#[test]
+fn second_derivatives() {
+    let mut problem = jump();
+    problem.edge = None;
+    problem.weights.rotation = 1e-12;
+    let stages = nodes(3, 0.1);
+    for k in [2usize, 12, 20] {
+        let (x, u, next) = (&stages[k].state, &stages[k].control, &stages[k + 1].state);
+        let mut multiplier = [0.0; NX];
+        for (i, l) in multiplier.iter_mut().enumerate().take(12) {
+            *l = 0.3 + 0.2 * i as f64;
+        }
+        multiplier[6..9].fill(0.0);
+        let mut y = [0.0; NI];
+        for (i, y) in y.iter_mut().enumerate().take(20) {
+            *y = 0.5 - 0.1 * i as f64;
+        }
+        let lagrangian = |step: &[f64; NX], du: &[f64; NU]| {
+            let moved = Ocp::<f64, NX, NU, NI>::retract(&problem, k, x, step, None);
+            let mut control = *u;
+            control.iter_mut().zip(du).for_each(|(u, du)| *u += du);
+            let mut values = Values::<f64, NX, NI>::new();
+            problem.evaluate(k, &moved, &control, Some(next), &mut values);
+            let linear = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            values.cost + linear(&values.gap, &multiplier) + linear(&values.rows, &y)
+        };
+        let mut values = Values::<f64, NX, NI>::new();
+        problem.evaluate(k, x, u, Some(next), &mut values);
+        let mut d = Derivatives::<f64, NX, NU, NI>::new();
+        let at = Evaluated {
+            values: &values,
+            dynamics_multiplier: &multiplier,
+            row_multipliers: &y,
+        };
+        problem.differentiate(k, x, u, Some(next), at, &mut d);
+        let h = 1e-4;
+        let second = |i: usize, j: usize| {
+            let at = |a: f64, b: f64| {
+                let (mut step, mut du) = ([0.0; NX], [0.0; NU]);
+                for (at, amount) in [(i, a), (j, b)] {
+                    if at < NX {
+                        step[at] += amount
+                    } else {
+                        du[at - NX] += amount
+                    }
+                }
+                lagrangian(&step, &du)
+            };
+            (at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / (4.0 * h * h)
+        };
+        let controls = problem
+            .phase_of(k)
+            .unwrap()
+            .1
+            .contacts
+            .iter()
+            .filter(|on| **on)
+            .count()
+            * 3;
+        for i in 0..15 {
+            for j in 0..15 {
+                let (analytic, numeric) = (d.hessian_xx[j][i], second(i, j));
+                assert!(
+                    (analytic - numeric).abs() < 1e-4 * (1.0 + numeric.abs()),
+                    "{k} {i} {j} {analytic} {numeric}"
+                );
+            }
+            for j in 0..controls {
+                let (analytic, numeric) = (d.hessian_xu[j][i], second(i, NX + j));
+                assert!(
+                    (analytic - numeric).abs() < 1e-4 * (1.0 + numeric.abs()),
+                    "{k} {i} u{j} {analytic} {numeric}"
+                );
+            }
+        }
+    }
+}
