@@ -1,4 +1,8 @@
-//! The only door to elementary functions: pinned `libm`, identical on host and target.
+//! The only door to elementary functions: identical bits on host and target.
+//!
+//! Sine and cosine are our own (`math/sin_cos.rs`); all else is pinned `libm`, which is Rust source and so the same
+//! arithmetic everywhere. The square root is a machine instruction where there is one and integer code where
+//! there is not: both are correctly rounded, so equal. Nothing here fuses a multiplication and an addition.
 
 pub(crate) mod sin_cos;
 
@@ -108,16 +112,54 @@ pub fn abs<T: Scalar>(x: T) -> T {
     x.libm_copysign(T::ONE)
 }
 
-/// The smaller of two numbers; a NaN loses against a number.
+/// √(x² + y²) without overflow or underflow on the way, within 1 unit in the last place.
+#[inline(always)]
+#[must_use]
+pub fn hypot<T: Scalar>(x: T, y: T) -> T {
+    x.libm_hypot(y)
+}
+
+/// xⁿ by repeated squaring, at most 32 steps and no table; x⁰ = 1.
+#[inline(always)]
+#[must_use]
+pub fn powi<T: Scalar>(x: T, n: u32) -> T {
+    let (mut power, mut base, mut n) = (T::ONE, x, n);
+    while n != 0 {
+        if n & 1 == 1 {
+            power *= base;
+        }
+        base *= base;
+        n >>= 1;
+    }
+    power
+}
+
+/// The smaller of two numbers; a NaN loses against a number, as in IEEE 754 `minNum`.
+///
+/// min(NaN, 1) = min(1, NaN) = 1; NaN only if both are NaN. Of −0 and +0 the second argument is returned. Test:
+/// `min_max_clamp_and_nan`.
 #[inline(always)]
 #[must_use]
 pub fn min<T: Scalar>(a: T, b: T) -> T {
     if a < b || b.is_nan_number() { a } else { b }
 }
 
-/// The larger of two numbers; a NaN loses against a number.
+/// The larger of two numbers; a NaN loses against a number, as in IEEE 754 `maxNum`.
+///
+/// max(NaN, 1) = max(1, NaN) = 1; NaN only if both are NaN. Of −0 and +0 the second argument is returned. Test:
+/// `min_max_clamp_and_nan`.
 #[inline(always)]
 #[must_use]
 pub fn max<T: Scalar>(a: T, b: T) -> T {
     if a > b || b.is_nan_number() { a } else { b }
+}
+
+/// `x` limited to [`low`, `high`]; **NaN becomes `low`**, so that a command is always within its limits.
+///
+/// Where a NaN must be noticed, test for it first. If `low` > `high` the result is `high`. Test:
+/// `min_max_clamp_and_nan`.
+#[inline(always)]
+#[must_use]
+pub fn clamp<T: Scalar>(x: T, low: T, high: T) -> T {
+    min(max(x, low), high)
 }

@@ -58,6 +58,8 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     #[doc(hidden)]
     fn libm_atan2(self, x: Self) -> Self;
     #[doc(hidden)]
+    fn libm_hypot(self, y: Self) -> Self;
+    #[doc(hidden)]
     fn libm_exp(self) -> Self;
     #[doc(hidden)]
     fn libm_log(self) -> Self;
@@ -70,7 +72,7 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
 }
 
 macro_rules! scalar {
-    ($t:ident, $sin_cos_bound:expr, $sin_cos_kernel:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
+    ($t:ident, $sin_cos_bound:expr, $sin_cos_kernel:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $hypot:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -128,6 +130,10 @@ macro_rules! scalar {
                 libm::$atan2(self, x)
             }
             #[inline(always)]
+            fn libm_hypot(self, y: Self) -> Self {
+                libm::$hypot(self, y)
+            }
+            #[inline(always)]
             fn libm_exp(self) -> Self {
                 libm::$exp(self)
             }
@@ -161,6 +167,7 @@ scalar!(
     asinf,
     acosf,
     atan2f,
+    hypotf,
     expf,
     logf,
     tanhf,
@@ -177,6 +184,7 @@ scalar!(
     asin,
     acos,
     atan2,
+    hypot,
     exp,
     log,
     tanh,
