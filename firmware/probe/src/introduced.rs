@@ -9,9 +9,7 @@ const TABLE: [f64; 3] = [1.0, 2.0, 3.0];
     reason = "this panic must be reachable: it shows that the proof works"
 )]
 pub(crate) fn run<R: Recorder>(recorder: &mut R) {
-    let mut on = Subject {
-        recorder,
-        name: "probe",
-    };
-    on.call::<f64, _, _>("introduced_panic", 1_usize, |index| TABLE[index]);
+    let on = &mut Subject::<f64, R>::new(recorder);
+    on.name = "probe";
+    on.call("introduced_panic", 1_usize, |index| TABLE[index]);
 }

@@ -1,7 +1,9 @@
 //! A small robot with a joint of every kind: what A1 and iCub, all revolute and floating, leave out.
 
+use rbd_core::Frame;
 use rbd_core::joint::Kind;
 use rbd_core::model::{BaseBody, Body, Link, bodies_f32};
+use so3::Scalar;
 
 pub(crate) const JOINTS: usize = 9;
 
@@ -59,5 +61,15 @@ rbd_core::tree! {
         fixed, BASE_F32, BODIES_F32,
         2 * [RevoluteX, PrismaticY],
         1 * [RevoluteTilted, PrismaticX, RevoluteY, PrismaticTilted, RevoluteZ]
+    }
+}
+
+/// A tool on the last body of the long arm.
+pub(crate) fn hand<T: Scalar>() -> Frame<T> {
+    let [zero, one] = [T::ZERO, T::ONE];
+    Frame {
+        link: Link::Joint(JOINTS - 1),
+        offset: [T::of(0.1), T::of(-0.05), T::of(0.02)],
+        rotation: [[zero, -one, zero], [one, zero, zero], [zero, zero, one]],
     }
 }

@@ -10,11 +10,13 @@ mod kinds;
 mod numbers;
 mod rbd;
 mod so3_math;
+mod spatial;
 
 #[cfg(feature = "introduce_panic")]
 mod introduced;
 
 use core::fmt;
+use core::marker::PhantomData;
 
 use kinds::Kinds;
 use rbd_core::Tree;
@@ -75,23 +77,35 @@ fn run_in<T: Real, R: Recorder>(recorder: &mut R)
 where
     Kinds: Tree<T, { kinds::JOINTS }>,
 {
-    let on = &mut Subject {
-        recorder,
-        name: "so3",
-    };
+    let on = &mut Subject::new(recorder);
     so3_math::run::<T, R>(on);
-    rbd::run(on, ["kinds", "kinds-table"], &Kinds);
+    spatial::run::<T, R>(on);
+    rbd::run::<T, R, _, { kinds::JOINTS }, { 6 + kinds::JOINTS }>(
+        on,
+        ["kinds", "kinds-table"],
+        &Kinds,
+        &kinds::hand(),
+    );
 }
 
-/// One subject's calls on one recorder.
-struct Subject<'a, R> {
+/// One subject's calls on one recorder, in one scalar.
+struct Subject<'a, T, R> {
     recorder: &'a mut R,
     name: &'static str,
+    scalar: PhantomData<T>,
 }
 
-impl<R: Recorder> Subject<'_, R> {
+impl<'a, T: Real, R: Recorder> Subject<'a, T, R> {
+    fn new(recorder: &'a mut R) -> Self {
+        Self {
+            recorder,
+            name: "",
+            scalar: PhantomData,
+        }
+    }
+
     /// Calls one algorithm, hands over every number it returns, and returns them.
-    fn call<T: Real, I, O: Numbers>(
+    fn call<I, O: Numbers>(
         &mut self,
         algorithm: &'static str,
         input: I,

@@ -62,17 +62,25 @@ impl<A: Numbers, B: Numbers, C: Numbers> Numbers for (A, B, C) {
     }
 }
 
-/// Nothing is handed over for an absent result, so an unexpected `None` shows as a missing value.
 impl<N: Numbers> Numbers for Option<N> {
     fn visit(&self, take: &mut impl FnMut(f64)) {
+        self.is_some().visit(take);
         self.iter().for_each(|n| n.visit(take));
     }
 }
 
-impl<N: Numbers, E> Numbers for Result<N, E> {
+impl<N: Numbers, E: Numbers> Numbers for Result<N, E> {
     fn visit(&self, take: &mut impl FnMut(f64)) {
-        self.iter().for_each(|n| n.visit(take));
+        self.is_ok().visit(take);
+        match self {
+            Ok(result) => result.visit(take),
+            Err(error) => error.visit(take),
+        }
     }
+}
+
+impl Numbers for () {
+    fn visit(&self, _: &mut impl FnMut(f64)) {}
 }
 
 impl<T: Scalar + Numbers, const R: usize, const C: usize> Numbers for SMatrix<T, R, C> {

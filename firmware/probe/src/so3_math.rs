@@ -33,42 +33,43 @@ const EDGES: [f64; 20] = [
 /// Random arguments per range.
 const DRAWS: usize = 24;
 
-pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, R>) {
+pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
+    on.name = "so3";
     for x in EDGES {
         functions(on, T::of(x));
     }
     let mut stream = Stream::new(1);
     for _ in 0..DRAWS {
-        functions::<T, R>(on, stream.next(1.0));
-        functions::<T, R>(on, stream.next(7.0));
-        functions::<T, R>(on, stream.next(2000.0));
+        functions(on, stream.next(1.0));
+        functions(on, stream.next(7.0));
+        functions(on, stream.next(2000.0));
         let angles = stream.array::<T, 12>(500.0);
-        on.call::<T, _, _>("sin_cos_array", &angles, math::sin_cos_array);
+        on.call("sin_cos_array", &angles, math::sin_cos_array);
         let (y, x): (T, T) = (stream.next(3.0), stream.next(3.0));
-        on.call::<T, _, _>("atan2", (y, x), |(y, x)| math::atan2(y, x));
+        on.call("atan2", (y, x), |(y, x)| math::atan2(y, x));
     }
     for y in EDGES {
         for x in EDGES {
             let (y, x) = (T::of(y), T::of(x));
-            on.call::<T, _, _>("atan2", (y, x), |(y, x)| math::atan2(y, x));
-            on.call::<T, _, _>("min", (y, x), |(y, x)| math::min(y, x));
-            on.call::<T, _, _>("max", (y, x), |(y, x)| math::max(y, x));
-            on.call::<T, _, _>("copysign", (y, x), |(y, x)| math::copysign(y, x));
+            on.call("atan2", (y, x), |(y, x)| math::atan2(y, x));
+            on.call("min", (y, x), |(y, x)| math::min(y, x));
+            on.call("max", (y, x), |(y, x)| math::max(y, x));
+            on.call("copysign", (y, x), |(y, x)| math::copysign(y, x));
         }
     }
 }
 
-fn functions<T: Real, R: Recorder>(on: &mut Subject<'_, R>, x: T) {
-    on.call::<T, _, _>("sqrt", x, math::sqrt);
-    on.call::<T, _, _>("sin", x, math::sin);
-    on.call::<T, _, _>("cos", x, math::cos);
-    on.call::<T, _, _>("sin_cos", x, math::sin_cos);
-    on.call::<T, _, _>("tan", x, math::tan);
-    on.call::<T, _, _>("asin", x, math::asin);
-    on.call::<T, _, _>("acos", x, math::acos);
-    on.call::<T, _, _>("exp", x, math::exp);
-    on.call::<T, _, _>("log", x, math::log);
-    on.call::<T, _, _>("tanh", x, math::tanh);
-    on.call::<T, _, _>("floor", x, math::floor);
-    on.call::<T, _, _>("abs", x, math::abs);
+fn functions<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, x: T) {
+    on.call("sqrt", x, math::sqrt);
+    on.call("sin", x, math::sin);
+    on.call("cos", x, math::cos);
+    on.call("sin_cos", x, math::sin_cos);
+    on.call("tan", x, math::tan);
+    on.call("asin", x, math::asin);
+    on.call("acos", x, math::acos);
+    on.call("exp", x, math::exp);
+    on.call("log", x, math::log);
+    on.call("tanh", x, math::tanh);
+    on.call("floor", x, math::floor);
+    on.call("abs", x, math::abs);
 }

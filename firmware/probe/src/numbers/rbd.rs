@@ -1,8 +1,9 @@
 //! The results of `rbd-core`, field by field.
 
 use rbd_core::{
-    ArticulatedInertia, Configuration, Effort, Force, Inertia, Kinematics, MassMatrix, Motion,
-    Posture, Symmetric3, TableModel, Tangent, Transform, Tree,
+    ArticulatedInertia, BodyMotions, CenterOfMass, CentroidalMap, CentroidalState, ComJacobian,
+    Configuration, Effort, Force, FrameJacobian, Inertia, Kinematics, MassMatrix, Motion, Posture,
+    Symmetric3, TableError, TableModel, Tangent, Transform, Tree,
 };
 use so3::Scalar;
 
@@ -30,12 +31,34 @@ fields! {
     Effort const N { base, joints }
     Kinematics const N { base, bodies }
     MassMatrix const N { base, coupling, joints }
+    BodyMotions const N { base_velocity, base_acceleration, velocities, accelerations }
+    FrameJacobian const N { base, joints }
+    CenterOfMass { mass, position_w }
+    ComJacobian const N { base_linear, base_angular, joints }
+    CentroidalMap const N { mass, com_w, locked_inertia_w, base, joints }
+    CentroidalState { mass, com_w, com_velocity_w, momentum_w, kinetic_energy, potential_energy }
 }
 
 /// A posture shows only its base; its sines and cosines show in what is computed from it.
 impl<T: Scalar + Numbers, const N: usize> Numbers for Posture<T, N> {
     fn visit(&self, take: &mut impl FnMut(f64)) {
         self.base().visit(take);
+    }
+}
+
+impl Numbers for TableError {
+    fn visit(&self, take: &mut impl FnMut(f64)) {
+        let (kind, place) = match *self {
+            Self::TooManyBodies { bodies, .. } => (1.0, bodies),
+            Self::NotDepthFirst { body } => (2.0, body),
+            Self::NotFinite { body } => (3.0, body),
+            Self::BadInertia { body } => (4.0, body),
+            Self::BadSign { body } => (5.0, body),
+            Self::BadTilt { body } => (6.0, body),
+            _ => (0.0, 0),
+        };
+        take(kind);
+        take(place as f64);
     }
 }
 

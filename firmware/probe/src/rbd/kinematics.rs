@@ -1,0 +1,125 @@
+//! Poses, velocities, accelerations and Jacobians.
+
+use rbd_core::{
+    Axes, BodyMotions, Frame, FrameJacobian, Kinematics, Motion, Posture, Tree, bias_accelerations,
+    forward_accelerations, forward_kinematics, forward_velocities, frame_jacobian, joint_jacobians,
+};
+
+use super::state::State;
+use crate::{Real, Recorder, Subject};
+
+pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+    on: &mut Subject<'_, T, R>,
+    model: &M,
+    posture: &Posture<T, N>,
+    state: &State<T, N>,
+    frame: &Frame<T>,
+) {
+    let mut poses = Kinematics::IDENTITY;
+    on.call(
+        "forward_kinematics",
+        (model, posture, &mut poses),
+        |(m, p, out)| {
+            forward_kinematics(m, p, out);
+            &*out
+        },
+    );
+    on.call("Kinematics::frame", (&poses, frame), |(poses, frame)| {
+        poses.frame(frame)
+    });
+    on.call("Kinematics::link", (&poses, frame.link), |(poses, link)| {
+        poses.link(link)
+    });
+    motions(on, model, posture, state, frame);
+    jacobians::<T, R, M, N, V>(on, model, &poses, state, frame);
+}
+
+fn motions<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
+    on: &mut Subject<'_, T, R>,
+    model: &M,
+    posture: &Posture<T, N>,
+    state: &State<T, N>,
+    frame: &Frame<T>,
+) {
+    let State {
+        velocity,
+        acceleration,
+        ..
+    } = state;
+    let at = (model, posture);
+    let mut motions = BodyMotions::ZERO;
+    on.call(
+        "forward_velocities",
+        (at, velocity, &mut motions),
+        |((m, p), v, out)| {
+            forward_velocities(m, p, v, out);
+            &*out
+        },
+    );
+    on.call(
+        "bias_accelerations",
+        (at, velocity, &mut motions),
+        |((m, p), v, out)| {
+            bias_accelerations(m, p, v, out);
+            &*out
+        },
+    );
+    let moving = (at, velocity, acceleration, &mut motions);
+    on.call("forward_accelerations", moving, |((m, p), v, a, out)| {
+        forward_accelerations(m, p, v, a, out);
+        &*out
+    });
+    let place = (&motions, frame);
+    on.call("BodyMotions::frame_velocity", place, |(x, frame)| {
+        x.frame_velocity(frame)
+    });
+    on.call("BodyMotions::frame_acceleration", place, |(x, frame)| {
+        x.frame_acceleration(frame)
+    });
+    on.call(
+        "BodyMotions::frame_classical_acceleration",
+        place,
+        |(x, frame)| x.frame_classical_acceleration(frame),
+    );
+}
+
+fn jacobians<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+    on: &mut Subject<'_, T, R>,
+    model: &M,
+    poses: &Kinematics<T, N>,
+    state: &State<T, N>,
+    frame: &Frame<T>,
+) {
+    let mut jacobian = FrameJacobian::ZERO;
+    for axes in [Axes::World, Axes::Local, Axes::LocalWorldAligned] {
+        let input = (model, poses, frame, axes, &mut jacobian);
+        on.call("frame_jacobian", input, |(m, poses, frame, axes, out)| {
+            frame_jacobian(m, poses, frame, axes, out);
+            &*out
+        });
+        let moved = (axes, &poses.base, &state.velocity.base);
+        on.call("Axes::motion", moved, |(axes, pose, motion)| {
+            axes.motion(pose, motion)
+        });
+    }
+    on.call(
+        "FrameJacobian::mul",
+        (&jacobian, &state.velocity),
+        |(j, v)| j.mul(v),
+    );
+    on.call(
+        "FrameJacobian::tr_mul",
+        (&jacobian, &state.base_force),
+        |(j, f)| j.tr_mul(f),
+    );
+    on.call("FrameJacobian::to_dense", &jacobian, |j| j.to_dense::<V>());
+    let mut columns = [Motion::ZERO; N];
+    on.call(
+        "joint_jacobians",
+        (model, poses, &mut columns),
+        |(m, poses, out)| {
+            joint_jacobians(m, poses, out);
+            &*out
+        },
+    );
+}
