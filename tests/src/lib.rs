@@ -2,5 +2,6 @@
 //!
 //! This library holds the shared parts: golden files and states for benches.
 
+pub mod bench;
 pub mod golden;
 pub mod tables;

@@ -61,20 +61,20 @@ impl Worst {
 }
 
 fn motion<T: Scalar>(x: &[f64]) -> Motion<T> {
-    Motion::from_array(std::array::from_fn(|i| T::of(x[i])))
+    Motion::from_array(core::array::from_fn(|i| T::of(x[i])))
 }
 
 fn tangent<T: Scalar, const N: usize>(x: &[f64]) -> Tangent<T, N> {
     Tangent {
         base: motion(x),
-        joints: std::array::from_fn(|i| T::of(x[6 + i])),
+        joints: core::array::from_fn(|i| T::of(x[6 + i])),
     }
 }
 
 fn effort<T: Scalar, const N: usize>(x: &[f64]) -> Effort<T, N> {
     Effort {
         base: Force::from_array(motion(x).to_array()),
-        joints: std::array::from_fn(|i| T::of(x[6 + i])),
+        joints: core::array::from_fn(|i| T::of(x[6 + i])),
     }
 }
 
@@ -87,7 +87,7 @@ fn configuration<T: Scalar, const N: usize>(x: &[f64]) -> Configuration<T, N> {
             nalgebra::Rotation3::from_matrix_unchecked(rotation),
             Vector3::new(T::of(x[0]), T::of(x[1]), T::of(x[2])),
         ),
-        joints: std::array::from_fn(|i| T::of(x[7 + i])),
+        joints: core::array::from_fn(|i| T::of(x[7 + i])),
     }
 }
 

@@ -1,8 +1,10 @@
 //! The checks of the workspace, one command per file. `cargo xtask help` lists them.
 
 mod bare;
+mod bench;
 mod board;
 mod cross;
+mod icount;
 mod image;
 mod panics;
 mod probe;
@@ -33,6 +35,10 @@ enum Command {
     Smoke(smoke::Args),
     /// Run the image under QEMU and compare its numbers with the host's bit for bit.
     Qemu(qemu::Args),
+    /// Time our code beside its peers and print the table of ratios.
+    Bench(bench::Args),
+    /// Count the instructions of every algorithm and compare with the golden file.
+    Icount(icount::Args),
 }
 
 fn main() -> ExitCode {
@@ -40,6 +46,8 @@ fn main() -> ExitCode {
         Command::Cross(args) => cross::run(&args),
         Command::Smoke(args) => smoke::run(&args),
         Command::Qemu(args) => qemu::run(&args),
+        Command::Bench(args) => bench::run(&args),
+        Command::Icount(args) => icount::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

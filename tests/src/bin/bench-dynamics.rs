@@ -1,0 +1,314 @@
+//! rbd-core's side of the ratio table and of the instruction counts.
+//!
+//! ```text
+//! bench-dynamics time TAG MS DIR              ns of every algorithm over the peers' states in DIR
+//! bench-dynamics list                         the algorithms: robot model algorithm
+//! bench-dynamics count ROBOT MODEL ALGORITHM  each golden state once, for callgrind; `none` measures the rest
+//! ```
+//!
+//! Each call starts from a quaternion and joint angles, as Pinocchio's do: the rotation matrix and all sines and
+//! cosines are inside the measurement.
+
+use core::hint::black_box;
+use std::path::Path;
+use std::process::ExitCode;
+
+use rbd_core::{
+    AbaWorkspace, Axes, BaseKind, BodyMotions, CentroidalMap, ComJacobian, Force, Frame,
+    FrameJacobian, Kinematics, MassMatrix, TableModel, Tree, aba, bias_accelerations,
+    center_of_mass, centroidal_bias, centroidal_map, centroidal_momentum_rate, centroidal_state,
+    com_jacobian, crba, forward_accelerations, forward_kinematics, forward_velocities,
+    frame_jacobian, generalized_gravity, joint_jacobians, nonlinear_effects, rnea,
+    rnea_with_forces,
+};
+use saltus_tests::bench::{State, time};
+use saltus_tests::tables::{
+    A1, A1_BASE, A1_BODIES, A1_FRAMES, ICUB_BASE, ICUB_BODIES, ICUB_FRAMES, Icub23,
+};
+
+/// Algorithms by the names that the peer benches use; the argument is the index of a state.
+type Algorithms<'a> = Vec<(&'static str, Box<dyn FnMut(usize) + 'a>)>;
+
+/// Everything to measure on one model.
+fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
+    model: &'a M,
+    feet: &'a [(&'a str, Frame<f64>)],
+    states: &'a [State<N>],
+) -> Algorithms<'a> {
+    let mut list: Algorithms<'a> = Vec::new();
+    let s = states;
+    // Pushes an algorithm; `$p` is the posture of state `$i`, and what the body returns is kept alive.
+    macro_rules! algorithm {
+        ($name:literal, |$i:ident, $p:ident| $body:expr) => {
+            list.push((
+                $name,
+                Box::new(move |$i| {
+                    let $p = s[$i].posture(model);
+                    black_box(&$body);
+                }),
+            ));
+        };
+    }
+    let mut forces = [Force::ZERO; N];
+    for (_, foot) in feet {
+        if let rbd_core::Link::Joint(i) = foot.link {
+            forces[i] = Force::from_array([1.0, 2.0, 30.0, 0.0, 0.0, 0.0]);
+        }
+    }
+    algorithm!("rnea", |i, p| rnea(
+        model,
+        &p,
+        &s[i].velocity,
+        &s[i].acceleration
+    ));
+    algorithm!("rnea_external", |i, p| {
+        rnea_with_forces(
+            model,
+            &p,
+            &s[i].velocity,
+            &s[i].acceleration,
+            &Force::ZERO,
+            &forces,
+        )
+    });
+    algorithm!("nonlinear_effects", |i, p| nonlinear_effects(
+        model,
+        &p,
+        &s[i].velocity
+    ));
+    algorithm!("gravity", |i, p| generalized_gravity(model, &p));
+    let mut mass = MassMatrix::ZERO;
+    algorithm!("crba", |i, p| {
+        crba(model, &p, &mut mass);
+        &mass
+    });
+    let mut ws = AbaWorkspace::new();
+    algorithm!("aba", |i, p| aba(
+        model,
+        &p,
+        &s[i].velocity,
+        &s[i].effort,
+        &mut ws
+    ));
+    let mut mass = MassMatrix::ZERO;
+    let mut ws = AbaWorkspace::new();
+    algorithm!("rnea_crba_aba", |i, p| {
+        black_box(&rnea(model, &p, &s[i].velocity, &s[i].acceleration));
+        crba(model, &p, &mut mass);
+        black_box(&mass);
+        aba(model, &p, &s[i].velocity, &s[i].effort, &mut ws)
+    });
+
+    let mut kinematics = Kinematics::IDENTITY;
+    algorithm!("fk_placements", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        &kinematics
+    });
+    let mut moving = BodyMotions::ZERO;
+    algorithm!("fk_velocities", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        forward_velocities(model, &p, &s[i].velocity, &mut moving);
+        (&kinematics, &moving)
+    });
+    algorithm!("fk_accelerations", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
+        (&kinematics, &moving)
+    });
+    algorithm!("feet_accelerations", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
+        for (_, foot) in feet {
+            let classical = moving.frame_classical_acceleration(foot);
+            black_box(&Axes::LocalWorldAligned.motion(&kinematics.frame(foot), &classical));
+        }
+    });
+    algorithm!("feet_bias_accelerations", |i, p| {
+        bias_accelerations(model, &p, &s[i].velocity, &mut moving);
+        for (_, foot) in feet {
+            black_box(&moving.frame_classical_acceleration(foot));
+        }
+    });
+    let mut columns = [rbd_core::Motion::ZERO; N];
+    algorithm!("joint_jacobians", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        joint_jacobians(model, &kinematics, &mut columns);
+        &columns
+    });
+    let mut jacobian = FrameJacobian::ZERO;
+    algorithm!("feet_jacobians", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        for (_, foot) in feet {
+            frame_jacobian(
+                model,
+                &kinematics,
+                foot,
+                Axes::LocalWorldAligned,
+                &mut jacobian,
+            );
+            black_box(&jacobian);
+        }
+    });
+
+    algorithm!("com", |i, p| center_of_mass(model, &p));
+    let mut jacobian = ComJacobian::ZERO;
+    algorithm!("com_jacobian", |i, p| {
+        com_jacobian(model, &p, &mut jacobian);
+        &jacobian
+    });
+    let mut map = CentroidalMap::ZERO;
+    algorithm!("centroidal_map", |i, p| {
+        centroidal_map(model, &p, &mut map);
+        &map
+    });
+    algorithm!("centroidal_map_rate", |i, p| {
+        centroidal_map(model, &p, &mut map);
+        (&map, centroidal_bias(model, &p, &s[i].velocity))
+    });
+    algorithm!("centroidal_momentum", |i, p| centroidal_state(
+        model,
+        &p,
+        &s[i].velocity
+    ));
+    algorithm!("energies", |i, p| centroidal_state(
+        model,
+        &p,
+        &s[i].velocity
+    ));
+    algorithm!("centroidal_momentum_rate", |i, p| {
+        centroidal_momentum_rate(model, &p, &s[i].velocity, &s[i].acceleration)
+    });
+    algorithm!("com_acceleration", |i, p| {
+        // Position, velocity and acceleration, as Pinocchio's centerOfMass(q, v, a) gives them.
+        (
+            centroidal_state(model, &p, &s[i].velocity),
+            centroidal_momentum_rate(model, &p, &s[i].velocity, &s[i].acceleration),
+        )
+    });
+    list.push(("none", Box::new(|_| {})));
+    list
+}
+
+/// What to do with the algorithms of one robot and model.
+trait Visit {
+    fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>);
+    /// Where the states come from; `None` for the golden files.
+    fn states(&self) -> Option<&Path>;
+}
+
+fn each<V: Visit>(visit: &mut V) -> Result<(), String> {
+    let states = load::<12, V>(visit, "a1")?;
+    visit.visit(
+        "a1",
+        "const",
+        states.len(),
+        algorithms(black_box(&A1), &A1_FRAMES[..4], &states),
+    );
+    let table = TableModel::<f64, 12>::new(BaseKind::Floating, A1_BASE, &A1_BODIES)
+        .map_err(|e| e.to_string())?;
+    visit.visit(
+        "a1",
+        "run-time",
+        states.len(),
+        algorithms(black_box(&table), &A1_FRAMES[..4], &states),
+    );
+    let states = load::<23, V>(visit, "icub23")?;
+    visit.visit(
+        "icub23",
+        "const",
+        states.len(),
+        algorithms(black_box(&Icub23), &ICUB_FRAMES[..2], &states),
+    );
+    let table = TableModel::<f64, 23>::new(BaseKind::Floating, ICUB_BASE, &ICUB_BODIES)
+        .map_err(|e| e.to_string())?;
+    visit.visit(
+        "icub23",
+        "run-time",
+        states.len(),
+        algorithms(black_box(&table), &ICUB_FRAMES[..2], &states),
+    );
+    Ok(())
+}
+
+fn load<const N: usize, V: Visit>(visit: &V, robot: &str) -> Result<Vec<State<N>>, String> {
+    match visit.states() {
+        Some(directory) => State::read(&directory.join(format!("{robot}.states"))),
+        None => Ok(State::golden(robot)),
+    }
+}
+
+struct Time<'a> {
+    tag: &'a str,
+    ms: f64,
+    directory: &'a Path,
+}
+
+impl Visit for Time<'_> {
+    fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>) {
+        for (name, mut call) in list.into_iter().filter(|(name, _)| *name != "none") {
+            println!(
+                "{robot},{name},{:.2},{states},{}-{model}",
+                time(states, self.ms, &mut call),
+                self.tag
+            );
+        }
+    }
+    fn states(&self) -> Option<&Path> {
+        Some(self.directory)
+    }
+}
+
+struct List;
+
+impl Visit for List {
+    fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>) {
+        for (name, _) in list {
+            println!("{robot} {model} {name} {states}");
+        }
+    }
+    fn states(&self) -> Option<&Path> {
+        None
+    }
+}
+
+struct Count<'a>(&'a str, &'a str, &'a str);
+
+impl Visit for Count<'_> {
+    fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>) {
+        for (name, mut call) in list {
+            if (robot, model, name) == (self.0, self.1, self.2) {
+                (0..states).for_each(&mut call);
+            }
+        }
+    }
+    fn states(&self) -> Option<&Path> {
+        None
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let result = match words[..] {
+        ["time", tag, ms, directory] => match ms.parse() {
+            Ok(ms) => each(&mut Time {
+                tag,
+                ms,
+                directory: Path::new(directory),
+            }),
+            Err(_) => Err(format!("{ms} is not a number of milliseconds")),
+        },
+        ["list"] => each(&mut List),
+        ["count", robot, model, algorithm] => each(&mut Count(robot, model, algorithm)),
+        _ => Err(
+            "usage: bench-dynamics time TAG MS DIR | list | count ROBOT MODEL ALGORITHM".to_owned(),
+        ),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
