@@ -33,7 +33,7 @@ pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
-pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
+pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link, Model};
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};
 pub use table::{TableError, TableModel};

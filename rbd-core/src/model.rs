@@ -5,6 +5,7 @@ use so3::Scalar;
 
 use crate::joint::Kind;
 use crate::spatial::{Inertia, Symmetric3, Transform};
+use crate::tree::Tree;
 
 /// Where something is attached: to the base, or to the body that a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +121,17 @@ pub struct Frame<T> {
 }
 
 impl<T: Scalar> Frame<T> {
+    /// The base's own frame.
+    pub const IDENTITY: Self = Self {
+        link: Link::Base,
+        offset: [T::ZERO; 3],
+        rotation: [
+            [T::ONE, T::ZERO, T::ZERO],
+            [T::ZERO, T::ONE, T::ZERO],
+            [T::ZERO, T::ZERO, T::ONE],
+        ],
+    };
+
     /// Pose of the frame in its link.
     #[inline(always)]
     #[must_use]
@@ -256,4 +268,62 @@ pub const fn bodies_f32<const N: usize>(bodies: &[Body<f64>; N]) -> [Body<f32>; 
         i += 1;
     }
     out
+}
+
+/// A table of frames in single precision, for `static` items of model crates.
+#[must_use]
+pub const fn frames_f32<const N: usize>(frames: &[Frame<f64>; N]) -> [Frame<f32>; N] {
+    let mut out = [Frame::<f32>::IDENTITY; N];
+    let mut i = 0;
+    while i < N {
+        out[i] = frames[i].to_f32();
+        i += 1;
+    }
+    out
+}
+
+/// A table of limits in single precision, for `static` items of model crates.
+#[must_use]
+pub const fn limits_f32<const N: usize>(limits: &[JointLimits<f64>; N]) -> [JointLimits<f32>; N] {
+    let mut out = [JointLimits::<f32>::NONE; N];
+    let mut i = 0;
+    while i < N {
+        out[i] = limits[i].to_f32();
+        i += 1;
+    }
+    out
+}
+
+/// What a controller or planner asks of a robot beyond its dynamics: names, limits and frames.
+///
+/// Model crates implement it for f32 and f64 from the same tables; every figure is the URDF's unless the
+/// crate says otherwise.
+pub trait Model<T: Scalar, const N: usize>: Tree<T, N> {
+    /// Name of the robot.
+    fn name(&self) -> &'static str;
+
+    /// Names of the joints, in the order of the joint coordinates.
+    fn joint_names(&self) -> &'static [&'static str; N];
+
+    /// Limits and losses of the joints.
+    fn limits(&self) -> &'static [JointLimits<T>; N];
+
+    /// Names of the frames: the links of the URDF, depth first.
+    fn frame_names(&self) -> &'static [&'static str];
+
+    /// The frames, in the order of their names.
+    fn frames(&self) -> &'static [Frame<T>];
+
+    /// Index of a joint, by name.
+    #[must_use]
+    fn joint_index(&self, name: &str) -> Option<usize> {
+        self.joint_names().iter().position(|n| *n == name)
+    }
+
+    /// A frame, by the name of its link.
+    #[must_use]
+    fn frame(&self, name: &str) -> Option<Frame<T>> {
+        let i = self.frame_names().iter().position(|n| *n == name)?;
+        self.frames().get(i).copied()
+    }
 }

@@ -1,0 +1,9 @@
+//! Writes a robot as Rust: one module of tables, or a whole crate around it.
+
+mod krate;
+mod module;
+mod names;
+
+pub use krate::{Crate, Dependency, write_crate};
+pub use module::{Provenance, module};
+pub use names::{constant, type_name};

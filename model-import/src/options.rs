@@ -1,0 +1,54 @@
+//! What the caller decides about an import.
+
+use rbd_core::BaseKind;
+
+use crate::error::ImportError;
+
+/// What becomes of joints that follow another one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MimicPolicy {
+    /// They are an error unless locked by name: a tree of independent joints cannot keep the coupling.
+    #[default]
+    Refuse,
+    /// They are locked where their leader stands: at its lock value, or at zero if it moves.
+    Lock,
+    /// They move on their own, as Pinocchio reads them by default.
+    Free,
+}
+
+/// What the caller decides about an import.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Whether the base moves.
+    pub base: BaseKind,
+    /// Joints to lock, with the positions to lock them at, rad or m.
+    pub locks: Vec<(String, f64)>,
+    /// What becomes of mimic joints.
+    pub mimic: MimicPolicy,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            base: BaseKind::Floating,
+            locks: Vec::new(),
+            mimic: MimicPolicy::Refuse,
+        }
+    }
+}
+
+/// Reads `joint=value`.
+///
+/// # Errors
+/// [`ImportError::BadLock`] if it is not that, with a finite value.
+pub fn parse_lock(text: &str) -> Result<(String, f64), ImportError> {
+    let bad = || ImportError::BadLock {
+        text: text.to_owned(),
+    };
+    let (joint, value) = text.split_once('=').ok_or_else(bad)?;
+    let value: f64 = value.trim().parse().map_err(|_| bad())?;
+    if joint.trim().is_empty() || !value.is_finite() {
+        return Err(bad());
+    }
+    Ok((joint.trim().to_owned(), value))
+}

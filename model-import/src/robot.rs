@@ -1,0 +1,185 @@
+//! A robot as imported: tables, names and what was tolerated.
+
+use rbd_core::algo::crba::{MassMatrix, crba};
+use rbd_core::model::{BaseBody, BaseKind, Body, Frame, JointLimits};
+use rbd_core::state::{Configuration, Posture};
+use rbd_core::{TableError, TableModel};
+use so3::Scalar;
+
+use crate::canonical::{self, Tables};
+use crate::error::{ImportError, Warning};
+use crate::locks::locked_positions;
+use crate::options::Options;
+use crate::tree::LinkTree;
+use crate::urdf::Urdf;
+
+/// Most movable joints of a robot that this crate imports.
+pub const MOST_JOINTS: usize = 128;
+
+/// Names and limits of a movable joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointInfo {
+    /// Its name in the URDF.
+    pub name: String,
+    /// The link that it moves.
+    pub link: String,
+    /// It turns without end.
+    pub continuous: bool,
+    /// Limits and losses, in the URDF's joint coordinate.
+    pub limits: JointLimits<f64>,
+}
+
+/// A link's own URDF frame. It is also the frame of the joint above the link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkFrame {
+    /// Name of the link.
+    pub name: String,
+    /// Name of the joint above it, of any type; `None` for the root.
+    pub joint: Option<String>,
+    /// Where it is.
+    pub frame: Frame<f64>,
+}
+
+/// A robot in canonical frames.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// Its name in the URDF.
+    pub name: String,
+    /// Whether the base moves.
+    pub base_kind: BaseKind,
+    /// The base.
+    pub base: BaseBody<f64>,
+    /// Bodies in depth-first order.
+    pub bodies: Vec<Body<f64>>,
+    /// The joint of each body.
+    pub joints: Vec<JointInfo>,
+    /// Every link's frame, depth first.
+    pub frames: Vec<LinkFrame>,
+    /// Joints locked, with their positions.
+    pub locked: Vec<(String, f64)>,
+    /// What was tolerated.
+    pub warnings: Vec<Warning>,
+}
+
+impl Robot {
+    /// Imports the text of a URDF.
+    ///
+    /// # Errors
+    /// Names the first element that does not make a robot, and what to do about it.
+    pub fn from_urdf(text: &str, options: &Options) -> Result<Self, ImportError> {
+        let mut urdf = Urdf::parse(text)?;
+        let tree = LinkTree::new(&urdf)?;
+        let mut warnings = core::mem::take(&mut urdf.warnings);
+        let at = locked_positions(&urdf, options, &mut warnings)?;
+        let tables = canonical::tables(&urdf, &tree, &at);
+        let locked = urdf.joints.iter().zip(&at);
+        let robot = Self {
+            name: urdf.name.clone(),
+            base_kind: options.base,
+            locked: locked
+                .filter_map(|(j, at)| at.map(|x| (j.name.clone(), x)))
+                .collect(),
+            warnings,
+            base: tables.base,
+            bodies: tables.bodies.clone(),
+            joints: tables.joints.clone(),
+            frames: tables.frames.clone(),
+        };
+        robot.check(&tables)?;
+        Ok(robot)
+    }
+
+    /// Mass of the whole robot, kg; of a fixed base too.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.base.mass + self.bodies.iter().map(|b| b.mass).sum::<f64>()
+    }
+
+    /// The robot as a run-time model.
+    ///
+    /// # Errors
+    /// [`TableError::TooManyBodies`] if `CAP` is too small.
+    pub fn model<T: Scalar, const CAP: usize>(&self) -> Result<TableModel<T, CAP>, TableError> {
+        let bodies: Vec<Body<T>> = self.bodies.iter().map(cast_body).collect();
+        let base = BaseBody {
+            mass: T::of(self.base.mass),
+            first: self.base.first.map(T::of),
+            second: self.base.second.map(T::of),
+        };
+        TableModel::new(self.base_kind, base, &bodies)
+    }
+
+    /// The frame of a link, by the link's name.
+    #[must_use]
+    pub fn frame(&self, link: &str) -> Option<Frame<f64>> {
+        let found = self.frames.iter().find(|f| f.name == link);
+        found.map(|f| f.frame)
+    }
+
+    /// Every joint must feel inertia with the others free, at zero and where no two axes need coincide:
+    /// then the mass matrix can be inverted.
+    fn check(&self, tables: &Tables) -> Result<(), ImportError> {
+        let joints = self.bodies.len();
+        if joints > MOST_JOINTS {
+            return Err(ImportError::TooManyJoints {
+                joints,
+                most: MOST_JOINTS,
+            });
+        }
+        let model: TableModel<f64, MOST_JOINTS> = self.model()?;
+        if self.base_kind == BaseKind::Floating && self.mass() <= 0.0 {
+            return Err(ImportError::NoMass);
+        }
+        let mut configuration = Configuration::<f64, MOST_JOINTS>::NEUTRAL;
+        for (i, x) in configuration.joints.iter_mut().enumerate() {
+            *x = 0.3 + 0.1 * (i % 7) as f64;
+        }
+        let mut mass = Box::new(MassMatrix::ZERO);
+        crba(&model, &Posture::new(&model, &configuration), &mut mass);
+        match first_weightless(&mut mass.joints, joints) {
+            None => Ok(()),
+            Some(i) => Err(ImportError::MissingInertia {
+                joint: self.joints[i].name.clone(),
+                link: self.joints[i].link.clone(),
+                state: if tables.has_inertial[i] {
+                    "has an <inertial> of zero about the joint's axis"
+                } else {
+                    "has no <inertial>"
+                },
+            }),
+        }
+    }
+}
+
+/// Eliminates joints from the leaves inwards (M = Lᵀ D L); the first whose pivot vanishes.
+fn first_weightless<const N: usize>(m: &mut [[f64; N]; N], count: usize) -> Option<usize> {
+    for k in (0..count).rev() {
+        let pivot = m[k][k];
+        let largest = m[k][..count].iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        if pivot <= 1e-14 * largest || pivot <= 0.0 {
+            return Some(k);
+        }
+        for i in 0..k {
+            let factor = m[i][k] / pivot;
+            for j in 0..k {
+                m[i][j] -= factor * m[k][j];
+            }
+        }
+    }
+    None
+}
+
+fn cast_body<T: Scalar>(body: &Body<f64>) -> Body<T> {
+    Body {
+        kind: body.kind,
+        parent: body.parent,
+        subtree_end: body.subtree_end,
+        sign: T::of(body.sign),
+        offset: body.offset.map(T::of),
+        tilt: body.tilt.map(|row| row.map(T::of)),
+        mass: T::of(body.mass),
+        first: body.first.map(T::of),
+        second: body.second.map(T::of),
+        rotor_inertia: T::of(body.rotor_inertia),
+    }
+}

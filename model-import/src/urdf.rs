@@ -1,0 +1,430 @@
+//! Reads the dynamic content of a URDF: links with inertias, joints with axes and limits.
+//!
+//! Meshes, collisions, transmissions and simulator tags are skipped. Every element is checked by itself
+//! here; what they form together is checked in [`crate::tree`].
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use rbd_core::model::JointLimits;
+use rbd_core::spatial::{Inertia, Symmetric3, Transform};
+use roxmltree::{Document, Node};
+use so3::math;
+
+use crate::error::{ImportError, Warning};
+
+/// Largest deviation of an axis from unit length that is taken for rounding.
+const AXIS_ROUNDING: f64 = 1e-2;
+/// Deviation of an axis from unit length below which nothing is said.
+const AXIS_SILENT: f64 = 1e-6;
+/// Largest violation of the triangle inequality, relative to the largest moment, that is taken for rounding.
+const INERTIA_ROUNDING: f64 = 5e-2;
+/// Violation below which nothing is said.
+const INERTIA_SILENT: f64 = 1e-9;
+
+/// A robot as its file describes it.
+#[derive(Clone, Debug)]
+pub struct Urdf {
+    /// Name of the robot.
+    pub name: String,
+    /// Links in file order.
+    pub links: Vec<UrdfLink>,
+    /// Joints in file order.
+    pub joints: Vec<UrdfJoint>,
+    /// What was tolerated.
+    pub warnings: Vec<Warning>,
+}
+
+/// A link.
+#[derive(Clone, Debug)]
+pub struct UrdfLink {
+    /// Its name.
+    pub name: String,
+    /// Inertia in the link's own frame; `None` without `<inertial>`.
+    pub inertia: Option<Inertia<f64>>,
+}
+
+/// What a joint lets happen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointType {
+    /// Turns between limits.
+    Revolute,
+    /// Turns without limits.
+    Continuous,
+    /// Slides between limits.
+    Prismatic,
+    /// Nothing.
+    Fixed,
+}
+
+/// Follows another joint: position = `multiplier` × leader + `offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// Name of the joint that is followed.
+    pub leader: String,
+    /// Ratio.
+    pub multiplier: f64,
+    /// Position when the leader is at zero, rad or m.
+    pub offset: f64,
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct UrdfJoint {
+    /// Its name.
+    pub name: String,
+    /// Kind, name and line, for messages.
+    pub element: String,
+    /// What it lets happen.
+    pub kind: JointType,
+    /// Name of the link above.
+    pub parent: String,
+    /// Name of the link below.
+    pub child: String,
+    /// Child link in parent link at zero position.
+    pub origin: Transform<f64>,
+    /// Unit axis in the child's frame.
+    pub axis: Vector3<f64>,
+    /// Limits and losses.
+    pub limits: JointLimits<f64>,
+    /// The joint it follows, if any.
+    pub mimic: Option<Mimic>,
+}
+
+impl Urdf {
+    /// Reads the text of a URDF.
+    ///
+    /// # Errors
+    /// The first element that is not what a URDF may say.
+    pub fn parse(text: &str) -> Result<Self, ImportError> {
+        let document = Document::parse(text).map_err(|e| ImportError::Xml {
+            line: e.pos().row,
+            column: e.pos().col,
+            message: e.to_string(),
+        })?;
+        let robot = document.root_element();
+        if robot.tag_name().name() != "robot" {
+            let found = robot.tag_name().name().to_owned();
+            return Err(ImportError::NotARobot { found });
+        }
+        let mut urdf = Self {
+            name: robot.attribute("name").unwrap_or("robot").to_owned(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            warnings: Vec::new(),
+        };
+        for node in robot.children() {
+            match node.tag_name().name() {
+                "link" => urdf.add_link(node)?,
+                "joint" => urdf.add_joint(node)?,
+                _ => {}
+            }
+        }
+        if urdf.links.is_empty() {
+            return Err(ImportError::NoLinks);
+        }
+        Ok(urdf)
+    }
+
+    fn add_link(&mut self, node: Node<'_, '_>) -> Result<(), ImportError> {
+        let (name, element) = named(node)?;
+        if self.links.iter().any(|l| l.name == name) {
+            return Err(ImportError::DuplicateName { element });
+        }
+        let inertia = match child(node, "inertial") {
+            Some(inertial) => Some(self.inertia(inertial, &element)?),
+            None => None,
+        };
+        self.links.push(UrdfLink { name, inertia });
+        Ok(())
+    }
+
+    /// Mass, first and second moments in the link's frame.
+    fn inertia(&mut self, node: Node<'_, '_>, element: &str) -> Result<Inertia<f64>, ImportError> {
+        let mass_node = required(node, "mass", element, "<mass> in its <inertial>")?;
+        let mass = number(mass_node, "value", element, "mass")?;
+        if mass < 0.0 {
+            let element = element.to_owned();
+            return Err(ImportError::NegativeMass { element, mass });
+        }
+        let tensor = required(node, "inertia", element, "<inertia> in its <inertial>")?;
+        let mut entries = [0.0; 6];
+        for (x, name) in entries.iter_mut().zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]) {
+            *x = number(tensor, name, element, name)?;
+        }
+        let origin = pose(child(node, "origin"), element)?;
+        let rotational = Symmetric3::new(entries);
+        self.check_inertia(mass, &rotational.to_matrix(), element)?;
+        let rotated = rotational.rotated(origin.rotation.matrix());
+        Ok(Inertia::from_com(mass, origin.translation, rotated))
+    }
+
+    fn check_inertia(
+        &mut self,
+        mass: f64,
+        rotational: &Matrix3<f64>,
+        element: &str,
+    ) -> Result<(), ImportError> {
+        let mut moments: [f64; 3] = rotational.symmetric_eigenvalues().into();
+        moments.sort_by(f64::total_cmp);
+        let [low, middle, high] = moments;
+        let element = element.to_owned();
+        let excess = math::max(-low, high - middle - low);
+        if excess > INERTIA_ROUNDING * high || (high <= 0.0 && excess > 0.0) {
+            return Err(ImportError::UnphysicalInertia { element, moments });
+        }
+        if mass == 0.0 && high > 0.0 {
+            self.warnings.push(Warning::InertiaWithoutMass { element });
+        } else if excess > INERTIA_SILENT * high {
+            let excess = excess / high;
+            self.warnings.push(Warning::InertiaRounded {
+                element,
+                moments,
+                excess,
+            });
+        }
+        Ok(())
+    }
+
+    fn add_joint(&mut self, node: Node<'_, '_>) -> Result<(), ImportError> {
+        let (name, element) = named(node)?;
+        if self.joints.iter().any(|j| j.name == name) {
+            return Err(ImportError::DuplicateName { element });
+        }
+        let kind = match attribute(node, "type", &element, "type")? {
+            "revolute" => JointType::Revolute,
+            "continuous" => JointType::Continuous,
+            "prismatic" => JointType::Prismatic,
+            "fixed" => JointType::Fixed,
+            other => {
+                let kind = other.to_owned();
+                return Err(ImportError::UnsupportedJoint { element, kind });
+            }
+        };
+        let link_of = |tag: &'static str| -> Result<String, ImportError> {
+            let end = required(node, tag, &element, tag)?;
+            Ok(attribute(end, "link", &element, tag)?.to_owned())
+        };
+        let (parent, below) = (link_of("parent")?, link_of("child")?);
+        let origin = pose(child(node, "origin"), &element)?;
+        let (axis, limits) = if kind == JointType::Fixed {
+            (Vector3::x(), JointLimits::NONE)
+        } else {
+            (self.axis(node, &element)?, self.limits(node, kind, &element)?)
+        };
+        let mimic = child(node, "mimic")
+            .map(|m| mimic(m, &element))
+            .transpose()?;
+        self.joints.push(UrdfJoint {
+            name,
+            element,
+            kind,
+            parent,
+            child: below,
+            origin,
+            axis,
+            limits,
+            mimic,
+        });
+        Ok(())
+    }
+
+    fn axis(&mut self, node: Node<'_, '_>, element: &str) -> Result<Vector3<f64>, ImportError> {
+        let Some(axis) = child(node, "axis") else {
+            return Ok(Vector3::x());
+        };
+        let text = attribute(axis, "xyz", element, "axis xyz")?;
+        let axis = triple(text, element, "axis xyz")?;
+        let length = axis.norm();
+        let element = element.to_owned();
+        if length == 0.0 {
+            return Err(ImportError::ZeroAxis { element });
+        }
+        let off = math::abs(length - 1.0);
+        if off > AXIS_ROUNDING {
+            return Err(ImportError::NonUnitAxis { element, length });
+        }
+        if off > AXIS_SILENT {
+            self.warnings.push(Warning::AxisScaled { element, length });
+        }
+        Ok(axis / length)
+    }
+
+    fn limits(
+        &mut self,
+        node: Node<'_, '_>,
+        kind: JointType,
+        element: &str,
+    ) -> Result<JointLimits<f64>, ImportError> {
+        let mut limits = JointLimits::<f64>::NONE;
+        (limits.lower, limits.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        if let Some(dynamics) = child(node, "dynamics") {
+            limits.damping = optional(dynamics, "damping", element, "damping")?.unwrap_or(0.0);
+            limits.friction = optional(dynamics, "friction", element, "friction")?.unwrap_or(0.0);
+        }
+        let Some(limit) = child(node, "limit") else {
+            if kind != JointType::Continuous {
+                let element = element.to_owned();
+                self.warnings.push(Warning::NoLimit { element });
+            }
+            return Ok(limits);
+        };
+        if kind != JointType::Continuous {
+            limits.lower = optional(limit, "lower", element, "lower limit")?.unwrap_or(0.0);
+            limits.upper = optional(limit, "upper", element, "upper limit")?.unwrap_or(0.0);
+        }
+        if limits.lower > limits.upper {
+            return Err(ImportError::InvertedLimits {
+                element: element.to_owned(),
+                lower: limits.lower,
+                upper: limits.upper,
+            });
+        }
+        let mut positive = |name, what| -> Result<f64, ImportError> {
+            let value = optional(limit, name, element, what)?;
+            if let Some(value) = value
+                && value <= 0.0
+            {
+                self.warnings.push(Warning::PlaceholderLimit {
+                    element: element.to_owned(),
+                    what,
+                    value,
+                });
+            }
+            Ok(value.unwrap_or(f64::INFINITY))
+        };
+        limits.speed = positive("velocity", "speed")?;
+        limits.effort = positive("effort", "effort")?;
+        Ok(limits)
+    }
+}
+
+fn mimic(node: Node<'_, '_>, element: &str) -> Result<Mimic, ImportError> {
+    Ok(Mimic {
+        leader: attribute(node, "joint", element, "joint in its <mimic>")?.to_owned(),
+        multiplier: optional(node, "multiplier", element, "mimic multiplier")?.unwrap_or(1.0),
+        offset: optional(node, "offset", element, "mimic offset")?.unwrap_or(0.0),
+    })
+}
+
+/// Name of a link or joint, and how messages call it.
+fn named(node: Node<'_, '_>) -> Result<(String, String), ImportError> {
+    let tag = node.tag_name().name();
+    let line = node.document().text_pos_at(node.range().start).row;
+    match node.attribute("name") {
+        Some(name) if !name.is_empty() => {
+            Ok((name.to_owned(), format!("{tag} `{name}` (line {line})")))
+        }
+        _ => Err(ImportError::Missing {
+            element: format!("the {tag} in line {line}"),
+            what: "name",
+        }),
+    }
+}
+
+fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|c| c.tag_name().name() == tag)
+}
+
+fn required<'a, 'i>(
+    node: Node<'a, 'i>,
+    tag: &str,
+    element: &str,
+    what: &'static str,
+) -> Result<Node<'a, 'i>, ImportError> {
+    child(node, tag).ok_or_else(|| ImportError::Missing {
+        element: element.to_owned(),
+        what,
+    })
+}
+
+fn attribute<'a>(
+    node: Node<'a, '_>,
+    name: &str,
+    element: &str,
+    what: &'static str,
+) -> Result<&'a str, ImportError> {
+    node.attribute(name).ok_or_else(|| ImportError::Missing {
+        element: element.to_owned(),
+        what,
+    })
+}
+
+fn number(
+    node: Node<'_, '_>,
+    name: &str,
+    element: &str,
+    what: &'static str,
+) -> Result<f64, ImportError> {
+    finite(attribute(node, name, element, what)?, element, what)
+}
+
+fn optional(
+    node: Node<'_, '_>,
+    name: &str,
+    element: &str,
+    what: &'static str,
+) -> Result<Option<f64>, ImportError> {
+    node.attribute(name)
+        .map(|text| finite(text, element, what))
+        .transpose()
+}
+
+fn finite(text: &str, element: &str, what: &'static str) -> Result<f64, ImportError> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err(ImportError::BadNumber {
+            element: element.to_owned(),
+            what,
+            text: text.to_owned(),
+            expected: "a finite number",
+        }),
+    }
+}
+
+fn triple(text: &str, element: &str, what: &'static str) -> Result<Vector3<f64>, ImportError> {
+    let numbers: Vec<f64> = text
+        .split_whitespace()
+        .map(|x| finite(x, element, what))
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [x, y, z] => Ok(Vector3::new(x, y, z)),
+        _ => Err(ImportError::BadNumber {
+            element: element.to_owned(),
+            what,
+            text: text.to_owned(),
+            expected: "three numbers",
+        }),
+    }
+}
+
+/// The pose of an `<origin>`: R = Rz(yaw) Ry(pitch) Rx(roll); the identity without one.
+fn pose(origin: Option<Node<'_, '_>>, element: &str) -> Result<Transform<f64>, ImportError> {
+    let Some(origin) = origin else {
+        return Ok(Transform::IDENTITY);
+    };
+    let read = |name, what| match origin.attribute(name) {
+        Some(text) => triple(text, element, what),
+        None => Ok(Vector3::zeros()),
+    };
+    let rpy = read("rpy", "origin rpy")?;
+    Ok(Transform::new(
+        rotation_rpy(&rpy),
+        read("xyz", "origin xyz")?,
+    ))
+}
+
+/// Rz(yaw) Ry(pitch) Rx(roll).
+fn rotation_rpy(rpy: &Vector3<f64>) -> Rotation3<f64> {
+    let [(sr, cr), (sp, cp), (sy, cy)] = [rpy.x, rpy.y, rpy.z].map(math::sin_cos);
+    let m = Matrix3::new(
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    );
+    Rotation3::from_matrix_unchecked(m)
+}
