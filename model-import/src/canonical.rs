@@ -61,7 +61,9 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
             let joint = &urdf.joints[j];
             at.placement = at.placement.compose(&joint.origin);
             if is_still(joint, locked[j]) {
-                at.placement = at.placement.compose(&displaced(joint, locked[j].unwrap_or(0.0)));
+                at.placement = at
+                    .placement
+                    .compose(&displaced(joint, locked[j].unwrap_or(0.0)));
             } else {
                 let axes = descendant_axes(urdf, tree, locked, j, &at.placement);
                 let (body, placement) = canonical_body(joint, at.body, &at.placement, &axes);

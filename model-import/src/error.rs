@@ -17,7 +17,9 @@ pub enum ImportError {
         message: String,
     },
     /// The root element is not `<robot>`.
-    #[error("the root element is <{found}>, not <robot>: give a URDF (run xacro first if it is a macro file)")]
+    #[error(
+        "the root element is <{found}>, not <robot>: give a URDF (run xacro first if it is a macro file)"
+    )]
     NotARobot {
         /// Name of the root element.
         found: String,
@@ -52,7 +54,9 @@ pub enum ImportError {
         element: String,
     },
     /// A joint names a link that is not there.
-    #[error("{element} names the link `{link}`, which is not in the file: add it or correct the name")]
+    #[error(
+        "{element} names the link `{link}`, which is not in the file: add it or correct the name"
+    )]
     UnknownLink {
         /// The joint.
         element: String,
@@ -68,7 +72,9 @@ pub enum ImportError {
         leader: String,
     },
     /// A joint type that is not revolute, continuous, prismatic or fixed.
-    #[error("{element} is of type `{kind}`: supported are revolute, continuous, prismatic and fixed; replace it by several of those")]
+    #[error(
+        "{element} is of type `{kind}`: supported are revolute, continuous, prismatic and fixed; replace it by several of those"
+    )]
     UnsupportedJoint {
         /// The joint.
         element: String,
@@ -76,7 +82,9 @@ pub enum ImportError {
         kind: String,
     },
     /// A link is the child of two joints.
-    #[error("link `{link}` has two parents, joints `{first}` and `{second}`: a model is a tree, cut one of the joints")]
+    #[error(
+        "link `{link}` has two parents, joints `{first}` and `{second}`: a model is a tree, cut one of the joints"
+    )]
     TwoParents {
         /// The link.
         link: String,
@@ -92,7 +100,9 @@ pub enum ImportError {
         link: String,
     },
     /// More than one link has no parent.
-    #[error("links `{first}` and `{second}` both have no parent: join them, or remove one with its subtree")]
+    #[error(
+        "links `{first}` and `{second}` both have no parent: join them, or remove one with its subtree"
+    )]
     SeveralRoots {
         /// The first root.
         first: String,
@@ -132,7 +142,9 @@ pub enum ImportError {
         mass: f64,
     },
     /// Principal moments of inertia that no body has.
-    #[error("{element} has principal moments {moments:?} kg m²: none may be negative, and the largest may not exceed the sum of the others")]
+    #[error(
+        "{element} has principal moments {moments:?} kg m²: none may be negative, and the largest may not exceed the sum of the others"
+    )]
     UnphysicalInertia {
         /// The link.
         element: String,
@@ -140,7 +152,9 @@ pub enum ImportError {
         moments: [f64; 3],
     },
     /// A joint accelerates without effort, because nothing that it moves resists it.
-    #[error("joint `{joint}` moves no inertia (link `{link}` {state}): give the link an <inertial>, or lock the joint with --lock {joint}=0")]
+    #[error(
+        "joint `{joint}` moves no inertia (link `{link}` {state}): give the link an <inertial>, or lock the joint with --lock {joint}=0"
+    )]
     MissingInertia {
         /// The joint.
         joint: String,
@@ -173,7 +187,9 @@ pub enum ImportError {
         text: String,
     },
     /// A mimic joint, and the caller has not said what to do with it.
-    #[error("{element} mimics `{leader}`, which a tree cannot keep: lock it (--lock {joint}=value or --mimic lock), or let it move on its own (--mimic free)")]
+    #[error(
+        "{element} mimics `{leader}`, which a tree cannot keep: lock it (--lock {joint}=value or --mimic lock), or let it move on its own (--mimic free)"
+    )]
     Mimic {
         /// The joint.
         element: String,
@@ -208,7 +224,9 @@ pub enum Warning {
         length: f64,
     },
     /// Principal moments break the triangle inequality or are negative by no more than rounding.
-    #[error("{element}: principal moments {moments:?} kg m² are those of no body, by {excess:.1e} of the largest; kept as written")]
+    #[error(
+        "{element}: principal moments {moments:?} kg m² are those of no body, by {excess:.1e} of the largest; kept as written"
+    )]
     InertiaRounded {
         /// The link.
         element: String,

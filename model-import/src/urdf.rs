@@ -147,7 +147,10 @@ impl Urdf {
         }
         let tensor = required(node, "inertia", element, "<inertia> in its <inertial>")?;
         let mut entries = [0.0; 6];
-        for (x, name) in entries.iter_mut().zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]) {
+        for (x, name) in entries
+            .iter_mut()
+            .zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"])
+        {
             *x = number(tensor, name, element, name)?;
         }
         let origin = pose(child(node, "origin"), element)?;
@@ -208,7 +211,10 @@ impl Urdf {
         let (axis, limits) = if kind == JointType::Fixed {
             (Vector3::x(), JointLimits::NONE)
         } else {
-            (self.axis(node, &element)?, self.limits(node, kind, &element)?)
+            (
+                self.axis(node, &element)?,
+                self.limits(node, kind, &element)?,
+            )
         };
         let mimic = child(node, "mimic")
             .map(|m| mimic(m, &element))

@@ -5,6 +5,7 @@ mod bench;
 mod board;
 mod cross;
 mod icount;
+mod gen_model;
 mod image;
 mod panics;
 mod probe;
@@ -39,6 +40,8 @@ enum Command {
     Bench(bench::Args),
     /// Count the instructions of every algorithm and compare with the golden file.
     Icount(icount::Args),
+    /// Write the tables of the model crates from their URDFs, or check that they are up to date.
+    GenModel(gen_model::Args),
 }
 
 fn main() -> ExitCode {
@@ -48,6 +51,7 @@ fn main() -> ExitCode {
         Command::Qemu(args) => qemu::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
+        Command::GenModel(args) => gen_model::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -29,19 +29,36 @@ pub struct Crate {
 ///
 /// # Errors
 /// [`io::ErrorKind::AlreadyExists`] if the folder has content, and whatever the file system says.
-pub fn write_crate(folder: &Path, robot: &Robot, about: &Crate, provenance: &Provenance) -> io::Result<()> {
+pub fn write_crate(
+    folder: &Path,
+    robot: &Robot,
+    about: &Crate,
+    provenance: &Provenance,
+) -> io::Result<()> {
     if folder.exists() && fs::read_dir(folder)?.next().is_some() {
         return Err(io::Error::new(
             io::ErrorKind::AlreadyExists,
-            format!("{} is not empty: choose another folder, or remove it first", folder.display()),
+            format!(
+                "{} is not empty: choose another folder, or remove it first",
+                folder.display()
+            ),
         ));
     }
     fs::create_dir_all(folder.join("src"))?;
     let robot_type = type_name(&robot.name);
-    fs::write(folder.join("Cargo.toml"), manifest(robot, about, provenance))?;
-    fs::write(folder.join("README.md"), readme(robot, about, provenance, &robot_type))?;
+    fs::write(
+        folder.join("Cargo.toml"),
+        manifest(robot, about, provenance),
+    )?;
+    fs::write(
+        folder.join("README.md"),
+        readme(robot, about, provenance, &robot_type),
+    )?;
     fs::write(folder.join("src/lib.rs"), LIB)?;
-    fs::write(folder.join("src/tables.rs"), module(robot, &robot_type, provenance))
+    fs::write(
+        folder.join("src/tables.rs"),
+        module(robot, &robot_type, provenance),
+    )
 }
 
 const LIB: &str = "#![doc = include_str!(\"../README.md\")]
@@ -57,7 +74,9 @@ pub use tables::*;
 fn manifest(robot: &Robot, about: &Crate, provenance: &Provenance) -> String {
     let dependency = match &about.rbd_core {
         Dependency::Version(version) => format!("rbd-core = {version:?}"),
-        Dependency::Path(path) => format!("rbd-core = {{ path = {:?} }}", path.display().to_string()),
+        Dependency::Path(path) => {
+            format!("rbd-core = {{ path = {:?} }}", path.display().to_string())
+        }
     };
     format!(
         "[package]

@@ -60,33 +60,69 @@ fn write_module(
         BaseKind::Fixed => "fixed",
     };
     let limbs = expression(&structure(&robot.bodies));
-    writeln!(w, "/// {} on a {base} base, {n} joints, {} kg.", robot.name, kilograms(robot))?;
+    writeln!(
+        w,
+        "/// {} on a {base} base, {n} joints, {} kg.",
+        robot.name,
+        kilograms(robot)
+    )?;
     writeln!(w, "#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]")?;
     writeln!(w, "pub struct {type_name};\n")?;
     for (scalar, suffix) in [("f64", ""), ("f32", "_F32")] {
         writeln!(w, "rbd_core::tree! {{")?;
-        writeln!(w, "    impl Tree<{scalar}, {n}> for {type_name} {{ {base}, BASE{suffix}, BODIES{suffix}, {limbs} }}")?;
+        writeln!(
+            w,
+            "    impl Tree<{scalar}, {n}> for {type_name} {{ {base}, BASE{suffix}, BODIES{suffix}, {limbs} }}"
+        )?;
         writeln!(w, "}}\n")?;
     }
     for (scalar, suffix) in [("f64", ""), ("f32", "_F32")] {
         writeln!(w, "impl Model<{scalar}, {n}> for {type_name} {{")?;
         for (signature, value) in [
             ("name(&self) -> &'static str".to_owned(), "NAME".to_owned()),
-            (format!("joint_names(&self) -> &'static [&'static str; {n}]"), "&JOINT_NAMES".into()),
-            (format!("limits(&self) -> &'static [JointLimits<{scalar}>; {n}]"), format!("&LIMITS{suffix}")),
-            ("frame_names(&self) -> &'static [&'static str]".into(), "&FRAME_NAMES".into()),
-            (format!("frames(&self) -> &'static [Frame<{scalar}>]"), format!("&FRAMES{suffix}")),
+            (
+                format!("joint_names(&self) -> &'static [&'static str; {n}]"),
+                "&JOINT_NAMES".into(),
+            ),
+            (
+                format!("limits(&self) -> &'static [JointLimits<{scalar}>; {n}]"),
+                format!("&LIMITS{suffix}"),
+            ),
+            (
+                "frame_names(&self) -> &'static [&'static str]".into(),
+                "&FRAME_NAMES".into(),
+            ),
+            (
+                format!("frames(&self) -> &'static [Frame<{scalar}>]"),
+                format!("&FRAMES{suffix}"),
+            ),
         ] {
-            writeln!(w, "    #[inline]\n    fn {signature} {{\n        {value}\n    }}")?;
+            writeln!(
+                w,
+                "    #[inline]\n    fn {signature} {{\n        {value}\n    }}"
+            )?;
         }
         writeln!(w, "}}\n")?;
     }
-    writeln!(w, "/// Name of the robot in the source file.\npub const NAME: &str = {:?};\n", robot.name)?;
+    writeln!(
+        w,
+        "/// Name of the robot in the source file.\npub const NAME: &str = {:?};\n",
+        robot.name
+    )?;
     writeln!(w, "/// Number of joints.\npub const JOINTS: usize = {n};\n")?;
-    names(w, "JOINT_NAMES", "Names of the joints, in the order of the joint coordinates", robot.joints.iter().map(|j| &j.name))?;
+    names(
+        w,
+        "JOINT_NAMES",
+        "Names of the joints, in the order of the joint coordinates",
+        robot.joints.iter().map(|j| &j.name),
+    )?;
     writeln!(w, "/// Index of each joint.\npub mod joint {{")?;
     for (i, (id, joint)) in joints.iter().zip(&robot.joints).enumerate() {
-        writeln!(w, "    /// `{}`, which moves the link `{}`.\n    pub const {id}: usize = {i};", joint.name, joint.link)?;
+        writeln!(
+            w,
+            "    /// `{}`, which moves the link `{}`.\n    pub const {id}: usize = {i};",
+            joint.name, joint.link
+        )?;
     }
     writeln!(w, "}}\n")?;
     tables(w, robot)?;
@@ -94,23 +130,57 @@ fn write_module(
 }
 
 fn header(w: &mut String, robot: &Robot, provenance: &Provenance) -> fmt::Result {
-    let locked: Vec<String> = robot.locked.iter().map(|(j, x)| format!("{j}={x:?}")).collect();
-    let locked = if locked.is_empty() { "none".to_owned() } else { locked.join(" ") };
-    writeln!(w, "//! Tables of the robot `{}` in canonical frames; generated, do not edit.\n//!", robot.name)?;
-    writeln!(w, "//! - source: `{}`, sha256 {}", provenance.source, provenance.sha256)?;
+    let locked: Vec<String> = robot
+        .locked
+        .iter()
+        .map(|(j, x)| format!("{j}={x:?}"))
+        .collect();
+    let locked = if locked.is_empty() {
+        "none".to_owned()
+    } else {
+        locked.join(" ")
+    };
+    writeln!(
+        w,
+        "//! Tables of the robot `{}` in canonical frames; generated, do not edit.\n//!",
+        robot.name
+    )?;
+    writeln!(
+        w,
+        "//! - source: `{}`, sha256 {}",
+        provenance.source, provenance.sha256
+    )?;
     writeln!(w, "//! - licence of the source: {}", provenance.licence)?;
     writeln!(w, "//! - joints locked: {locked}\n//! - tool: {TOOL}\n")?;
-    writeln!(w, "#![allow(clippy::approx_constant, clippy::excessive_precision, reason = \"numbers of the source file\")]\n")?;
+    writeln!(
+        w,
+        "#![allow(clippy::approx_constant, clippy::excessive_precision, reason = \"numbers of the source file\")]\n"
+    )?;
     writeln!(w, "use rbd_core::joint::Kind;")?;
-    writeln!(w, "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, Model, bodies_f32, frames_f32, limits_f32}};\n")
+    writeln!(
+        w,
+        "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, Model, bodies_f32, frames_f32, limits_f32}};\n"
+    )
 }
 
 fn kilograms(robot: &Robot) -> String {
-    format!("{:.6}", robot.mass()).trim_end_matches('0').trim_end_matches('.').to_owned()
+    format!("{:.6}", robot.mass())
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .to_owned()
 }
 
-fn names<'a>(w: &mut String, id: &str, doc: &str, names: impl ExactSizeIterator<Item = &'a String>) -> fmt::Result {
-    writeln!(w, "/// {doc}.\npub static {id}: [&str; {}] = [", names.len())?;
+fn names<'a>(
+    w: &mut String,
+    id: &str,
+    doc: &str,
+    names: impl ExactSizeIterator<Item = &'a String>,
+) -> fmt::Result {
+    writeln!(
+        w,
+        "/// {doc}.\npub static {id}: [&str; {}] = [",
+        names.len()
+    )?;
     for name in names {
         writeln!(w, "    {name:?},")?;
     }
@@ -120,23 +190,47 @@ fn names<'a>(w: &mut String, id: &str, doc: &str, names: impl ExactSizeIterator<
 fn tables(w: &mut String, robot: &Robot) -> fmt::Result {
     let n = robot.bodies.len();
     let base = &robot.base;
-    writeln!(w, "/// The base: mass, first and second moments of mass.\npub static BASE: BaseBody<f64> = BaseBody {{")?;
-    writeln!(w, "    mass: {},\n    first: {},\n    second: {},\n}};\n", number(base.mass), list(&base.first), list(&base.second))?;
-    writeln!(w, "/// [`BASE`] in single precision.\npub static BASE_F32: BaseBody<f32> = BASE.to_f32();\n")?;
-    writeln!(w, "/// The bodies, depth first.\npub static BODIES: [Body<f64>; {n}] = [")?;
+    writeln!(
+        w,
+        "/// The base: mass, first and second moments of mass.\npub static BASE: BaseBody<f64> = BaseBody {{"
+    )?;
+    writeln!(
+        w,
+        "    mass: {},\n    first: {},\n    second: {},\n}};\n",
+        number(base.mass),
+        list(&base.first),
+        list(&base.second)
+    )?;
+    writeln!(
+        w,
+        "/// [`BASE`] in single precision.\npub static BASE_F32: BaseBody<f32> = BASE.to_f32();\n"
+    )?;
+    writeln!(
+        w,
+        "/// The bodies, depth first.\npub static BODIES: [Body<f64>; {n}] = ["
+    )?;
     for (i, (body, joint)) in robot.bodies.iter().zip(&robot.joints).enumerate() {
         writeln!(w, "    // {i}: {}", joint.name)?;
         write_body(w, body)?;
     }
     writeln!(w, "];\n")?;
-    writeln!(w, "/// [`BODIES`] in single precision.\npub static BODIES_F32: [Body<f32>; {n}] = bodies_f32(&BODIES);\n")?;
-    writeln!(w, "/// Limits and losses of the joints, as the source file has them.\npub static LIMITS: [JointLimits<f64>; {n}] = [")?;
+    writeln!(
+        w,
+        "/// [`BODIES`] in single precision.\npub static BODIES_F32: [Body<f32>; {n}] = bodies_f32(&BODIES);\n"
+    )?;
+    writeln!(
+        w,
+        "/// Limits and losses of the joints, as the source file has them.\npub static LIMITS: [JointLimits<f64>; {n}] = ["
+    )?;
     for joint in &robot.joints {
         writeln!(w, "    // {}", joint.name)?;
         write_limits(w, &joint.limits)?;
     }
     writeln!(w, "];\n")?;
-    writeln!(w, "/// [`LIMITS`] in single precision.\npub static LIMITS_F32: [JointLimits<f32>; {n}] = limits_f32(&LIMITS);\n")
+    writeln!(
+        w,
+        "/// [`LIMITS`] in single precision.\npub static LIMITS_F32: [JointLimits<f32>; {n}] = limits_f32(&LIMITS);\n"
+    )
 }
 
 fn write_body(w: &mut String, body: &Body<f64>) -> fmt::Result {
@@ -171,7 +265,10 @@ fn write_limits(w: &mut String, limits: &JointLimits<f64>) -> fmt::Result {
 
 fn frame_tables(w: &mut String, robot: &Robot, ids: &[String]) -> fmt::Result {
     let n = robot.frames.len();
-    writeln!(w, "/// The frame of each link, which is also that of the joint above it.")?;
+    writeln!(
+        w,
+        "/// The frame of each link, which is also that of the joint above it."
+    )?;
     writeln!(w, "pub mod frame {{\n    use super::{{Frame, Link}};\n")?;
     for (id, frame) in ids.iter().zip(&robot.frames) {
         match &frame.joint {
@@ -181,13 +278,24 @@ fn frame_tables(w: &mut String, robot: &Robot, ids: &[String]) -> fmt::Result {
         write_frame(w, id, &frame.frame)?;
     }
     writeln!(w, "}}\n")?;
-    names(w, "FRAME_NAMES", "Names of the links, depth first", robot.frames.iter().map(|f| &f.name))?;
-    writeln!(w, "/// The frame of each link, in the order of [`FRAME_NAMES`].\npub static FRAMES: [Frame<f64>; {n}] = [")?;
+    names(
+        w,
+        "FRAME_NAMES",
+        "Names of the links, depth first",
+        robot.frames.iter().map(|f| &f.name),
+    )?;
+    writeln!(
+        w,
+        "/// The frame of each link, in the order of [`FRAME_NAMES`].\npub static FRAMES: [Frame<f64>; {n}] = ["
+    )?;
     for id in ids {
         writeln!(w, "    frame::{id},")?;
     }
     writeln!(w, "];\n")?;
-    writeln!(w, "/// [`FRAMES`] in single precision.\npub static FRAMES_F32: [Frame<f32>; {n}] = frames_f32(&FRAMES);")
+    writeln!(
+        w,
+        "/// [`FRAMES`] in single precision.\npub static FRAMES_F32: [Frame<f32>; {n}] = frames_f32(&FRAMES);"
+    )
 }
 
 fn write_frame(w: &mut String, id: &str, frame: &Frame<f64>) -> fmt::Result {
