@@ -131,6 +131,15 @@ impl Golden {
         golden
     }
 
+    /// Names of the frames whose placements and motions the file has.
+    pub fn frames(&self) -> impl Iterator<Item = String> {
+        let name = |key: &String| {
+            let name = key.strip_prefix("frame.")?.strip_suffix(".joint")?;
+            Some(name.to_owned())
+        };
+        self.robot.0.keys().filter_map(name)
+    }
+
     /// Number of velocity coordinates.
     #[must_use]
     pub fn nv(&self) -> usize {

@@ -3,5 +3,6 @@
 //! This library holds the shared parts: golden files and states for benches.
 
 pub mod bench;
+pub mod agree;
 pub mod golden;
 pub mod tables;

@@ -8,7 +8,7 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 2] = ["so3", "rbd-core"];
+const CRATES: [&str; 4] = ["so3", "rbd-core", "a1-model", "icub-model"];
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
