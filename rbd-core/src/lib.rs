@@ -19,8 +19,12 @@ pub use algo::centroidal::{
     CentroidalMap, CentroidalState, centroidal_bias, centroidal_map, centroidal_momentum_rate,
     centroidal_state,
 };
+pub use algo::centroidal_derivatives::{
+    CentroidalDerivatives, ForceColumns, centroidal_derivatives,
+};
 pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
 pub use algo::crba::{MassMatrix, crba};
+pub use algo::frame_derivatives::{AccelerationKind, FrameDerivatives, frame_derivatives};
 pub use algo::friction::joint_friction;
 pub use algo::gravity::generalized_gravity;
 pub use algo::jacobian::{FrameJacobian, frame_jacobian, joint_jacobians};

@@ -9,14 +9,17 @@
 
 mod common;
 
-use common::{CAP, Model, joints, masked, model, motion, state};
+use common::{CAP, Model, joints, masked, model, motion, rotation, state, vector};
 use nalgebra::{Rotation3, SMatrix};
 use proptest::prelude::*;
 use rbd_core::{
-    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, BaseKind, BlockMatrix, Configuration,
-    DerivativesWorkspace, Effort, Force, MassFactors, MassMatrix, Motion, Posture, RneaDerivatives,
-    Tangent, Transform, Tree, aba, crba, rnea, rnea_derivatives, rnea_derivatives_with_forces,
-    rnea_with_forces,
+    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, AccelerationKind, Axes, BaseKind,
+    BlockMatrix, BodyMotions, CentroidalDerivatives, Configuration, DerivativesWorkspace, Effort,
+    Force, ForceColumns, Frame, FrameDerivatives, FrameJacobian, Kinematics, Link, MassFactors,
+    MassMatrix, Motion, Posture, RneaDerivatives, Tangent, Transform, Tree, aba,
+    centroidal_derivatives, centroidal_momentum_rate, centroidal_state, crba,
+    forward_accelerations, forward_kinematics, frame_derivatives, rnea, rnea_derivatives,
+    rnea_derivatives_with_forces, rnea_with_forces,
 };
 
 const V: usize = 6 + CAP;
@@ -161,6 +164,83 @@ proptest! {
         for (a, b) in base.into_iter().chain(joints).zip(y) {
             prop_assert!((a - b).abs() < 1e-12 * condition * w.amax());
         }
+    }
+
+    #[test]
+    fn frame_derivatives_are_differences(
+        model in model(), (q, [v, a]) in state(), link in 0..2 * CAP, rot in rotation(), arm in vector(0.3),
+        axes in prop::sample::select(vec![Axes::Local, Axes::LocalWorldAligned, Axes::World]),
+        kind in prop::sample::select(vec![AccelerationKind::Spatial, AccelerationKind::Classical]),
+    ) {
+        let (v, a) = (masked(&model, v), masked(&model, a));
+        let n = model.joint_count();
+        let r = rot.matrix();
+        let frame = Frame {
+            link: if link < n { Link::Joint(link) } else if link % 8 == 0 { Link::Base } else { Link::Joint(n - 1) },
+            offset: arm.into(),
+            rotation: core::array::from_fn(|i| core::array::from_fn(|j| r[(i, j)])),
+        };
+        // Velocity, then acceleration, in the first 12 of V entries.
+        let look = |q: &Configuration<f64, CAP>, v: &Tangent<f64, CAP>, a: &Tangent<f64, CAP>| {
+            let (mut k, mut m) = (Kinematics::IDENTITY, BodyMotions::ZERO);
+            let posture = Posture::new(&model, q);
+            forward_kinematics(&model, &posture, &mut k);
+            forward_accelerations(&model, &posture, v, a, &mut m);
+            let acceleration = match kind {
+                AccelerationKind::Spatial => m.frame_acceleration(&frame),
+                AccelerationKind::Classical => m.frame_classical_acceleration(&frame),
+            };
+            let xf = k.frame(&frame);
+            let pair = [m.frame_velocity(&frame), acceleration].map(|x| axes.motion(&xf, &x).to_array());
+            let flat = core::array::from_fn(|i| pair.as_flattened().get(i).copied().unwrap_or(0.0));
+            (flat, k, m)
+        };
+        let (_, k, m) = look(&q, &v, &a);
+        let mut d = FrameDerivatives::ZERO;
+        frame_derivatives(&model, &k, &m, &frame, kind, axes, &mut d);
+        let by_q = differences(n, |d| look(&displaced(&q, d), &v, &a).0);
+        let by_v = differences(n, |d| look(&q, &(v + *d), &a).0);
+        let by_a = differences(n, |d| look(&q, &v, &(a + *d)).0);
+        let six = |m: &Dense, row: usize| m.fixed_view::<6, V>(row, 0).into_owned();
+        let off = |ours: &FrameJacobian<f64, CAP>, theirs: SMatrix<f64, 6, V>| {
+            (ours.to_dense() - theirs).amax() / theirs.amax().max(1.0)
+        };
+        prop_assert!(off(&d.velocity_by_position, six(&by_q, 0)) < 1e-8);
+        prop_assert!(off(&d.jacobian, six(&by_v, 0)) < 1e-8);
+        prop_assert!(off(&d.acceleration_by_position, six(&by_q, 6)) < 1e-8);
+        prop_assert!(off(&d.acceleration_by_velocity, six(&by_v, 6)) < 1e-8);
+        prop_assert!(off(&d.jacobian, six(&by_a, 6)) < 1e-8);
+    }
+
+    #[test]
+    fn centroidal_derivatives_are_differences(model in model(), (q, [v, a]) in state()) {
+        let (v, a) = (masked(&model, v), masked(&model, a));
+        let n = model.joint_count();
+        let posture = Posture::new(&model, &q);
+        let look = |p: &Posture<f64, CAP>, v: &Tangent<f64, CAP>, a: &Tangent<f64, CAP>| {
+            let momentum = centroidal_state(&model, p, v).momentum_w;
+            let pair = [momentum, centroidal_momentum_rate(&model, p, v, a)].map(Force::to_array);
+            core::array::from_fn(|i| pair.as_flattened().get(i).copied().unwrap_or(0.0))
+        };
+        let mut d = CentroidalDerivatives::ZERO;
+        let mut ws = DerivativesWorkspace::new();
+        centroidal_derivatives(&model, &posture, &v, &a, &mut ws, &mut d);
+        let values: [f64; V] = look(&posture, &v, &a);
+        for (x, y) in [d.momentum, d.rate].map(Force::to_array).as_flattened().iter().zip(values) {
+            prop_assert!((x - y).abs() < 1e-10 * values.iter().fold(1.0, |m: f64, x| m.max(x.abs())));
+        }
+        let by_q = differences(n, |d| look(&Posture::new(&model, &displaced(&q, d)), &v, &a));
+        let by_v = differences(n, |d| look(&posture, &(v + *d), &a));
+        let by_a = differences(n, |d| look(&posture, &v, &(a + *d)));
+        let six = |m: &Dense, row: usize| m.fixed_view::<6, V>(row, 0).into_owned();
+        let off = |ours: &ForceColumns<f64, CAP>, theirs: SMatrix<f64, 6, V>| {
+            (ours.to_dense() - theirs).amax() / theirs.amax().max(1.0)
+        };
+        prop_assert!(off(&d.momentum_by_position, six(&by_q, 0)) < 1e-8);
+        prop_assert!(off(&d.map, six(&by_v, 0)) < 1e-8);
+        prop_assert!(off(&d.rate_by_position, six(&by_q, 6)) < 1e-8);
+        prop_assert!(off(&d.rate_by_velocity, six(&by_v, 6)) < 1e-8);
+        prop_assert!(off(&d.map, six(&by_a, 6)) < 1e-8);
     }
 
     #[test]

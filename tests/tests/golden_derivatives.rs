@@ -6,11 +6,13 @@
 
 use nalgebra::{Quaternion, SMatrix, UnitQuaternion, Vector3};
 use rbd_core::{
-    AbaDerivatives, AbaDerivativesWorkspace, Configuration, DerivativesWorkspace, Effort, Force,
-    Motion, Posture, RneaDerivatives, Tangent, Transform, Tree,
+    AbaDerivatives, AbaDerivativesWorkspace, AccelerationKind, Axes, BodyMotions,
+    CentroidalDerivatives, Configuration, DerivativesWorkspace, Effort, Force, Frame,
+    FrameDerivatives, FrameJacobian, Kinematics, Motion, Posture, RneaDerivatives, Tangent,
+    Transform, Tree,
 };
 use saltus_tests::golden::{Golden, Record};
-use saltus_tests::tables::{A1, Icub23};
+use saltus_tests::tables::{A1, A1_FRAMES, ICUB_FRAMES, Icub23};
 
 /// States for which the golden file has derivatives, and the worst error.
 #[derive(Default)]
@@ -51,7 +53,13 @@ fn configuration<const N: usize>(x: &[f64]) -> Configuration<f64, N> {
     }
 }
 
-fn compare<M: Tree<f64, N>, const N: usize, const V: usize>(model: &M, robot: &str) {
+type Frames = [(&'static str, Frame<f64>)];
+
+fn compare<M: Tree<f64, N>, const N: usize, const V: usize>(
+    model: &M,
+    robot: &str,
+    frames: &Frames,
+) {
     let golden = Golden::load(robot);
     let mut seen = Seen::default();
     let mut ws = AbaDerivativesWorkspace::new();
@@ -73,6 +81,74 @@ fn compare<M: Tree<f64, N>, const N: usize, const V: usize>(model: &M, robot: &s
         );
         seen.see::<V, V>(state, "rnea_derivatives.dq", &id.by_position.to_dense());
         seen.see::<V, V>(state, "rnea_derivatives.dv", &id.by_velocity.to_dense());
+
+        let mut cd = CentroidalDerivatives::ZERO;
+        let mut scratch = DerivativesWorkspace::new();
+        rbd_core::centroidal_derivatives(model, &posture, &v, &a, &mut scratch, &mut cd);
+        let key = |name: &str| format!("centroidal_derivatives.{name}");
+        seen.see::<6, V>(
+            state,
+            &key("momentum_dq"),
+            &cd.momentum_by_position.to_dense(),
+        );
+        seen.see::<6, V>(state, &key("rate_dq"), &cd.rate_by_position.to_dense());
+        seen.see::<6, V>(state, &key("rate_dv"), &cd.rate_by_velocity.to_dense());
+        seen.see::<6, V>(state, "centroidal.map", &cd.map.to_dense());
+
+        let (mut kinematics, mut motions) = (Kinematics::IDENTITY, BodyMotions::ZERO);
+        rbd_core::forward_kinematics(model, &posture, &mut kinematics);
+        rbd_core::forward_accelerations(model, &posture, &v, &a, &mut motions);
+        let mut compared = 0;
+        for (name, frame) in frames {
+            let key = |what: &str| format!("{name}.{what}");
+            if state.find(&key("velocity_dq_l")).is_none() {
+                continue;
+            }
+            compared += 1;
+            let mut d = FrameDerivatives::ZERO;
+            let mut at = |kind, axes| {
+                rbd_core::frame_derivatives(
+                    model,
+                    &kinematics,
+                    &motions,
+                    frame,
+                    kind,
+                    axes,
+                    &mut d,
+                );
+                d
+            };
+            let d = at(AccelerationKind::Spatial, Axes::Local);
+            seen.see::<6, V>(
+                state,
+                &key("velocity_dq_l"),
+                &d.velocity_by_position.to_dense(),
+            );
+            seen.see::<6, V>(
+                state,
+                &key("spatial_acceleration_dq_l"),
+                &d.acceleration_by_position.to_dense(),
+            );
+            seen.see::<6, V>(
+                state,
+                &key("spatial_acceleration_dv_l"),
+                &d.acceleration_by_velocity.to_dense(),
+            );
+            let d = at(AccelerationKind::Classical, Axes::LocalWorldAligned);
+            let linear =
+                |j: &FrameJacobian<f64, N>| j.to_dense::<V>().fixed_rows::<3>(0).into_owned();
+            seen.see::<3, V>(
+                state,
+                &key("point_acceleration_dq_a"),
+                &linear(&d.acceleration_by_position),
+            );
+            seen.see::<3, V>(
+                state,
+                &key("point_acceleration_dv_a"),
+                &linear(&d.acceleration_by_velocity),
+            );
+        }
+        assert_eq!(compared, 2, "{robot}: frames with derivatives");
 
         let tau: Tangent<f64, N> = tangent(state.values("tau"));
         let tau = Effort {
@@ -102,10 +178,10 @@ fn compare<M: Tree<f64, N>, const N: usize, const V: usize>(model: &M, robot: &s
 
 #[test]
 fn a1_agrees_with_pinocchio() {
-    compare::<_, 12, 18>(&A1, "a1");
+    compare::<_, 12, 18>(&A1, "a1", &A1_FRAMES);
 }
 
 #[test]
 fn icub_agrees_with_pinocchio() {
-    compare::<_, 23, 29>(&Icub23, "icub23");
+    compare::<_, 23, 29>(&Icub23, "icub23", &ICUB_FRAMES);
 }

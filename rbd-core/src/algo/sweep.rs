@@ -125,18 +125,23 @@ impl<T: Scalar> Composite<T> {
             v.linear.z * h.y + (w.x * s.yy - w.y * s.xy),
             v.linear.z * h.z + (w.x * s.yz - w.y * s.xz),
         );
-        // The angular momentum is the axial part of K: l = ∫ r × ṙ dm.
-        let angular = Vector3::new(
-            stir.m32 - stir.m23,
-            stir.m13 - stir.m31,
-            stir.m21 - stir.m12,
-        );
-        let force = inertia.mul(a) + v.cross_force(&Force::new(momentum, angular));
-        Self {
+        let mut own = Self {
             inertia,
             momentum,
             stir,
-            force,
+            force: inertia.mul(a),
+        };
+        own.force += v.cross_force(&own.momentum_wrench());
+        own
+    }
+
+    /// Momentum about the base's origin; its angular part is the axial part of K: ∫ r × ṙ dm.
+    #[inline(always)]
+    pub(crate) fn momentum_wrench(&self) -> Force<T> {
+        let k = &self.stir;
+        Force {
+            linear: self.momentum,
+            angular: Vector3::new(k.m32 - k.m23, k.m13 - k.m31, k.m21 - k.m12),
         }
     }
 
