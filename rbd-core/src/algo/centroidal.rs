@@ -4,12 +4,13 @@
 //! eq. (2): the rows of A_G are its J_M^l and J_M^ω, and H_ω is `momentum.angular`. Column j is the
 //! momentum of the subtree of joint j per unit joint velocity, I_c S_j, moved to c.
 
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use so3::Scalar;
 
 use super::com::com_in_base;
 use super::crba::unit_force;
 use super::gravity::gravity;
+use super::jacobian::columns;
 use super::motion::carried;
 use super::rnea::sweep;
 use super::{at, place, put};
@@ -142,13 +143,31 @@ pub fn centroidal_map<T: Scalar, M: Tree<T, N>, const N: usize>(
     for column in &mut out.joints {
         *column = about_com(posture, &com_b, column);
     }
-    // Base columns: m R and −m R [c]× in the linear rows, R I_G,b = I_G R in the angular ones.
-    let mut base = crate::state::basis::<T>().map(|m| about_com(posture, &com_b, &whole.mul(&m)));
-    for column in base.iter_mut().take(3) {
-        // A shift of the base carries no momentum about the centre of mass.
-        column.angular = Vector3::zeros();
-    }
-    out.base = base;
+    out.base = base_columns(&whole, &com_b, &out.locked_inertia_w, r);
+}
+
+/// Columns of the base velocity: m R and −m R [c]× in the linear rows; 0 and I_G R in the angular ones,
+/// because a shift of the base carries no momentum about the centre of mass.
+#[inline(always)]
+fn base_columns<T: Scalar>(
+    whole: &Inertia<T>,
+    com_b: &Vector3<T>,
+    locked_inertia_w: &Symmetric3<T>,
+    rot_wb: &Matrix3<T>,
+) -> [Force<T>; 6] {
+    let [x, y, z] = columns(rot_wb);
+    let (mx, my, mz) = (x * whole.mass, y * whole.mass, z * whole.mass);
+    let still = Vector3::zeros();
+    let c = com_b;
+    // Columns of −R [c]×: R (e_j × c).
+    [
+        Force { linear: mx, angular: still },
+        Force { linear: my, angular: still },
+        Force { linear: mz, angular: still },
+        Force { linear: mz * c.y - my * c.z, angular: locked_inertia_w.mul(&x) },
+        Force { linear: mx * c.z - mz * c.x, angular: locked_inertia_w.mul(&y) },
+        Force { linear: my * c.x - mx * c.y, angular: locked_inertia_w.mul(&z) },
+    ]
 }
 
 /// Momentum and moments of mass of a subtree, in the frame of its parent.

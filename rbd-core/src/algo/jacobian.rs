@@ -3,7 +3,7 @@
 //! Column j of a revolute joint with axis z_j through p_j is (z_j × (p_f − p_j), z_j) in world axes about
 //! the frame's origin; of a prismatic joint (z_j, 0); zero for joints that do not move the frame.
 
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use so3::Scalar;
 
 use super::at;
@@ -66,11 +66,11 @@ impl<T: Scalar, const N: usize> FrameJacobian<T, N> {
 /// Axis of a joint in the world, with the sign of the robot's own coordinate.
 #[inline(always)]
 pub(crate) fn axis_w<T: Scalar>(body: &Body<T>, xf_wi: &Transform<T>) -> Vector3<T> {
-    let r = xf_wi.rotation.matrix();
+    let [x, y, z] = columns(xf_wi.rotation.matrix());
     let axis = match body.kind.axis() {
-        0 => Vector3::new(r.m11, r.m21, r.m31),
-        1 => Vector3::new(r.m12, r.m22, r.m32),
-        _ => Vector3::new(r.m13, r.m23, r.m33),
+        0 => x,
+        1 => y,
+        _ => z,
     };
     axis * body.sign
 }
@@ -102,7 +102,7 @@ pub fn frame_jacobian<T: Scalar, M: Tree<T, N>, const N: usize>(
 
     let base = &kinematics.base;
     let arm = about - base.translation;
-    let [x, y, z] = columns(base);
+    let [x, y, z] = columns(base.rotation.matrix());
     out.base = [
         Motion::new(x, Vector3::zeros()),
         Motion::new(y, Vector3::zeros()),
@@ -154,10 +154,9 @@ pub fn joint_jacobians<T: Scalar, M: Tree<T, N>, const N: usize>(
     }
 }
 
-/// The axes of a frame in the world.
+/// The columns of a rotation: the axes of the rotated frame.
 #[inline(always)]
-pub(crate) fn columns<T: Scalar>(xf: &Transform<T>) -> [Vector3<T>; 3] {
-    let r = xf.rotation.matrix();
+pub(crate) fn columns<T: Scalar>(r: &Matrix3<T>) -> [Vector3<T>; 3] {
     [
         Vector3::new(r.m11, r.m21, r.m31),
         Vector3::new(r.m12, r.m22, r.m32),
