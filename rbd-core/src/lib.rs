@@ -4,6 +4,7 @@
 pub mod algo;
 pub mod joint;
 pub mod linear;
+pub mod manifold;
 pub mod model;
 pub mod spatial;
 pub mod state;
@@ -23,6 +24,9 @@ pub use algo::centroidal_derivatives::{
     CentroidalDerivatives, ForceColumns, centroidal_derivatives,
 };
 pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
+pub use algo::contact::{
+    ContactRow, ContactSolution, ContactWorkspace, contact_dynamics, impact,
+};
 pub use algo::crba::{MassMatrix, crba};
 pub use algo::frame_derivatives::{AccelerationKind, FrameDerivatives, frame_derivatives};
 pub use algo::friction::joint_friction;
@@ -37,6 +41,7 @@ pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
+pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link, Model};
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};

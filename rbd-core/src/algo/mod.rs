@@ -6,6 +6,7 @@ pub mod blocks;
 pub mod centroidal;
 pub mod centroidal_derivatives;
 pub mod com;
+pub mod contact;
 pub mod crba;
 pub mod frame_derivatives;
 pub mod friction;
