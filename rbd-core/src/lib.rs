@@ -24,9 +24,7 @@ pub use algo::centroidal_derivatives::{
     CentroidalDerivatives, ForceColumns, centroidal_derivatives,
 };
 pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
-pub use algo::contact::{
-    ContactRow, ContactSolution, ContactWorkspace, contact_dynamics, impact,
-};
+pub use algo::contact::{ContactRow, ContactSolution, ContactWorkspace, contact_dynamics, impact};
 pub use algo::crba::{MassMatrix, crba};
 pub use algo::frame_derivatives::{AccelerationKind, FrameDerivatives, frame_derivatives};
 pub use algo::friction::joint_friction;

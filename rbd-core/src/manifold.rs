@@ -22,7 +22,10 @@ pub fn integrate<T: Scalar, const N: usize>(
         *x += dx;
     }
     let step = Transform::new(so3::exp(w), so3::left_jacobian(w) * v);
-    Configuration { base: q.base.compose(&step), joints }
+    Configuration {
+        base: q.base.compose(&step),
+        joints,
+    }
 }
 
 /// to ⊖ from: the displacement that leads from one configuration to the other, so that
@@ -42,7 +45,10 @@ pub fn difference<T: Scalar, const N: usize>(
     for (x, &x0) in joints.iter_mut().zip(&from.joints) {
         *x -= x0;
     }
-    Tangent { base: Motion { linear, angular }, joints }
+    Tangent {
+        base: Motion { linear, angular },
+        joints,
+    }
 }
 
 /// The configuration a fraction of the way from one to another, along the geodesic of

@@ -72,7 +72,11 @@ fn distance(a: &Dense, b: &Dense) -> f64 {
 }
 
 fn forces() -> impl Strategy<Value = [Force<f64>; CAP]> {
-    prop::array::uniform24(motion(5.0).prop_map(|m| Force::new(m.linear, m.angular)))
+    prop::collection::vec(
+        motion(5.0).prop_map(|m| Force::new(m.linear, m.angular)),
+        CAP,
+    )
+    .prop_map(|x| x.try_into().unwrap())
 }
 
 proptest! {

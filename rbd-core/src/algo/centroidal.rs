@@ -161,12 +161,30 @@ fn base_columns<T: Scalar>(
     let c = com_b;
     // Columns of −R [c]×: R (e_j × c).
     [
-        Force { linear: mx, angular: still },
-        Force { linear: my, angular: still },
-        Force { linear: mz, angular: still },
-        Force { linear: mz * c.y - my * c.z, angular: locked_inertia_w.mul(&x) },
-        Force { linear: mx * c.z - mz * c.x, angular: locked_inertia_w.mul(&y) },
-        Force { linear: my * c.x - mx * c.y, angular: locked_inertia_w.mul(&z) },
+        Force {
+            linear: mx,
+            angular: still,
+        },
+        Force {
+            linear: my,
+            angular: still,
+        },
+        Force {
+            linear: mz,
+            angular: still,
+        },
+        Force {
+            linear: mz * c.y - my * c.z,
+            angular: locked_inertia_w.mul(&x),
+        },
+        Force {
+            linear: mx * c.z - mz * c.x,
+            angular: locked_inertia_w.mul(&y),
+        },
+        Force {
+            linear: my * c.x - mx * c.y,
+            angular: locked_inertia_w.mul(&z),
+        },
     ]
 }
 

@@ -30,7 +30,10 @@ pub struct ContactRow<T, const N: usize> {
 
 impl<T: Scalar, const N: usize> ContactRow<T, N> {
     /// A row that constrains nothing.
-    pub const ZERO: Self = Self { gradient: Effort::ZERO, bias: T::ZERO };
+    pub const ZERO: Self = Self {
+        gradient: Effort::ZERO,
+        bias: T::ZERO,
+    };
 
     /// The three rows of a point contact, x, y, z in the axes of the Jacobian: its point keeps its
     /// velocity. `bias` is the classical acceleration of the point at ν̇ = 0, in the same axes.
@@ -49,7 +52,10 @@ impl<T: Scalar, const N: usize> ContactRow<T, N> {
         for ((i, row), bias) in rows.iter_mut().enumerate().zip(bias.to_array()) {
             let mut unit = [T::ZERO; 6];
             super::put(&mut unit, i, T::ONE);
-            *row = Self { gradient: jacobian.tr_mul(&Force::from_array(unit)), bias };
+            *row = Self {
+                gradient: jacobian.tr_mul(&Force::from_array(unit)),
+                bias,
+            };
         }
         rows
     }
@@ -109,7 +115,13 @@ pub fn contact_dynamics<T: Scalar, const N: usize, const K: usize>(
     rows: &[ContactRow<T, N>],
     ws: &mut ContactWorkspace<T, N, K>,
 ) -> ContactSolution<T, N, K> {
-    project(mass, free, rows, |row, motion| -(motion.dot(&row.gradient) + row.bias), ws)
+    project(
+        mass,
+        free,
+        rows,
+        |row, motion| -(motion.dot(&row.gradient) + row.bias),
+        ws,
+    )
 }
 
 /// Impulsive contact: the velocity just after the rows hit the ground with `velocity`.
@@ -125,7 +137,13 @@ pub fn impact<T: Scalar, const N: usize, const K: usize>(
     ws: &mut ContactWorkspace<T, N, K>,
 ) -> ContactSolution<T, N, K> {
     let rebound = |row: &ContactRow<T, N>| restitution * velocity.dot(&row.gradient);
-    project(mass, velocity, rows, |row, motion| -(motion.dot(&row.gradient) + rebound(row)), ws)
+    project(
+        mass,
+        velocity,
+        rows,
+        |row, motion| -(motion.dot(&row.gradient) + rebound(row)),
+        ws,
+    )
 }
 
 /// Adds M⁻¹ Jᵀ λ to `free` so that `wanted`, the change each row still needs, vanishes.
@@ -152,7 +170,11 @@ fn project<T: Scalar, const N: usize, const K: usize>(
     ws.factors = ws.delassus;
     for (i, row) in ws.factors.iter_mut().enumerate() {
         if let Some(diagonal) = row.get_mut(i) {
-            *diagonal += if i < rows.len() && damping > T::ZERO { damping } else { T::ONE };
+            *diagonal += if i < rows.len() && damping > T::ZERO {
+                damping
+            } else {
+                T::ONE
+            };
         }
     }
     ldl_factor(&mut ws.factors);
@@ -161,7 +183,9 @@ fn project<T: Scalar, const N: usize, const K: usize>(
     for (b, row) in goal.iter_mut().zip(rows) {
         *b = wanted(row, free);
     }
-    let scale = goal.iter().fold(T::ZERO, |m, &x| math::max(m, math::abs(x)));
+    let scale = goal
+        .iter()
+        .fold(T::ZERO, |m, &x| math::max(m, math::abs(x)));
     let enough = scale * T::EPSILON * T::of(16.0);
     let mut forces = [T::ZERO; K];
     for _ in 0..STEPS {
@@ -184,7 +208,14 @@ fn project<T: Scalar, const N: usize, const K: usize>(
     for (answer, &f) in ws.answers.iter().zip(&forces).take(rows.len()) {
         motion = motion + *answer * f;
     }
-    let rests = rows.iter().take(K).map(|row| math::abs(wanted(row, &motion)));
+    let rests = rows
+        .iter()
+        .take(K)
+        .map(|row| math::abs(wanted(row, &motion)));
     let residual = rests.fold(T::ZERO, |m, x| math::max(m, x));
-    ContactSolution { motion, forces, residual }
+    ContactSolution {
+        motion,
+        forces,
+        residual,
+    }
 }

@@ -1,5 +1,9 @@
 //! Random robots and states, shared by the integration tests.
-#![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "tests, each of which uses its own part"
+)]
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
@@ -9,7 +13,7 @@ use rbd_core::{
     Tangent, Transform, Tree,
 };
 
-pub(crate) const CAP: usize = 24;
+pub(crate) const CAP: usize = 40;
 pub(crate) type Model = TableModel<f64, CAP>;
 
 pub(crate) fn rotation() -> impl Strategy<Value = Rotation3<f64>> {
@@ -106,7 +110,7 @@ pub(crate) fn model() -> impl Strategy<Value = Model> {
 }
 
 pub(crate) fn joints(scale: f64) -> impl Strategy<Value = [f64; CAP]> {
-    prop::array::uniform24(-scale..scale)
+    prop::collection::vec(-scale..scale, CAP).prop_map(|x| x.try_into().unwrap())
 }
 
 pub(crate) fn motion(scale: f64) -> impl Strategy<Value = Motion<f64>> {
