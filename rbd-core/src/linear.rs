@@ -8,6 +8,10 @@ use so3::Scalar;
 /// A pivot at or below `EPSILON` times its original diagonal entry, or NaN, is replaced by 0: the
 /// direction is treated as infinitely stiff by [`ldl_back_substitute`].
 #[inline]
+#[allow(
+    clippy::needless_range_loop,
+    reason = "indices are those of the textbook formula"
+)]
 pub fn ldl_factor<T: Scalar, const N: usize>(m: &mut [[T; N]; N]) {
     for j in 0..N {
         let original = m[j][j];
@@ -39,7 +43,7 @@ pub fn ldl_back_substitute<T: Scalar, const N: usize>(m: &[[T; N]; N], b: [T; N]
     let mut x = b;
     for i in 0..N {
         for k in 0..i {
-            x[i] = x[i] - m[i][k] * x[k];
+            x[i] -= m[i][k] * x[k];
         }
     }
     for i in 0..N {
@@ -51,7 +55,7 @@ pub fn ldl_back_substitute<T: Scalar, const N: usize>(m: &[[T; N]; N], b: [T; N]
     }
     for i in (0..N).rev() {
         for k in i + 1..N {
-            x[i] = x[i] - m[k][i] * x[k];
+            x[i] -= m[k][i] * x[k];
         }
     }
     x

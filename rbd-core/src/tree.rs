@@ -2,7 +2,7 @@
 //!
 //! A [`Fold`] says what happens at *one* body: [`Fold::down`] goes from parent to child, and
 //! [`Fold::up`] returns from the children to the parent. A model says in which order bodies come:
-//! a const model by [`tree!`](crate::tree), which writes the walk with joint kinds resolved and
+//! a const model by [`tree!`](macro@crate::tree), which writes the walk with joint kinds resolved and
 //! identical limbs as one loop, a run-time model by [`walk`], which looks the kinds up. Both call the
 //! same per-body code, so there is one RNEA, not one per robot or per kind of model.
 
@@ -67,7 +67,7 @@ pub trait Fold<T: Scalar> {
 
 /// A robot with `N` joints: its tables and the order in which to walk them.
 ///
-/// Robots made by [`tree!`](crate::tree) have exactly `N` joints; a run-time model may have fewer, and
+/// Robots made by [`tree!`](macro@crate::tree) have exactly `N` joints; a run-time model may have fewer, and
 /// leaves the rest at zero.
 pub trait Tree<T: Scalar, const N: usize> {
     /// Whether the base moves.

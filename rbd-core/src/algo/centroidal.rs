@@ -146,7 +146,7 @@ pub fn centroidal_map<T: Scalar, M: Tree<T, N>, const N: usize>(
     out.base = base_columns(&whole, &com_b, &out.locked_inertia_w, r);
 }
 
-/// Columns of the base velocity: m R and −m R [c]× in the linear rows; 0 and I_G R in the angular ones,
+/// Columns of the base velocity: m R and −m R hat(c) in the linear rows; 0 and I_G R in the angular ones,
 /// because a shift of the base carries no momentum about the centre of mass.
 #[inline(always)]
 fn base_columns<T: Scalar>(
@@ -159,7 +159,7 @@ fn base_columns<T: Scalar>(
     let (mx, my, mz) = (x * whole.mass, y * whole.mass, z * whole.mass);
     let still = Vector3::zeros();
     let c = com_b;
-    // Columns of −R [c]×: R (e_j × c).
+    // Columns of −R hat(c): R (e_j × c).
     [
         Force {
             linear: mx,

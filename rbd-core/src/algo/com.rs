@@ -108,7 +108,7 @@ pub struct CenterOfMass<T: Scalar> {
 pub struct ComJacobian<T: Scalar, const N: usize> {
     /// Per base linear velocity in base axes: R_wb.
     pub base_linear: Matrix3<T>,
-    /// Per base angular velocity in base axes: −R_wb \[c_b\]×.
+    /// Per base angular velocity in base axes: −R_wb hat(c_b).
     pub base_angular: Matrix3<T>,
     /// Columns of the joints.
     pub joints: [Vector3<T>; N],

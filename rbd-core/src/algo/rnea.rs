@@ -4,7 +4,7 @@
 //!
 //! In the form of Luh, Walker and Paul (1980): on the way down go angular velocity ω, angular
 //! acceleration ω̇ and the classical acceleration a of the body's origin, gravity included, all in body
-//! axes. With U = [ω̇]× + [ω]×² the acceleration field of the body is a + U r, hence
+//! axes. With U = hat(ω̇) + hat(ω)² the acceleration field of the body is a + U r, hence
 //!
 //! - the child's origin at p: a' = Rᵀ(a + U p);
 //! - force: f = m a + U h;
@@ -28,7 +28,7 @@ pub(crate) struct Field<T> {
     omega: Vector3<T>,
     alpha: Vector3<T>,
     acceleration: Vector3<T>,
-    /// U = [ω̇]× + [ω]×².
+    /// U = hat(ω̇) + hat(ω)².
     gradient: Matrix3<T>,
 }
 

@@ -90,7 +90,7 @@ impl<T: Scalar> ArticulatedInertia<T> {
         }
     }
 
-    /// The same resistance felt at a point displaced by −`p`, axes unchanged: with P = [p]×,
+    /// The same resistance felt at a point displaced by −`p`, axes unchanged: with P = hat(p),
     /// H' = H − M P, I' = I + P H − (P H)ᵀ… written out, so that symmetry is kept.
     #[inline(always)]
     #[must_use]
@@ -156,7 +156,7 @@ impl<T: Scalar> From<Inertia<T>> for ArticulatedInertia<T> {
         let h = i.first;
         Self {
             linear: Symmetric3::diagonal(i.mass),
-            // ω × h = −[h]× ω
+            // ω × h = −hat(h) ω
             cross: Matrix3::new(T::ZERO, h.z, -h.y, -h.z, T::ZERO, h.x, h.y, -h.x, T::ZERO),
             angular: i.rotational(),
         }

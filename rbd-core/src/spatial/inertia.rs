@@ -11,7 +11,7 @@ use super::{Force, Motion, Symmetric3, Transform};
 ///
 /// Kept as the moments of mass ∫dm, ∫r dm, ∫r rᵀ dm. Composition is then plain addition, a shift of
 /// the origin by p adds p hᵀ + h pᵀ + m p pᵀ, and the Newton–Euler moment is the axial vector of
-/// U∫r rᵀdm with U = [ω̇]× + [ω]×² (Luh, Walker, Paul 1980), cheaper than with ∫(r·r 1 − r rᵀ)dm.
+/// U∫r rᵀdm with U = hat(ω̇) + hat(ω)² (Luh, Walker, Paul 1980), cheaper than with ∫(r·r 1 − r rᵀ)dm.
 ///
 /// # Notation
 /// | symbol | field | unit |
