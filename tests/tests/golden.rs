@@ -10,9 +10,10 @@ use std::collections::BTreeMap;
 use nalgebra::{Quaternion, SMatrix, UnitQuaternion, Vector3};
 use rbd_core::model::bodies_f32;
 use rbd_core::{
-    AbaWorkspace, Axes, BaseKind, BodyMotions, CentroidalMap, ComJacobian, Configuration, Effort,
-    Force, Frame, FrameJacobian, Kinematics, MassMatrix, Motion, Posture, TableModel, Tangent,
-    Transform, Tree,
+    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, Axes, BaseKind, BlockMatrix,
+    BodyMotions, CentroidalMap, ComJacobian, Configuration, DerivativesWorkspace, Effort, Force,
+    Frame, FrameJacobian, Kinematics, MassFactors, MassMatrix, Motion, Posture, RneaDerivatives,
+    TableModel, Tangent, Transform, Tree,
 };
 use saltus_tests::golden::{Golden, Record};
 use saltus_tests::tables::{
@@ -25,7 +26,11 @@ const DOUBLE: f64 = 1e-10;
 
 /// Largest relative error of a quantity in f32. Solving with the mass matrix loses more than evaluating does.
 fn single_precision_bound(key: &str) -> f64 {
-    if key == "aba" { 2e-5 } else { 2e-6 }
+    if key.starts_with("aba") || key.contains("inverse") {
+        2e-5
+    } else {
+        2e-6
+    }
 }
 
 /// The worst relative error of each quantity so far.
@@ -146,6 +151,9 @@ fn compare<T: Scalar, M: Tree<T, N>, const N: usize, const V: usize>(
         dynamics::<T, M, N, V>(w, model, state, &posture, &v, &a, &tau);
         motions::<T, M, N, V>(w, model, frames, state, &posture, &v, &a);
         centroidal::<T, M, N, V>(w, model, state, &posture, &v, &a);
+        if state.find("rnea_derivatives.dq").is_some() {
+            derivatives::<T, M, N, V>(w, model, state, &posture, &v, &a, &tau);
+        }
     }
     worst
 }
@@ -184,6 +192,63 @@ fn dynamics<T: Scalar, M: Tree<T, N>, const N: usize, const V: usize>(
     rbd_core::crba(model, posture, &mut mass);
     w.see(state, "mass_matrix_lower", lower(&mass.to_dense::<V>()));
     w.see(state, "energy.kinetic", [mass.kinetic_energy(v)]);
+}
+
+fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize, const V: usize>(
+    w: &mut Worst,
+    model: &M,
+    state: &Record,
+    posture: &Posture<T, N>,
+    v: &Tangent<T, N>,
+    a: &Tangent<T, N>,
+    tau: &Effort<T, N>,
+) {
+    let mut mass = MassMatrix::ZERO;
+    rbd_core::crba(model, posture, &mut mass);
+    let (mut factors, mut inverse) = (MassFactors::new(), BlockMatrix::ZERO);
+    rbd_core::mass_matrix_inverse(model, &mass, &mut factors, &mut inverse);
+    w.see(
+        state,
+        "mass_matrix_inverse_lower",
+        lower(&inverse.to_dense::<V>()),
+    );
+    let mut ws = DerivativesWorkspace::new();
+    let mut of = RneaDerivatives::ZERO;
+    rbd_core::rnea_derivatives(model, posture, v, a, &mut ws, &mut of);
+    w.see(
+        state,
+        "rnea_derivatives.dq",
+        of.by_position.to_dense::<V>().entries(),
+    );
+    w.see(
+        state,
+        "rnea_derivatives.dv",
+        of.by_velocity.to_dense::<V>().entries(),
+    );
+    w.see(
+        state,
+        "mass_matrix_lower",
+        lower(&of.by_acceleration.to_dense::<V>()),
+    );
+    let mut ws = AbaDerivativesWorkspace::new();
+    let mut of = AbaDerivatives::ZERO;
+    rbd_core::aba_derivatives(model, posture, v, tau, &mut ws, &mut of);
+    w.see(state, "aba", of.acceleration.entries());
+    w.see(
+        state,
+        "aba_derivatives.dq",
+        of.by_position.to_dense::<V>().entries(),
+    );
+    w.see(
+        state,
+        "aba_derivatives.dv",
+        of.by_velocity.to_dense::<V>().entries(),
+    );
+    w.see(
+        state,
+        "mass_matrix_inverse_lower",
+        lower(&of.by_effort.to_dense::<V>()),
+    );
 }
 
 fn motions<T: Scalar, M: Tree<T, N>, const N: usize, const V: usize>(

@@ -1,7 +1,7 @@
 //! rbd-core's side of the ratio table and of the instruction counts.
 //!
 //! ```text
-//! bench-dynamics time TAG MS DIR              ns of every algorithm over the peers' states in DIR
+//! bench-dynamics time TAG MS DIR [ALGORITHM]  ns of every algorithm, or one, over the peers' states in DIR
 //! bench-dynamics list                         the algorithms: robot model algorithm
 //! bench-dynamics count ROBOT MODEL ALGORITHM  each golden state once, for callgrind; `none` measures the rest
 //! ```
@@ -14,12 +14,13 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use rbd_core::{
-    AbaWorkspace, Axes, BaseKind, BodyMotions, CentroidalMap, ComJacobian, Force, Frame,
-    FrameJacobian, Kinematics, MassMatrix, TableModel, Tree, aba, bias_accelerations,
-    center_of_mass, centroidal_bias, centroidal_map, centroidal_momentum_rate, centroidal_state,
-    com_jacobian, crba, forward_accelerations, forward_kinematics, forward_velocities,
-    frame_jacobian, generalized_gravity, joint_jacobians, nonlinear_effects, rnea,
-    rnea_with_forces,
+    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, Axes, BaseKind, BlockMatrix,
+    BodyMotions, CentroidalMap, ComJacobian, DerivativesWorkspace, Force, Frame, FrameJacobian,
+    Kinematics, MassFactors, MassMatrix, RneaDerivatives, TableModel, Tree, aba, aba_derivatives,
+    bias_accelerations, center_of_mass, centroidal_bias, centroidal_map, centroidal_momentum_rate,
+    centroidal_state, com_jacobian, crba, forward_accelerations, forward_kinematics,
+    forward_velocities, frame_jacobian, generalized_gravity, joint_jacobians, mass_matrix_inverse,
+    nonlinear_effects, rnea, rnea_derivatives, rnea_with_forces,
 };
 use saltus_tests::bench::{State, time};
 use saltus_tests::tables::{
@@ -97,6 +98,32 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
         crba(model, &p, &mut mass);
         black_box(&mass);
         aba(model, &p, &s[i].velocity, &s[i].effort, &mut ws)
+    });
+
+    let (mut factors, mut inverse) = (MassFactors::new(), BlockMatrix::ZERO);
+    algorithm!("minverse", |i, p| {
+        crba(model, &p, &mut mass);
+        mass_matrix_inverse(model, &mass, &mut factors, &mut inverse);
+        &inverse
+    });
+    let mut of = RneaDerivatives::ZERO;
+    let mut ws = DerivativesWorkspace::new();
+    algorithm!("rnea_derivatives", |i, p| {
+        rnea_derivatives(
+            model,
+            &p,
+            &s[i].velocity,
+            &s[i].acceleration,
+            &mut ws,
+            &mut of,
+        );
+        &of
+    });
+    let mut of = AbaDerivatives::ZERO;
+    let mut ws = AbaDerivativesWorkspace::new();
+    algorithm!("aba_derivatives", |i, p| {
+        aba_derivatives(model, &p, &s[i].velocity, &s[i].effort, &mut ws, &mut of);
+        &of
     });
 
     let mut kinematics = Kinematics::IDENTITY;
@@ -241,11 +268,15 @@ struct Time<'a> {
     tag: &'a str,
     ms: f64,
     directory: &'a Path,
+    only: Option<&'a str>,
 }
 
 impl Visit for Time<'_> {
     fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>) {
-        for (name, mut call) in list.into_iter().filter(|(name, _)| *name != "none") {
+        for (name, mut call) in list
+            .into_iter()
+            .filter(|(name, _)| self.only.map_or(*name != "none", |only| *name == only))
+        {
             println!(
                 "{robot},{name},{:.2},{states},{}-{model}",
                 time(states, self.ms, &mut call),
@@ -290,11 +321,12 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match words[..] {
-        ["time", tag, ms, directory] => match ms.parse() {
+        ["time", tag, ms, directory, ref only @ ..] => match ms.parse() {
             Ok(ms) => each(&mut Time {
                 tag,
                 ms,
                 directory: Path::new(directory),
+                only: only.first().copied(),
             }),
             Err(_) => Err(format!("{ms} is not a number of milliseconds")),
         },
