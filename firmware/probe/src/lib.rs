@@ -5,11 +5,13 @@
 //! A [`Recorder`] decides what is done around a call and with its results.
 #![no_std]
 
+mod elementary;
 mod inputs;
 mod kinds;
 mod numbers;
 mod rbd;
-mod so3_math;
+mod rotations;
+
 mod spatial;
 
 #[cfg(feature = "introduce_panic")]
@@ -78,7 +80,8 @@ where
     Kinds: Tree<T, { kinds::JOINTS }>,
 {
     let on = &mut Subject::new(recorder);
-    so3_math::run::<T, R>(on);
+    elementary::run::<T, R>(on);
+    rotations::run::<T, R>(on);
     spatial::run::<T, R>(on);
     rbd::run::<T, R, _, { kinds::JOINTS }, { 6 + kinds::JOINTS }>(
         on,

@@ -1,6 +1,7 @@
 //! How the numbers of a result are listed.
 
-mod rbd;
+mod dynamics;
+mod rotations;
 
 use nalgebra::{Quaternion, Rotation3, SMatrix, Unit};
 use so3::Scalar;

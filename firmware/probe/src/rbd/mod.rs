@@ -1,6 +1,7 @@
 //! `rbd-core`: every algorithm on one robot, as a const model and as the same tables at run time.
 
 mod centroidal;
+mod derivatives;
 mod dynamics;
 mod kinematics;
 mod state;
@@ -90,6 +91,7 @@ fn algorithms<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usiz
         let input = (model, &state.configuration);
         let posture = on.call("Posture::new", input, |(model, q)| Posture::new(model, q));
         dynamics::run::<T, R, M, N, V>(on, model, &posture, &state);
+        derivatives::run::<T, R, M, N, V>(on, model, &posture, &state);
         kinematics::run::<T, R, M, N, V>(on, model, &posture, &state, frame);
         centroidal::run::<T, R, M, N, V>(on, model, &posture, &state);
     }

@@ -34,7 +34,7 @@ const EDGES: [f64; 20] = [
 const DRAWS: usize = 24;
 
 pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
-    on.name = "so3";
+    on.name = "math";
     for x in EDGES {
         functions(on, T::of(x));
     }
@@ -54,6 +54,8 @@ pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
             on.call("atan2", (y, x), |(y, x)| math::atan2(y, x));
             on.call("min", (y, x), |(y, x)| math::min(y, x));
             on.call("max", (y, x), |(y, x)| math::max(y, x));
+            on.call("hypot", (y, x), |(y, x)| math::hypot(y, x));
+            on.call("clamp", (y, x), |(y, x)| math::clamp(y, -T::ONE, x));
             on.call("copysign", (y, x), |(y, x)| math::copysign(y, x));
         }
     }
@@ -72,4 +74,5 @@ fn functions<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, x: T) {
     on.call("tanh", x, math::tanh);
     on.call("floor", x, math::floor);
     on.call("abs", x, math::abs);
+    on.call("powi", (x, 7), |(x, n)| math::powi(x, n));
 }

@@ -1,9 +1,10 @@
 //! The results of `rbd-core`, field by field.
 
 use rbd_core::{
-    ArticulatedInertia, BodyMotions, CenterOfMass, CentroidalMap, CentroidalState, ComJacobian,
-    Configuration, Effort, Force, FrameJacobian, Inertia, Kinematics, MassMatrix, Motion, Posture,
-    Symmetric3, TableError, TableModel, Tangent, Transform, Tree,
+    AbaDerivatives, ArticulatedInertia, BlockMatrix, BodyMotions, CenterOfMass, CentroidalMap,
+    CentroidalState, ComJacobian, Configuration, Effort, Force, FrameJacobian, Inertia, Kinematics,
+    MassMatrix, Motion, Posture, RneaDerivatives, Symmetric3, TableError, TableModel, Tangent,
+    Transform, Tree,
 };
 use so3::Scalar;
 
@@ -33,6 +34,9 @@ fields! {
     MassMatrix const N { base, coupling, joints }
     BodyMotions const N { base_velocity, base_acceleration, velocities, accelerations }
     FrameJacobian const N { base, joints }
+    BlockMatrix const N { base, base_joints, joints_base, joints }
+    RneaDerivatives const N { by_position, by_velocity, by_acceleration }
+    AbaDerivatives const N { acceleration, by_position, by_velocity, by_effort }
     CenterOfMass { mass, position_w }
     ComJacobian const N { base_linear, base_angular, joints }
     CentroidalMap const N { mass, com_w, locked_inertia_w, base, joints }
