@@ -3,9 +3,10 @@
 mod bare;
 mod bench;
 mod board;
+mod ci;
 mod cross;
-mod icount;
 mod gen_model;
+mod icount;
 mod image;
 mod panics;
 mod probe;
@@ -30,6 +31,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Every check but the tests themselves: what CI runs.
+    Ci(ci::Args),
     /// Build every control crate alone for the bare-metal targets.
     Cross(cross::Args),
     /// Link the image whose panic handler is an undefined symbol, and see the link fail with a panic introduced.
@@ -46,6 +49,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Ci(args) => ci::run(&args),
         Command::Cross(args) => cross::run(&args),
         Command::Smoke(args) => smoke::run(&args),
         Command::Qemu(args) => qemu::run(&args),
