@@ -2,7 +2,7 @@
 //!
 //! This library holds the shared parts: golden files and states for benches.
 
-pub mod bench;
 pub mod agree;
+pub mod bench;
 pub mod golden;
 pub mod tables;
