@@ -8,7 +8,7 @@
 #![allow(clippy::approx_constant, clippy::excessive_precision, reason = "numbers of the source file")]
 
 use rbd_core::joint::Kind;
-use rbd_core::model::{BaseBody, Body, Frame, JointLimits, Link, Model, bodies_f32, frames_f32, limits_f32};
+use rbd_core::model::{BaseBody, Body, Frame, JointLimits, Link, bodies_f32, frames_f32, limits_f32};
 
 /// a1_reference on a floating base, 12 joints, 12.453 kg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,50 +22,12 @@ rbd_core::tree! {
     impl Tree<f32, 12> for A1Reference { floating, BASE_F32, BODIES_F32, 4 * [RevoluteX, RevoluteY, RevoluteY] }
 }
 
-impl Model<f64, 12> for A1Reference {
-    #[inline]
-    fn name(&self) -> &'static str {
-        NAME
-    }
-    #[inline]
-    fn joint_names(&self) -> &'static [&'static str; 12] {
-        &JOINT_NAMES
-    }
-    #[inline]
-    fn limits(&self) -> &'static [JointLimits<f64>; 12] {
-        &LIMITS
-    }
-    #[inline]
-    fn frame_names(&self) -> &'static [&'static str] {
-        &FRAME_NAMES
-    }
-    #[inline]
-    fn frames(&self) -> &'static [Frame<f64>] {
-        &FRAMES
-    }
+rbd_core::model! {
+    impl Model<f64, 12> for A1Reference { NAME, JOINT_NAMES, LIMITS, FRAME_NAMES, FRAMES }
 }
 
-impl Model<f32, 12> for A1Reference {
-    #[inline]
-    fn name(&self) -> &'static str {
-        NAME
-    }
-    #[inline]
-    fn joint_names(&self) -> &'static [&'static str; 12] {
-        &JOINT_NAMES
-    }
-    #[inline]
-    fn limits(&self) -> &'static [JointLimits<f32>; 12] {
-        &LIMITS_F32
-    }
-    #[inline]
-    fn frame_names(&self) -> &'static [&'static str] {
-        &FRAME_NAMES
-    }
-    #[inline]
-    fn frames(&self) -> &'static [Frame<f32>] {
-        &FRAMES_F32
-    }
+rbd_core::model! {
+    impl Model<f32, 12> for A1Reference { NAME, JOINT_NAMES, LIMITS_F32, FRAME_NAMES, FRAMES_F32 }
 }
 
 /// Name of the robot in the source file.

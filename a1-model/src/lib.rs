@@ -5,6 +5,11 @@
 pub mod a1;
 #[rustfmt::skip]
 pub mod a1_reference;
+pub mod geared;
+pub mod hardware;
+pub mod table1;
 
 pub use a1::A1;
 pub use a1_reference::A1Reference;
+pub use geared::A1Geared;
+pub use hardware::{FEET, FOOT_RADIUS, MOTORS};

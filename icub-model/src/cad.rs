@@ -8,64 +8,26 @@
 #![allow(clippy::approx_constant, clippy::excessive_precision, reason = "numbers of the source file")]
 
 use rbd_core::joint::Kind;
-use rbd_core::model::{BaseBody, Body, Frame, JointLimits, Link, Model, bodies_f32, frames_f32, limits_f32};
+use rbd_core::model::{BaseBody, Body, Frame, JointLimits, Link, bodies_f32, frames_f32, limits_f32};
 
 /// iCub on a floating base, 23 joints, 33.061673 kg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Icub23Cad;
+pub struct AsPublished;
 
 rbd_core::tree! {
-    impl Tree<f64, 23> for Icub23Cad { floating, BASE, BODIES, 2 * [RevoluteY, RevoluteX, RevoluteZ, RevoluteY, RevoluteY, RevoluteX], 1 * [RevoluteY, RevoluteX, RevoluteZ, { 2 * [RevoluteTilted, RevoluteX, RevoluteY, RevoluteTilted] }] }
+    impl Tree<f64, 23> for AsPublished { floating, BASE, BODIES, 2 * [RevoluteY, RevoluteX, RevoluteZ, RevoluteY, RevoluteY, RevoluteX], 1 * [RevoluteY, RevoluteX, RevoluteZ, { 2 * [RevoluteTilted, RevoluteX, RevoluteY, RevoluteTilted] }] }
 }
 
 rbd_core::tree! {
-    impl Tree<f32, 23> for Icub23Cad { floating, BASE_F32, BODIES_F32, 2 * [RevoluteY, RevoluteX, RevoluteZ, RevoluteY, RevoluteY, RevoluteX], 1 * [RevoluteY, RevoluteX, RevoluteZ, { 2 * [RevoluteTilted, RevoluteX, RevoluteY, RevoluteTilted] }] }
+    impl Tree<f32, 23> for AsPublished { floating, BASE_F32, BODIES_F32, 2 * [RevoluteY, RevoluteX, RevoluteZ, RevoluteY, RevoluteY, RevoluteX], 1 * [RevoluteY, RevoluteX, RevoluteZ, { 2 * [RevoluteTilted, RevoluteX, RevoluteY, RevoluteTilted] }] }
 }
 
-impl Model<f64, 23> for Icub23Cad {
-    #[inline]
-    fn name(&self) -> &'static str {
-        NAME
-    }
-    #[inline]
-    fn joint_names(&self) -> &'static [&'static str; 23] {
-        &JOINT_NAMES
-    }
-    #[inline]
-    fn limits(&self) -> &'static [JointLimits<f64>; 23] {
-        &LIMITS
-    }
-    #[inline]
-    fn frame_names(&self) -> &'static [&'static str] {
-        &FRAME_NAMES
-    }
-    #[inline]
-    fn frames(&self) -> &'static [Frame<f64>] {
-        &FRAMES
-    }
+rbd_core::model! {
+    impl Model<f64, 23> for AsPublished { NAME, JOINT_NAMES, LIMITS, FRAME_NAMES, FRAMES }
 }
 
-impl Model<f32, 23> for Icub23Cad {
-    #[inline]
-    fn name(&self) -> &'static str {
-        NAME
-    }
-    #[inline]
-    fn joint_names(&self) -> &'static [&'static str; 23] {
-        &JOINT_NAMES
-    }
-    #[inline]
-    fn limits(&self) -> &'static [JointLimits<f32>; 23] {
-        &LIMITS_F32
-    }
-    #[inline]
-    fn frame_names(&self) -> &'static [&'static str] {
-        &FRAME_NAMES
-    }
-    #[inline]
-    fn frames(&self) -> &'static [Frame<f32>] {
-        &FRAMES_F32
-    }
+rbd_core::model! {
+    impl Model<f32, 23> for AsPublished { NAME, JOINT_NAMES, LIMITS_F32, FRAME_NAMES, FRAMES_F32 }
 }
 
 /// Name of the robot in the source file.

@@ -5,6 +5,10 @@
 pub mod cad;
 #[rustfmt::skip]
 pub mod gazebo;
+pub mod hardware;
+pub mod limits;
+pub mod robots;
 
-pub use cad::Icub23Cad;
-pub use gazebo::Icub23;
+pub use hardware::{MOTORS, SOLES};
+pub use limits::{ANKLE_SHIFT, LIMITS};
+pub use robots::{Icub23, Icub23Cad, Icub23Geared};

@@ -16,6 +16,9 @@ use crate::urdf::Urdf;
 /// Most movable joints of a robot that this crate imports.
 pub const MOST_JOINTS: usize = 128;
 
+/// A pivot of the mass matrix this small beside its row is round-off.
+const ROUND_OFF: f64 = 1e-14;
+
 /// Names and limits of a movable joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointInfo {
@@ -154,15 +157,15 @@ impl Robot {
 /// Eliminates joints from the leaves inwards (M = Lᵀ D L); the first whose pivot vanishes.
 fn first_weightless<const N: usize>(m: &mut [[f64; N]; N], count: usize) -> Option<usize> {
     for k in (0..count).rev() {
-        let pivot = m[k][k];
-        let largest = m[k][..count].iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-        if pivot <= 1e-14 * largest || pivot <= 0.0 {
+        let row = m[k];
+        let largest = row[..count].iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        if row[k] <= ROUND_OFF * largest || row[k] <= 0.0 {
             return Some(k);
         }
-        for i in 0..k {
-            let factor = m[i][k] / pivot;
-            for j in 0..k {
-                m[i][j] -= factor * m[k][j];
+        for above in &mut m[..k] {
+            let factor = above[k] / row[k];
+            for (x, y) in above.iter_mut().zip(&row[..k]) {
+                *x -= factor * y;
             }
         }
     }

@@ -261,7 +261,6 @@ impl Urdf {
         element: &str,
     ) -> Result<JointLimits<f64>, ImportError> {
         let mut limits = JointLimits::<f64>::NONE;
-        (limits.lower, limits.upper) = (f64::NEG_INFINITY, f64::INFINITY);
         if let Some(dynamics) = child(node, "dynamics") {
             limits.damping = optional(dynamics, "damping", element, "damping")?.unwrap_or(0.0);
             limits.friction = optional(dynamics, "friction", element, "friction")?.unwrap_or(0.0);

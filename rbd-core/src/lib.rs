@@ -2,10 +2,12 @@
 #![no_std]
 
 pub mod algo;
+pub mod hardware;
 pub mod joint;
 pub mod linear;
 pub mod manifold;
 pub mod model;
+pub mod robot;
 pub mod spatial;
 pub mod state;
 pub mod table;
@@ -39,8 +41,10 @@ pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
+pub use hardware::{Contact, ContactShape, Motor};
 pub use manifold::{difference, integrate, interpolate};
-pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link, Model};
+pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
+pub use robot::Model;
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};
 pub use table::{TableError, TableModel};

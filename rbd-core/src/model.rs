@@ -5,7 +5,6 @@ use so3::Scalar;
 
 use crate::joint::Kind;
 use crate::spatial::{Inertia, Symmetric3, Transform};
-use crate::tree::Tree;
 
 /// Where something is attached: to the base, or to the body that a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -224,8 +223,8 @@ pub struct JointLimits<T> {
 impl<T: Scalar> JointLimits<T> {
     /// No limit and no loss.
     pub const NONE: Self = Self {
-        lower: T::ZERO,
-        upper: T::ZERO,
+        lower: T::NEG_INFINITY,
+        upper: T::INFINITY,
         speed: T::INFINITY,
         effort: T::INFINITY,
         damping: T::ZERO,
@@ -292,38 +291,4 @@ pub const fn limits_f32<const N: usize>(limits: &[JointLimits<f64>; N]) -> [Join
         i += 1;
     }
     out
-}
-
-/// What a controller or planner asks of a robot beyond its dynamics: names, limits and frames.
-///
-/// Model crates implement it for f32 and f64 from the same tables; every figure is the URDF's unless the
-/// crate says otherwise.
-pub trait Model<T: Scalar, const N: usize>: Tree<T, N> {
-    /// Name of the robot.
-    fn name(&self) -> &'static str;
-
-    /// Names of the joints, in the order of the joint coordinates.
-    fn joint_names(&self) -> &'static [&'static str; N];
-
-    /// Limits and losses of the joints.
-    fn limits(&self) -> &'static [JointLimits<T>; N];
-
-    /// Names of the frames: the links of the URDF, depth first.
-    fn frame_names(&self) -> &'static [&'static str];
-
-    /// The frames, in the order of their names.
-    fn frames(&self) -> &'static [Frame<T>];
-
-    /// Index of a joint, by name.
-    #[must_use]
-    fn joint_index(&self, name: &str) -> Option<usize> {
-        self.joint_names().iter().position(|n| *n == name)
-    }
-
-    /// A frame, by the name of its link.
-    #[must_use]
-    fn frame(&self, name: &str) -> Option<Frame<T>> {
-        let i = self.frame_names().iter().position(|n| *n == name)?;
-        self.frames().get(i).copied()
-    }
 }

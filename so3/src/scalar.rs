@@ -27,6 +27,8 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     const EPSILON: Self;
     /// +∞.
     const INFINITY: Self;
+    /// −∞.
+    const NEG_INFINITY: Self;
     /// A quiet NaN.
     const NAN: Self;
     /// Largest finite number.
@@ -81,6 +83,7 @@ macro_rules! scalar {
             const PI: Self = core::$t::consts::PI;
             const EPSILON: Self = $t::EPSILON;
             const INFINITY: Self = $t::INFINITY;
+            const NEG_INFINITY: Self = $t::NEG_INFINITY;
             const NAN: Self = $t::NAN;
             const MAX: Self = $t::MAX;
 

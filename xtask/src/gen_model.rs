@@ -57,14 +57,14 @@ const MODULES: [Generated; 4] = [
         urdf: "icub_gazebo_v2_5.urdf",
         licence: "CC-BY-SA-4.0",
         locks: ICUB_LOCKS,
-        robot_type: "Icub23",
+        robot_type: "AsPublished",
         module: "icub-model/src/gazebo.rs",
     },
     Generated {
         urdf: "icub_genova04.urdf",
         licence: "CC-BY-SA-4.0",
         locks: ICUB_LOCKS,
-        robot_type: "Icub23Cad",
+        robot_type: "AsPublished",
         module: "icub-model/src/cad.rs",
     },
 ];

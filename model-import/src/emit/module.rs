@@ -77,31 +77,11 @@ fn write_module(
         writeln!(w, "}}\n")?;
     }
     for (scalar, suffix) in [("f64", ""), ("f32", "_F32")] {
-        writeln!(w, "impl Model<{scalar}, {n}> for {type_name} {{")?;
-        for (signature, value) in [
-            ("name(&self) -> &'static str".to_owned(), "NAME".to_owned()),
-            (
-                format!("joint_names(&self) -> &'static [&'static str; {n}]"),
-                "&JOINT_NAMES".into(),
-            ),
-            (
-                format!("limits(&self) -> &'static [JointLimits<{scalar}>; {n}]"),
-                format!("&LIMITS{suffix}"),
-            ),
-            (
-                "frame_names(&self) -> &'static [&'static str]".into(),
-                "&FRAME_NAMES".into(),
-            ),
-            (
-                format!("frames(&self) -> &'static [Frame<{scalar}>]"),
-                format!("&FRAMES{suffix}"),
-            ),
-        ] {
-            writeln!(
-                w,
-                "    #[inline]\n    fn {signature} {{\n        {value}\n    }}"
-            )?;
-        }
+        writeln!(w, "rbd_core::model! {{")?;
+        writeln!(
+            w,
+            "    impl Model<{scalar}, {n}> for {type_name} {{ NAME, JOINT_NAMES, LIMITS{suffix}, FRAME_NAMES, FRAMES{suffix} }}"
+        )?;
         writeln!(w, "}}\n")?;
     }
     writeln!(
@@ -159,7 +139,7 @@ fn header(w: &mut String, robot: &Robot, provenance: &Provenance) -> fmt::Result
     writeln!(w, "use rbd_core::joint::Kind;")?;
     writeln!(
         w,
-        "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, Model, bodies_f32, frames_f32, limits_f32}};\n"
+        "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, bodies_f32, frames_f32, limits_f32}};\n"
     )
 }
 
