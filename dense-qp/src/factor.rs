@@ -1,0 +1,107 @@
+//! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
+
+use crate::Error;
+use crate::kernels::{at, dot, put, span, span_mut, sub_scaled};
+use crate::settings::{pivot_tolerance, proximal_weight};
+use so3::Scalar;
+
+/// Factor of the leading `dim`×`dim` block.
+#[derive(Clone, Debug)]
+pub(crate) struct Factor<T, const N: usize> {
+    /// On entry to [`Factor::factorise`] the upper triangle of H, then U.
+    pub(crate) u: [[T; N]; N],
+    /// On entry to [`Factor::factorise`] the size of the terms that each diagonal entry was summed
+    /// from, then 1/D.
+    pub(crate) weight: [T; N],
+    /// Order of the block.
+    pub(crate) dim: usize,
+    /// Whether a pivot without curvature got a proximal weight.
+    pub(crate) proximal: bool,
+}
+
+impl<T: Scalar, const N: usize> Factor<T, N> {
+    pub(crate) const fn new() -> Self {
+        Self { u: [[T::ZERO; N]; N], weight: [T::ZERO; N], dim: 0, proximal: false }
+    }
+
+    /// Factorises in place. A pivot that is zero to round-off gets a proximal weight: the factor is
+    /// then that of H + P with P ≥ 0 diagonal, and the caller iterates (see [`crate`], proximal steps).
+    /// `reference` sets the weight's scale when H is zero altogether.
+    pub(crate) fn factorise(&mut self, reference: T) -> Result<(), Error> {
+        let n = self.dim;
+        let mut largest = T::ZERO;
+        for h in self.weight.iter().take(n) {
+            if *h > largest {
+                largest = *h;
+            }
+        }
+        let scale = if largest > T::ZERO {
+            largest
+        } else if reference > T::ZERO {
+            reference
+        } else {
+            T::ONE
+        };
+        self.proximal = false;
+        let tolerance = pivot_tolerance::<T>();
+        for k in 0..n {
+            let Some((upper, lower)) = self.u.split_at_mut_checked(k + 1) else { break };
+            let Some(pivot_row) = upper.last_mut() else { break };
+            let mut d = at(pivot_row.as_slice(), k);
+            let diagonal = at(&self.weight, k);
+            if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
+                if !(d >= -(tolerance * (diagonal + T::EPSILON * scale))) {
+                    return Err(Error::HessianNotConvex(k));
+                }
+                d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * scale;
+                self.proximal = true;
+            }
+            let inverse = T::ONE / d;
+            put(&mut self.weight, k, inverse);
+            let tail = span_mut(pivot_row, k + 1, n);
+            for (i, r) in lower.iter_mut().take(n - k - 1).enumerate() {
+                let f = at(tail, i) * inverse;
+                if f != T::ZERO {
+                    sub_scaled(span_mut(r, k + 1 + i, n), f, span(tail, i, n));
+                }
+            }
+            for v in tail {
+                *v *= inverse;
+            }
+        }
+        Ok(())
+    }
+
+    /// v ← U⁻ᵀ v. Leading zeros of v cost nothing.
+    #[inline]
+    pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
+        let n = self.dim;
+        for (k, r) in self.u.iter().take(n).enumerate() {
+            let Some((solved, rest)) = v.split_at_mut_checked(k + 1) else { break };
+            let f = solved.last().copied().unwrap_or(T::ZERO);
+            if f != T::ZERO {
+                sub_scaled(rest, f, span(r, k + 1, n));
+            }
+        }
+    }
+
+    /// v ← U⁻¹ v.
+    #[inline]
+    pub(crate) fn solve(&self, v: &mut [T; N]) {
+        let n = self.dim;
+        for (k, r) in self.u.iter().take(n).enumerate().rev() {
+            let s = dot(span(r, k + 1, n), span(v.as_slice(), k + 1, n));
+            if let Some(e) = v.get_mut(k) {
+                *e -= s;
+            }
+        }
+    }
+
+    /// v ← D⁻¹ v.
+    #[inline]
+    pub(crate) fn weigh(&self, v: &mut [T; N]) {
+        for (v, w) in v.iter_mut().zip(&self.weight).take(self.dim) {
+            *v *= *w;
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Loops over slices that can neither panic nor allocate: the arithmetic of the crate.
+//!
+//! Every access is by iterator or by `get`; out-of-range reads give nothing, out-of-range writes do
+//! nothing. Callers keep indices in range, so the fall-backs never run; they exist so that no panic
+//! path is linked.
+
+use so3::Scalar;
+
+/// aᵀb over the shorter length, in four interleaved partial sums (a fixed order, so that host and
+/// target round alike, and one the compiler can vectorise).
+#[inline(always)]
+pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let (a4, a1) = a.as_chunks::<4>();
+    let (b4, b1) = b.as_chunks::<4>();
+    let mut s = [T::ZERO; 4];
+    for (p, q) in a4.iter().zip(b4) {
+        s[0] += p[0] * q[0];
+        s[1] += p[1] * q[1];
+        s[2] += p[2] * q[2];
+        s[3] += p[3] * q[3];
+    }
+    let mut rest = T::ZERO;
+    for (p, q) in a1.iter().zip(b1) {
+        rest += *p * *q;
+    }
+    ((s[0] + s[2]) + (s[1] + s[3])) + rest
+}
+
+/// y ← y − f·x.
+#[inline(always)]
+pub(crate) fn sub_scaled<T: Scalar>(y: &mut [T], f: T, x: &[T]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y -= f * *x;
+    }
+}
+
+/// Σ wᵢ aᵢ bᵢ.
+#[inline(always)]
+pub(crate) fn weighted_dot<T: Scalar>(w: &[T], a: &[T], b: &[T]) -> T {
+    let mut s = T::ZERO;
+    for ((w, a), b) in w.iter().zip(a).zip(b) {
+        s += *w * *a * *b;
+    }
+    s
+}
+
+/// max |aᵢ| (NaN entries are skipped).
+#[inline(always)]
+pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {
+    let mut m = T::ZERO;
+    for v in a {
+        let v = so3::math::abs(*v);
+        if v > m {
+            m = v;
+        }
+    }
+    m
+}
+
+/// Whether every entry is neither NaN nor infinite.
+#[inline(always)]
+pub(crate) fn all_finite<T: Scalar>(a: &[T]) -> bool {
+    // 0·v is 0 for a finite v and NaN otherwise; one addition per entry and no branch.
+    let (a4, a1) = a.as_chunks::<4>();
+    let mut s = [T::ZERO; 4];
+    for v in a4 {
+        s[0] += v[0] * T::ZERO;
+        s[1] += v[1] * T::ZERO;
+        s[2] += v[2] * T::ZERO;
+        s[3] += v[3] * T::ZERO;
+    }
+    for v in a1 {
+        s[0] += *v * T::ZERO;
+    }
+    (s[0] + s[1]) + (s[2] + s[3]) == T::ZERO
+}
+
+/// The first `n` entries.
+#[inline(always)]
+pub(crate) fn head<T>(a: &[T], n: usize) -> &[T] {
+    a.get(..n).unwrap_or(&[])
+}
+
+/// The first `n` entries.
+#[inline(always)]
+pub(crate) fn head_mut<T>(a: &mut [T], n: usize) -> &mut [T] {
+    a.get_mut(..n).unwrap_or(&mut [])
+}
+
+/// Entries `from..to`.
+#[inline(always)]
+pub(crate) fn span<T>(a: &[T], from: usize, to: usize) -> &[T] {
+    a.get(from..to).unwrap_or(&[])
+}
+
+/// Entries `from..to`.
+#[inline(always)]
+pub(crate) fn span_mut<T>(a: &mut [T], from: usize, to: usize) -> &mut [T] {
+    a.get_mut(from..to).unwrap_or(&mut [])
+}
+
+/// Entry `i`.
+#[inline(always)]
+pub(crate) fn at<V: Copy + Default>(a: &[V], i: usize) -> V {
+    a.get(i).copied().unwrap_or_default()
+}
+
+/// Entry `i` ← `v`.
+#[inline(always)]
+pub(crate) fn put<V>(a: &mut [V], i: usize, v: V) {
+    if let Some(e) = a.get_mut(i) {
+        *e = v;
+    }
+}
+
+/// Row `i` of a matrix.
+#[inline(always)]
+pub(crate) fn row<T, const C: usize>(m: &[[T; C]], i: usize) -> &[T] {
+    m.get(i).map_or(&[], |r| r.as_slice())
+}
+
+/// Row `i` of a matrix.
+#[inline(always)]
+pub(crate) fn row_mut<T, const C: usize>(m: &mut [[T; C]], i: usize) -> &mut [T] {
+    m.get_mut(i).map_or(&mut [], |r| r.as_mut_slice())
+}
+
+/// a ← b over the shorter length.
+#[inline(always)]
+pub(crate) fn copy<T: Copy>(a: &mut [T], b: &[T]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = *b;
+    }
+}

@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod basis;
+mod elimination;
+mod error;
+mod factor;
+mod kernels;
+mod problem;
+mod residual;
+mod settings;
+mod solver;
+mod workspace;
+
+pub use error::Error;
+pub use problem::Problem;
+pub use residual::{Infeasibility, Residual, infeasibility, kkt_residual};
+pub use settings::Settings;
+pub use solver::{solve, solve_warm};
+pub use workspace::{Constraint, Side, Solution, Status, Workspace};

@@ -1,0 +1,136 @@
+//! The quadratic program as the caller states it.
+
+use crate::Error;
+use crate::kernels::{all_finite, at, max_abs, row};
+use so3::{Scalar, math};
+
+/// A convex quadratic program with N variables and M two-sided rows:
+///
+/// minimise ½ xᵀHx + gᵀx  subject to  l ≤ A x ≤ u  and  lb ≤ x ≤ ub.
+///
+/// A row with equal limits is an equality and is eliminated before the active-set search; a variable
+/// with equal bounds is fixed. Infinite limits are allowed on either side.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a, T, const N: usize, const M: usize> {
+    /// H, N×N, symmetric (both triangles filled), positive semidefinite on the null space of the equalities.
+    pub hessian: &'a [[T; N]; N],
+    /// g.
+    pub gradient: &'a [T; N],
+    /// A, one constraint per row.
+    pub rows: &'a [[T; N]; M],
+    /// l, −∞ for none.
+    pub row_lower: &'a [T; M],
+    /// u, +∞ for none; equal to l for an equality.
+    pub row_upper: &'a [T; M],
+    /// lb, −∞ for none; `None` when no variable has a lower bound.
+    pub lower: Option<&'a [T; N]>,
+    /// ub, +∞ for none; `None` when no variable has an upper bound.
+    pub upper: Option<&'a [T; N]>,
+}
+
+impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
+    /// A problem whose variables have no bounds.
+    pub const fn new(
+        hessian: &'a [[T; N]; N],
+        gradient: &'a [T; N],
+        rows: &'a [[T; N]; M],
+        row_lower: &'a [T; M],
+        row_upper: &'a [T; M],
+    ) -> Self {
+        Self { hessian, gradient, rows, row_lower, row_upper, lower: None, upper: None }
+    }
+
+    /// The same problem with lb ≤ x ≤ ub.
+    #[must_use]
+    pub const fn with_bounds(mut self, lower: &'a [T; N], upper: &'a [T; N]) -> Self {
+        self.lower = Some(lower);
+        self.upper = Some(upper);
+        self
+    }
+
+    /// ½ xᵀHx + gᵀx.
+    #[must_use]
+    pub fn cost(&self, x: &[T; N]) -> T {
+        let mut sum = T::ZERO;
+        for ((h, g), xi) in self.hessian.iter().zip(self.gradient).zip(x) {
+            sum += *xi * (T::HALF * crate::kernels::dot(h, x) + *g);
+        }
+        sum
+    }
+
+    /// Limits of row `i` (i < M) or of variable `i − M`.
+    #[inline(always)]
+    pub(crate) fn limits(&self, i: usize) -> (T, T) {
+        if i < M {
+            (at(self.row_lower, i), at(self.row_upper, i))
+        } else {
+            (
+                self.lower.map_or(-T::INFINITY, |l| at(l, i - M)),
+                self.upper.map_or(T::INFINITY, |u| at(u, i - M)),
+            )
+        }
+    }
+
+    /// aᵢᵀx of row `i` (i < M) or x of variable `i − M`.
+    #[inline(always)]
+    pub(crate) fn value(&self, i: usize, x: &[T; N]) -> T {
+        if i < M { crate::kernels::dot(row(self.rows, i), x) } else { at(x, i - M) }
+    }
+
+    /// y ← y + f·aᵢ.
+    #[inline(always)]
+    pub(crate) fn add_row(&self, i: usize, f: T, y: &mut [T; N]) {
+        if i < M {
+            crate::kernels::sub_scaled(y, -f, row(self.rows, i));
+        } else if let Some(e) = y.get_mut(i - M) {
+            *e += f;
+        }
+    }
+
+    /// All but the rows of A (those are checked where their scale is taken).
+    pub(crate) fn validate(&self) -> Result<(), Error> {
+        for (i, h) in self.hessian.iter().enumerate() {
+            if !all_finite(h) {
+                return Err(Error::HessianNotFinite(i));
+            }
+        }
+        let asymmetry = T::of(1024.0) * T::EPSILON;
+        for (i, h) in self.hessian.iter().enumerate() {
+            for (v, column) in h.iter().zip(self.hessian).take(i) {
+                let mirror = at(column, i);
+                if *v == mirror {
+                    continue;
+                }
+                // Both triangles of JᵀWJ agree to round-off of its diagonal, not of the entry.
+                let scale = math::abs(*v) + math::abs(at(h, i)) + max_abs(column);
+                if math::abs(*v - mirror) > asymmetry * scale {
+                    return Err(Error::HessianNotSymmetric(i));
+                }
+            }
+        }
+        for (i, g) in self.gradient.iter().enumerate() {
+            if !g.is_finite_number() {
+                return Err(Error::GradientNotFinite(i));
+            }
+        }
+        for (i, (l, u)) in self.row_lower.iter().zip(self.row_upper).enumerate() {
+            if !ordered(*l, *u) {
+                return Err(Error::RowLimits(i));
+            }
+        }
+        if self.lower.is_some() || self.upper.is_some() {
+            for i in 0..N {
+                let (l, u) = self.limits(M + i);
+                if !ordered(l, u) {
+                    return Err(Error::Bounds(i));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[inline(always)]
+fn ordered<T: Scalar>(l: T, u: T) -> bool {
+    l <= u && l < T::INFINITY && u > -T::INFINITY
+}

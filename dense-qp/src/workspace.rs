@@ -1,0 +1,180 @@
+//! All memory of a solve, and the solution left in it.
+
+use crate::Residual;
+use crate::basis::{Basis, Candidate};
+use crate::elimination::Elimination;
+use crate::factor::Factor;
+use crate::kernels::at;
+use so3::Scalar;
+
+/// Scratch of a solve: about 4N² + 15N + 4M scalars. `new` is const and all zero, so a
+/// `static` of it lives in `.bss`. It remembers the last active set for [`crate::solve_warm`].
+#[derive(Clone, Debug)]
+pub struct Workspace<T, const N: usize, const M: usize> {
+    pub(crate) x: [T; N],
+    pub(crate) row_multipliers: [T; M],
+    pub(crate) bound_multipliers: [T; N],
+    pub(crate) elimination: Elimination<T, N>,
+    pub(crate) factor: Factor<T, N>,
+    pub(crate) basis: Basis<T, N>,
+    pub(crate) candidate: Candidate<T, N>,
+    /// Active inequalities in the order of the basis, with side (±1), multiplier ≥ 0.
+    pub(crate) id: [usize; N],
+    pub(crate) side: [i8; N],
+    pub(crate) lambda: [T; N],
+    /// Side on which each row and bound is active; 2 for an equality.
+    pub(crate) row_state: [i8; M],
+    pub(crate) bound_state: [i8; N],
+    /// max |aᵢ| and its inverse (1 for a zero row).
+    pub(crate) row_scale: [T; M],
+    pub(crate) row_scale_inverse: [T; M],
+    /// Columns of the first and past the last non-zero entry.
+    pub(crate) row_span: [(u16, u16); M],
+    pub(crate) gradient: [T; N],
+    pub(crate) step: [T; N],
+    pub(crate) vec_a: [T; N],
+    pub(crate) vec_b: [T; N],
+    pub(crate) previous: [T; N],
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
+    /// An all-zero workspace without a remembered active set.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            x: [T::ZERO; N],
+            row_multipliers: [T::ZERO; M],
+            bound_multipliers: [T::ZERO; N],
+            elimination: Elimination::new(),
+            factor: Factor::new(),
+            basis: Basis::new(),
+            candidate: Candidate::new(),
+            id: [0; N],
+            side: [0; N],
+            lambda: [T::ZERO; N],
+            row_state: [0; M],
+            bound_state: [0; N],
+            row_scale: [T::ZERO; M],
+            row_scale_inverse: [T::ZERO; M],
+            row_span: [(0, 0); M],
+            gradient: [T::ZERO; N],
+            step: [T::ZERO; N],
+            vec_a: [T::ZERO; N],
+            vec_b: [T::ZERO; N],
+            previous: [T::ZERO; N],
+        }
+    }
+
+    /// Forgets the active set: the next [`crate::solve_warm`] starts cold.
+    pub fn forget(&mut self) {
+        self.basis.len = 0;
+    }
+
+    /// The inequalities that are active at the solution, in no particular order.
+    pub fn active(&self) -> impl Iterator<Item = (Constraint, Side)> + '_ {
+        self.id.iter().zip(&self.side).take(self.basis.len).map(|(id, side)| {
+            (Constraint::of::<M>(*id), if *side > 0 { Side::Upper } else { Side::Lower })
+        })
+    }
+
+    pub(crate) fn state(&self, i: usize) -> i8 {
+        if i < M { at(&self.row_state, i) } else { at(&self.bound_state, i - M) }
+    }
+
+    pub(crate) fn set_state(&mut self, i: usize, state: i8) {
+        if i < M {
+            crate::kernels::put(&mut self.row_state, i, state);
+        } else {
+            crate::kernels::put(&mut self.bound_state, i - M, state);
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Default for Workspace<T, N, M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A constraint of a [`crate::Problem`] by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constraint {
+    /// Row of A.
+    Row(usize),
+    /// Bounds of a variable.
+    Bound(usize),
+}
+
+impl Constraint {
+    pub(crate) fn of<const M: usize>(i: usize) -> Self {
+        if i < M { Self::Row(i) } else { Self::Bound(i - M) }
+    }
+}
+
+/// Which limit of a constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The lower limit; its multiplier is ≤ 0.
+    Lower,
+    /// The upper limit; its multiplier is ≥ 0.
+    Upper,
+}
+
+/// What a solve came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Optimal: the KKT residual is within the tolerances of [`crate::Settings`].
+    Solved,
+    /// The iteration cap was reached; `x` minimises the cost over the rows active so far and the
+    /// residual says how far it is from the rest.
+    Limit,
+    /// No point satisfies the constraints. The multipliers hold the proof: y ≠ 0 on the rows and
+    /// bounds that contradict each other, with Aᵀy + μ = 0 and a negative support
+    /// Σ max(y,0) u + min(y,0) l (see [`crate::infeasibility`]).
+    Infeasible,
+    /// The cost falls without end along a direction that stays feasible; `x` is a feasible point and
+    /// [`Solution::ray`] the direction.
+    Unbounded,
+    /// Round-off prevents an answer within the tolerances; `x` is the best point found and the
+    /// residual says how good it is.
+    Numerical,
+}
+
+/// The outcome of a solve; borrows the workspace.
+#[derive(Clone, Copy, Debug)]
+pub struct Solution<'w, T, const N: usize, const M: usize> {
+    /// What the rest means.
+    pub status: Status,
+    /// The minimiser, or the best iterate.
+    pub x: &'w [T; N],
+    /// λ of the rows: ≥ 0 at the upper limit, ≤ 0 at the lower, Hx + g + Aᵀλ + μ = 0.
+    pub row_multipliers: &'w [T; M],
+    /// μ of the bounds, same signs.
+    pub bound_multipliers: &'w [T; N],
+    /// Rows that entered or left the active set, plus corrections of the point.
+    pub iterations: u32,
+    /// KKT residual at `x` and the multipliers found (not those of a proof of infeasibility).
+    pub residual: Residual<T>,
+    pub(crate) ray: &'w [T; N],
+}
+
+impl<'w, T: Scalar, const N: usize, const M: usize> Solution<'w, T, N, M> {
+    /// For [`Status::Unbounded`] a direction d with Hd = 0, gᵀd < 0 that no limit stops, max |d| = 1.
+    #[must_use]
+    pub fn ray(&self) -> Option<&'w [T; N]> {
+        (self.status == Status::Unbounded).then_some(self.ray)
+    }
+
+    /// For [`Status::Infeasible`] the rows and bounds that contradict each other, and on which side.
+    pub fn conflict(&self) -> impl Iterator<Item = (Constraint, Side)> + 'w {
+        let infeasible = self.status == Status::Infeasible;
+        let side = |y: T| if y > T::ZERO { Side::Upper } else { Side::Lower };
+        let rows = self.row_multipliers.iter().enumerate();
+        let rows = rows.map(move |(i, y)| (Constraint::Row(i), *y));
+        let bounds = self.bound_multipliers.iter().enumerate();
+        let bounds = bounds.map(move |(i, y)| (Constraint::Bound(i), *y));
+        rows.chain(bounds)
+            .filter(move |(_, y)| infeasible && *y != T::ZERO)
+            .map(move |(c, y)| (c, side(y)))
+    }
+}

@@ -1,0 +1,144 @@
+//! Status and optimum against Clarabel on random problems of 5 to 60 variables.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used, reason = "tests")]
+
+mod common;
+use clarabel::solver::SolverStatus;
+use common::{Qp, Rng, clarabel};
+use dense_qp::{Settings, Status, Workspace, infeasibility, solve, solve_warm};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Regular,
+    Equalities,
+    Degenerate,
+    Semidefinite,
+    Linear,
+    Infeasible,
+}
+
+fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Rng) -> Box<Qp<N, M>> {
+    let mut q = Qp::<N, M>::zero();
+    let few = r.below(N.min(M) / 2 + 1);
+    match kind {
+        Kind::Regular => {
+            q.set_hessian(r, N, 0.1);
+            q.set_rows(r, 0, false);
+        }
+        Kind::Equalities => {
+            q.set_hessian(r, N, 0.01);
+            q.set_rows(r, few, false);
+        }
+        Kind::Degenerate => {
+            q.set_hessian(r, N, 0.1);
+            q.set_rows(r, few, true);
+        }
+        Kind::Semidefinite => {
+            q.set_hessian(r, N / 2, 0.0);
+            q.set_rows(r, few / 2, false);
+        }
+        Kind::Linear => q.set_rows(r, few / 2, false),
+        Kind::Infeasible => {
+            q.set_hessian(r, N, 0.1);
+            q.set_rows(r, few, true);
+            // The last row contradicts a positive combination of limits that exist.
+            let last = M - 1;
+            let mut row = [0.0; N];
+            let mut limit = 0.0;
+            for i in 0..last {
+                if q.u[i] < f64::INFINITY && r.chance(0.3) {
+                    let f = r.unit();
+                    for j in 0..N {
+                        row[j] += f * q.a[i][j];
+                    }
+                    limit += f * q.u[i];
+                }
+            }
+            q.a[last] = row;
+            q.l[last] = limit + 1e-3 + r.unit();
+            q.u[last] = f64::INFINITY;
+        }
+    }
+    q
+}
+
+fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
+    let mut w = Box::new(Workspace::<f64, N, M>::new());
+    let settings = Settings::default();
+    for k in 0..count {
+        let mut r = Rng(seed.wrapping_mul(1_000_003).wrapping_add(k));
+        let q = generate::<N, M>(kind, &mut r);
+        let p = q.problem();
+        let s = solve(&p, &settings, &mut w).unwrap();
+        let truth = clarabel(&p);
+        let label = format!("{kind:?} N={N} M={M} seed={seed} k={k}: {:?}", s.status);
+        match truth.status {
+            SolverStatus::Solved | SolverStatus::AlmostSolved => {
+                assert_eq!(s.status, Status::Solved, "{label} against {:?}", truth.status);
+                assert!(s.residual.max() <= 1e-8, "{label}: {:?}", s.residual);
+                let cost = p.cost(s.x);
+                let scale = 1.0 + cost.abs();
+                assert!((cost - truth.cost).abs() <= 2e-6 * scale, "{label}: {cost} {}", truth.cost);
+                if kind == Kind::Regular {
+                    let off = s.x.iter().zip(&truth.x).map(|(a, b)| (a - b).abs()).fold(0., f64::max);
+                    assert!(off < 1e-4, "{label}: x off by {off}");
+                }
+                // Warm from the answer: the same point at once.
+                let x = *s.x;
+                let cold = s.iterations;
+                let again = solve_warm(&p, &settings, &mut w).unwrap();
+                assert_eq!(again.status, Status::Solved, "{label} warm");
+                assert!(again.residual.max() <= 1e-8, "{label} warm: {:?}", again.residual);
+                if kind == Kind::Regular || kind == Kind::Equalities {
+                    assert!(again.iterations <= 3, "{label} warm {} {cold}", again.iterations);
+                    let off = again.x.iter().zip(&x).map(|(a, b)| (a - b).abs()).fold(0., f64::max);
+                    assert!(off < 1e-8, "{label}: warm off by {off}");
+                }
+            }
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                assert_eq!(s.status, Status::Infeasible, "{label}");
+                let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+                assert!(proof.support < 0.0 && proof.combination < 1e-9, "{label} {proof:?}");
+                assert!(s.conflict().count() > 0);
+            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+                assert_eq!(s.status, Status::Unbounded, "{label}");
+                assert!(s.ray().is_some());
+            }
+            other => panic!("{label}: the oracle itself says {other:?}"),
+        }
+    }
+}
+
+fn sizes(kind: Kind, count: u64) {
+    check::<5, 4>(kind, 1, 4 * count);
+    check::<12, 20>(kind, 2, 3 * count);
+    check::<16, 32>(kind, 3, 2 * count);
+    check::<35, 60>(kind, 4, count);
+    check::<60, 40>(kind, 5, count);
+    check::<60, 90>(kind, 6, count / 2);
+}
+
+#[test]
+fn regular() {
+    sizes(Kind::Regular, 20);
+}
+#[test]
+fn equalities() {
+    sizes(Kind::Equalities, 20);
+}
+#[test]
+fn degenerate() {
+    sizes(Kind::Degenerate, 20);
+}
+#[test]
+fn semidefinite() {
+    sizes(Kind::Semidefinite, 20);
+}
+#[test]
+fn linear() {
+    sizes(Kind::Linear, 20);
+}
+#[test]
+fn infeasible() {
+    sizes(Kind::Infeasible, 20);
+}
