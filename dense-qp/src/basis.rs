@@ -38,11 +38,16 @@ pub(crate) struct Basis<T, const N: usize> {
 
 impl<T: Scalar, const N: usize> Candidate<T, N> {
     pub(crate) const fn new() -> Self {
-        Self { l: [T::ZERO; N], q: [T::ZERO; N], d: T::ZERO, norm: T::ZERO }
+        Self {
+            l: [T::ZERO; N],
+            q: [T::ZERO; N],
+            d: T::ZERO,
+            norm: T::ZERO,
+        }
     }
 
     fn settle(&mut self, full: bool) {
-        if full || !(self.d > dependence_tolerance::<T>() * self.norm) {
+        if full || self.d <= dependence_tolerance::<T>() * self.norm {
             self.d = T::ZERO;
         }
     }
@@ -121,12 +126,18 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let mut carry_d = at(&self.d, k);
         copy(&mut self.work, head(row(&self.q, k), n));
         for i in k + 1..len {
-            let Ok([to, from]) = self.l.get_disjoint_mut([i - 1, i]) else { break };
+            let Ok([to, from]) = self.l.get_disjoint_mut([i - 1, i]) else {
+                break;
+            };
             // Row i of L through the earlier rotations; what is left belongs to the carry.
             let mut a = at(from.as_slice(), k);
             copy(to, head(from, k));
             for j in k + 1..i {
-                let (l, fc, fr) = (at(&self.rot_l, j), at(&self.rot_carry, j), at(&self.rot_row, j));
+                let (l, fc, fr) = (
+                    at(&self.rot_l, j),
+                    at(&self.rot_carry, j),
+                    at(&self.rot_row, j),
+                );
                 let b = at(from.as_slice(), j);
                 put(to, j - 1, a * fc + b * fr);
                 a -= l * b;
@@ -138,7 +149,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             put(&mut self.rot_l, i, a);
             put(&mut self.rot_carry, i, fc);
             put(&mut self.rot_row, i, fr);
-            let Ok([to, from]) = self.q.get_disjoint_mut([i - 1, i]) else { break };
+            let Ok([to, from]) = self.q.get_disjoint_mut([i - 1, i]) else {
+                break;
+            };
             for ((to, q), carry) in to.iter_mut().zip(from.iter()).zip(&mut self.work).take(n) {
                 let (v, w) = (*q, *carry);
                 *to = v + a * w;
@@ -150,7 +163,11 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         let mut a = at(&c.l, k);
         for j in k + 1..len {
-            let (l, fc, fr) = (at(&self.rot_l, j), at(&self.rot_carry, j), at(&self.rot_row, j));
+            let (l, fc, fr) = (
+                at(&self.rot_l, j),
+                at(&self.rot_carry, j),
+                at(&self.rot_row, j),
+            );
             let b = at(&c.l, j);
             put(&mut c.l, j - 1, a * fc + b * fr);
             a -= l * b;

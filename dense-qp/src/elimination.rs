@@ -12,7 +12,7 @@
 use crate::kernels::{at, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
 use crate::kernels::{copy, sub_scaled};
 use crate::problem::Problem;
-use crate::settings::pivot_tolerance;
+use crate::settings::row_tolerance;
 use so3::{Scalar, math};
 
 #[derive(Clone, Debug)]
@@ -144,11 +144,14 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         let size = max_abs(a);
         let left = max_abs(span(work, rank, N));
-        if rank >= N || !(left > T::of(8.0) * pivot_tolerance::<T>() * size) {
+        if rank >= N || left <= row_tolerance::<T>() * size {
             let scale = if size > T::ZERO { size } else { T::ONE };
             let noise = T::of(256.0) * T::EPSILON * (math::abs(limit) + size * max_abs(&self.rhs));
             if math::abs(rhs) > math::max(feasibility * scale, noise) {
-                return Err(Contradiction { id: i, residual_positive: rhs < T::ZERO });
+                return Err(Contradiction {
+                    id: i,
+                    residual_positive: rhs < T::ZERO,
+                });
             }
             return Ok(());
         }
@@ -171,7 +174,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     fn finish(&mut self) {
         let (rank, fixed) = (self.rank, self.fixed);
         for k in (fixed..rank).rev() {
-            let Some((upper, lower)) = self.lu.split_at_mut_checked(k + 1) else { break };
+            let Some((upper, lower)) = self.lu.split_at_mut_checked(k + 1) else {
+                break;
+            };
             let Some(r) = upper.last_mut() else { break };
             let mut p = at(&self.rhs, k);
             for (m, below) in lower.iter().take(rank - k - 1).enumerate() {
@@ -210,7 +215,13 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             *y = at(a, *v);
         }
         let free = self.free();
-        for (w, v) in self.lu.iter().zip(&self.perm).take(self.rank).skip(self.fixed) {
+        for (w, v) in self
+            .lu
+            .iter()
+            .zip(&self.perm)
+            .take(self.rank)
+            .skip(self.fixed)
+        {
             let f = at(a, *v);
             if f != T::ZERO {
                 sub_scaled(head_mut(y, free), f, span(w, self.rank, N));
@@ -246,8 +257,32 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         let y = head(y, free);
         for (k, (w, v)) in self.lu.iter().zip(&self.perm).take(self.rank).enumerate() {
-            let s = if k < self.fixed { T::ZERO } else { -dot(span(w, self.rank, N), y) };
+            let s = if k < self.fixed {
+                T::ZERO
+            } else {
+                -dot(span(w, self.rank, N), y)
+            };
             put(z, *v, s);
+        }
+    }
+
+    /// x_B ← p − W x_F.
+    pub(crate) fn restore(&self, x: &mut [T; N], y: &mut [T; N]) {
+        if self.rank == 0 {
+            return;
+        }
+        for (y, v) in y.iter_mut().zip(self.free_vars()) {
+            *y = at(x.as_slice(), *v);
+        }
+        let y = head(y, self.free());
+        let basic = self
+            .lu
+            .iter()
+            .zip(&self.rhs)
+            .zip(&self.perm)
+            .take(self.rank);
+        for ((w, p), v) in basic.skip(self.fixed) {
+            put(x, *v, *p - dot(span(w, self.rank, N), y));
         }
     }
 
@@ -314,7 +349,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         // Uᵀ v = −s_B
         for (k, r) in self.lu.iter().take(rank).enumerate() {
-            let Some((solved, rest)) = mu.split_at_mut_checked(k + 1) else { break };
+            let Some((solved, rest)) = mu.split_at_mut_checked(k + 1) else {
+                break;
+            };
             let Some(e) = solved.last_mut() else { break };
             *e /= at(r, k);
             if k >= self.fixed && *e != T::ZERO {
@@ -323,7 +360,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         // Lᵀ μ = v
         for (k, r) in self.lu.iter().take(rank).enumerate().rev() {
-            let Some((before, rest)) = mu.split_at_mut_checked(k) else { break };
+            let Some((before, rest)) = mu.split_at_mut_checked(k) else {
+                break;
+            };
             let f = rest.first().copied().unwrap_or(T::ZERO);
             if k >= self.fixed && f != T::ZERO {
                 sub_scaled(before, f, head(r, k));

@@ -21,7 +21,12 @@ pub(crate) struct Factor<T, const N: usize> {
 
 impl<T: Scalar, const N: usize> Factor<T, N> {
     pub(crate) const fn new() -> Self {
-        Self { u: [[T::ZERO; N]; N], weight: [T::ZERO; N], dim: 0, proximal: false }
+        Self {
+            u: [[T::ZERO; N]; N],
+            weight: [T::ZERO; N],
+            dim: 0,
+            proximal: false,
+        }
     }
 
     /// Factorises in place. A pivot that is zero to round-off gets a proximal weight: the factor is
@@ -45,12 +50,16 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         self.proximal = false;
         let tolerance = pivot_tolerance::<T>();
         for k in 0..n {
-            let Some((upper, lower)) = self.u.split_at_mut_checked(k + 1) else { break };
-            let Some(pivot_row) = upper.last_mut() else { break };
+            let Some((upper, lower)) = self.u.split_at_mut_checked(k + 1) else {
+                break;
+            };
+            let Some(pivot_row) = upper.last_mut() else {
+                break;
+            };
             let mut d = at(pivot_row.as_slice(), k);
             let diagonal = at(&self.weight, k);
             if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
-                if !(d >= -(tolerance * (diagonal + T::EPSILON * scale))) {
+                if d < -(T::of(4.0) * tolerance * (diagonal + T::EPSILON * scale)) {
                     return Err(Error::HessianNotConvex(k));
                 }
                 d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * scale;
@@ -62,7 +71,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             for (i, r) in lower.iter_mut().take(n - k - 1).enumerate() {
                 let f = at(tail, i) * inverse;
                 if f != T::ZERO {
-                    sub_scaled(span_mut(r, k + 1 + i, n), f, span(tail, i, n));
+                    sub_scaled(span_mut(r, k + 1 + i, n), f, span(tail, i, n - k - 1));
                 }
             }
             for v in tail {
@@ -77,7 +86,9 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
         let n = self.dim;
         for (k, r) in self.u.iter().take(n).enumerate() {
-            let Some((solved, rest)) = v.split_at_mut_checked(k + 1) else { break };
+            let Some((solved, rest)) = v.split_at_mut_checked(k + 1) else {
+                break;
+            };
             let f = solved.last().copied().unwrap_or(T::ZERO);
             if f != T::ZERO {
                 sub_scaled(rest, f, span(r, k + 1, n));

@@ -37,7 +37,15 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         row_lower: &'a [T; M],
         row_upper: &'a [T; M],
     ) -> Self {
-        Self { hessian, gradient, rows, row_lower, row_upper, lower: None, upper: None }
+        Self {
+            hessian,
+            gradient,
+            rows,
+            row_lower,
+            row_upper,
+            lower: None,
+            upper: None,
+        }
     }
 
     /// The same problem with lb ≤ x ≤ ub.
@@ -74,7 +82,11 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
     /// aᵢᵀx of row `i` (i < M) or x of variable `i − M`.
     #[inline(always)]
     pub(crate) fn value(&self, i: usize, x: &[T; N]) -> T {
-        if i < M { crate::kernels::dot(row(self.rows, i), x) } else { at(x, i - M) }
+        if i < M {
+            crate::kernels::dot(row(self.rows, i), x)
+        } else {
+            at(x, i - M)
+        }
     }
 
     /// y ← y + f·aᵢ.

@@ -20,8 +20,15 @@ impl<T: Scalar> Residual<T> {
     /// The largest of the three.
     #[must_use]
     pub fn max(&self) -> T {
-        let m = math::max(self.stationarity, math::max(self.primal, self.complementarity));
-        if self.stationarity.is_nan_number() || self.primal.is_nan_number() { T::NAN } else { m }
+        let m = math::max(
+            self.stationarity,
+            math::max(self.primal, self.complementarity),
+        );
+        if self.stationarity.is_nan_number() || self.primal.is_nan_number() {
+            T::NAN
+        } else {
+            m
+        }
     }
 }
 
@@ -34,7 +41,11 @@ pub fn kkt_residual<T: Scalar, const N: usize, const M: usize>(
     row_multipliers: &[T; M],
     bound_multipliers: &[T; N],
 ) -> Residual<T> {
-    let mut r = Residual { stationarity: T::ZERO, primal: T::ZERO, complementarity: T::ZERO };
+    let mut r = Residual {
+        stationarity: T::ZERO,
+        primal: T::ZERO,
+        complementarity: T::ZERO,
+    };
     for (i, h) in problem.hessian.iter().enumerate() {
         let mut s = dot(h, x) + at(problem.gradient, i) + at(bound_multipliers, i);
         for (a, y) in problem.rows.iter().zip(row_multipliers) {
@@ -104,7 +115,10 @@ pub fn infeasibility<T: Scalar, const N: usize, const M: usize>(
             support += *y * l;
         }
     }
-    Infeasibility { combination, support }
+    Infeasibility {
+        combination,
+        support,
+    }
 }
 
 /// Largest magnitude, NaN if any entry is.

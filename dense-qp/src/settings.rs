@@ -42,9 +42,15 @@ fn is_double<T: Scalar>() -> bool {
     T::EPSILON < T::of(1e-12)
 }
 
-/// A pivot of the Hessian below this share of its diagonal entry counts as zero curvature (≈ ε^¾).
+/// A pivot of the Hessian below this share of its diagonal entry counts as zero curvature: without
+/// pivoting, round-off in a pivot after one of size τ is ε/√τ, so τ must exceed ε^⅔.
 pub(crate) fn pivot_tolerance<T: Scalar>() -> T {
-    T::of(if is_double::<T>() { 2e-12 } else { 7e-6 })
+    T::of(if is_double::<T>() { 2e-10 } else { 1e-4 })
+}
+
+/// What is left of a row below this share of it is round-off of the elimination (≈ ε^¾).
+pub(crate) fn row_tolerance<T: Scalar>() -> T {
+    T::of(if is_double::<T>() { 1e-11 } else { 3e-5 })
 }
 
 /// A row whose squared distance from the span of the active rows is below this share of its squared

@@ -9,6 +9,7 @@
 
 use crate::kernels::{all_finite, at, dot, max_abs, put, span};
 use crate::residual::{infeasibility, kkt_residual, worse};
+use crate::settings::row_tolerance;
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use so3::{Scalar, math};
 
@@ -35,7 +36,13 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    let mut search = Search { p: problem, s: settings, w: workspace, iterations: 0, tolerance: T::ZERO };
+    let mut search = Search {
+        p: problem,
+        s: settings,
+        w: workspace,
+        iterations: 0,
+        tolerance: T::ZERO,
+    };
     let status = match search.run() {
         Ok(status) => status,
         Err(error) => {
@@ -73,8 +80,9 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         w.row_state.fill(0);
         w.bound_state.fill(0);
         w.previous.fill(T::ZERO);
-        if let Err(c) =
-            w.elimination.build(self.p, self.s.feasibility, &mut w.vec_a)
+        if let Err(c) = w
+            .elimination
+            .build(self.p, self.s.feasibility, &mut w.vec_a)
         {
             return Ok(self.contradiction(c.id, c.residual_positive));
         }
@@ -101,7 +109,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     /// Scale and extent of every row; dense rows cost one pass, sparse ones save work later.
     fn scan_rows(&mut self) -> Result<(), Error> {
         let w = &mut *self.w;
-        let out = w.row_scale.iter_mut().zip(&mut w.row_scale_inverse).zip(&mut w.row_span);
+        let out = w
+            .row_scale
+            .iter_mut()
+            .zip(&mut w.row_scale_inverse)
+            .zip(&mut w.row_span);
         for (i, (a, ((scale, inverse), extent))) in self.p.rows.iter().zip(out).enumerate() {
             if !all_finite(a) {
                 return Err(Error::RowNotFinite(i));
@@ -146,20 +158,28 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             if let Pass::Stop(status) = self.search() {
                 return Ok(status);
             }
+            // Far excursions (large proximal steps) leave round-off in the equalities.
+            self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
             let scale = self.evaluate_gradient();
             let residual = self.reduced_residual();
             let drift = self.active_drift();
-            if residual <= self.s.optimality * scale && drift <= self.tolerance {
+            let (dual, primal) = (self.s.optimality * scale, self.s.feasibility);
+            let merit = math::max(residual * primal, drift * dual);
+            let progress = merit < last * T::HALF;
+            // Well inside the tolerances, or inside and no longer improving.
+            let margin = T::of(0.01);
+            if (residual <= margin * dual && drift <= margin * primal)
+                || (residual <= dual && drift <= self.tolerance && !progress)
+            {
                 return Ok(Status::Solved);
             }
-            let merit = math::max(residual, drift * scale);
-            if !(merit < last * T::HALF) {
+            if !progress {
                 stalls += 1;
             }
-            if self.w.factor.proximal {
-                if let Some(status) = self.ray_step() {
-                    return Ok(status);
-                }
+            if self.w.factor.proximal
+                && let Some(status) = self.ray_step()
+            {
+                return Ok(status);
             }
             if (!self.w.factor.proximal && stalls > 4) || merit.is_nan_number() {
                 return Ok(Status::Numerical);
@@ -173,14 +193,23 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     fn evaluate_gradient(&mut self) -> T {
         let w = &mut *self.w;
         let mut scale = T::ZERO;
-        for ((out, h), g) in w.gradient.iter_mut().zip(self.p.hessian).zip(self.p.gradient) {
+        for ((out, h), g) in w
+            .gradient
+            .iter_mut()
+            .zip(self.p.hessian)
+            .zip(self.p.gradient)
+        {
             let hx = dot(h, &w.x);
             scale = worse(scale, worse(math::abs(hx), math::abs(*g)));
             *out = hx + *g;
         }
         for ((id, side), lambda) in w.id.iter().zip(&w.side).zip(&w.lambda).take(w.basis.len) {
             let f = if *side > 0 { *lambda } else { -*lambda };
-            let size = if *id < M { at(&w.row_scale, *id) } else { T::ONE };
+            let size = if *id < M {
+                at(&w.row_scale, *id)
+            } else {
+                T::ONE
+            };
             scale = worse(scale, math::abs(f) * size);
             self.p.add_row(*id, f, &mut w.gradient);
         }
@@ -199,13 +228,20 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         let mut worst = T::ZERO;
         for k in 0..self.w.basis.len {
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-            worst = worse(worst, math::abs(self.excess(id, side)) * self.scale_inverse(id));
+            worst = worse(
+                worst,
+                math::abs(self.excess(id, side)) * self.scale_inverse(id),
+            );
         }
         worst
     }
 
     fn scale_inverse(&self, id: usize) -> T {
-        if id < M { at(&self.w.row_scale_inverse, id) } else { T::ONE }
+        if id < M {
+            at(&self.w.row_scale_inverse, id)
+        } else {
+            T::ONE
+        }
     }
 
     /// Amount by which x exceeds the limit of a row on one side.
@@ -219,7 +255,10 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         if id < M {
             let (from, to) = at(&self.w.row_span, id);
             let (from, to) = (from as usize, to as usize);
-            dot(span(crate::kernels::row(self.p.rows, id), from, to), span(&self.w.x, from, to))
+            dot(
+                span(crate::kernels::row(self.p.rows, id), from, to),
+                span(&self.w.x, from, to),
+            )
         } else {
             at(&self.w.x, id - M)
         }
@@ -285,9 +324,17 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         let w = &mut *self.w;
         let q = &mut w.candidate.q;
         if id < M {
-            w.elimination.reduce(crate::kernels::row(self.p.rows, id), q);
+            w.elimination
+                .reduce(crate::kernels::row(self.p.rows, id), q);
         } else {
             w.elimination.reduce_unit(id - M, q);
+        }
+        // What is left of a row that depends on the equalities is round-off, not a row.
+        if w.elimination.rank > 0 {
+            let size = if id < M { at(&w.row_scale, id) } else { T::ONE };
+            if max_abs(q) <= row_tolerance::<T>() * size {
+                q.fill(T::ZERO);
+            }
         }
         if side < 0 {
             for v in q.iter_mut() {
@@ -317,7 +364,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     fn advance(&mut self, t: T) {
         let w = &mut *self.w;
         crate::kernels::sub_scaled(&mut w.x, t, &w.step);
-        crate::kernels::sub_scaled(crate::kernels::head_mut(&mut w.lambda, w.basis.len), t, &w.vec_b);
+        crate::kernels::sub_scaled(
+            crate::kernels::head_mut(&mut w.lambda, w.basis.len),
+            t,
+            &w.vec_b,
+        );
     }
 
     fn enter(&mut self, id: usize, side: i8, lambda: T) {
@@ -351,7 +402,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         for v in &self.w.x {
             length += math::abs(*v);
         }
-        self.tolerance = math::max(self.s.feasibility, T::of(32.0) * T::EPSILON * length);
+        let round_off = T::of(32.0) * T::EPSILON * length;
+        self.tolerance = math::min(
+            math::max(self.s.feasibility, round_off),
+            T::of(1000.0) * self.s.feasibility,
+        );
         let mut worst = self.tolerance;
         let mut found = None;
         for i in 0..M {
@@ -408,7 +463,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
                     }
                 }
                 let d = w.candidate.d;
-                let full = if d > T::ZERO { self.excess(id, side) / d } else { T::INFINITY };
+                let full = if d > T::ZERO {
+                    self.excess(id, side) / d
+                } else {
+                    T::INFINITY
+                };
                 if full <= t {
                     if !full.is_finite_number() {
                         return Pass::Stop(self.conflict(id, side));
@@ -472,7 +531,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         let noise = T::of(4.0) * T::EPSILON * largest;
         let inverse = T::ONE / largest;
         for y in w.row_multipliers.iter_mut().chain(&mut w.bound_multipliers) {
-            *y = if math::abs(*y) <= noise { T::ZERO } else { *y * inverse };
+            *y = if math::abs(*y) <= noise {
+                T::ZERO
+            } else {
+                *y * inverse
+            };
         }
         let proof = infeasibility(self.p, &w.row_multipliers, &w.bound_multipliers);
         let reach = math::max(T::ONE, max_abs(&w.x)) * T::of(10.0);
@@ -499,7 +562,12 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         for s in &mut w.step {
             *s /= length;
         }
-        for (h, (g, s)) in self.p.hessian.iter().zip(self.p.gradient.iter().zip(&w.step)) {
+        for (h, (g, s)) in self
+            .p
+            .hessian
+            .iter()
+            .zip(self.p.gradient.iter().zip(&w.step))
+        {
             curvature = worse(curvature, math::abs(dot(h, &w.step)));
             size = worse(size, max_abs(h));
             slope += *g * *s;
@@ -515,7 +583,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             }
             let (l, u) = self.p.limits(i);
             let rate = self.p.value(i, &self.w.step);
-            let scale = if i < M { at(&self.w.row_scale, i) } else { T::ONE };
+            let scale = if i < M {
+                at(&self.w.row_scale, i)
+            } else {
+                T::ONE
+            };
             let value = self.row_value(i);
             let room = if rate > small * scale {
                 (u - value) / rate
@@ -541,15 +613,23 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         if status == Status::Infeasible {
             let (rows, bounds) = (self.w.row_multipliers, self.w.bound_multipliers);
             self.publish();
-            let residual =
-                kkt_residual(self.p, &self.w.x, &self.w.row_multipliers, &self.w.bound_multipliers);
+            let residual = kkt_residual(
+                self.p,
+                &self.w.x,
+                &self.w.row_multipliers,
+                &self.w.bound_multipliers,
+            );
             self.w.row_multipliers = rows;
             self.w.bound_multipliers = bounds;
             return self.solution(status, iterations, residual);
         }
         self.publish();
-        let residual =
-            kkt_residual(self.p, &self.w.x, &self.w.row_multipliers, &self.w.bound_multipliers);
+        let residual = kkt_residual(
+            self.p,
+            &self.w.x,
+            &self.w.row_multipliers,
+            &self.w.bound_multipliers,
+        );
         self.solution(status, iterations, residual)
     }
 

@@ -72,13 +72,24 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
 
     /// The inequalities that are active at the solution, in no particular order.
     pub fn active(&self) -> impl Iterator<Item = (Constraint, Side)> + '_ {
-        self.id.iter().zip(&self.side).take(self.basis.len).map(|(id, side)| {
-            (Constraint::of::<M>(*id), if *side > 0 { Side::Upper } else { Side::Lower })
-        })
+        self.id
+            .iter()
+            .zip(&self.side)
+            .take(self.basis.len)
+            .map(|(id, side)| {
+                (
+                    Constraint::of::<M>(*id),
+                    if *side > 0 { Side::Upper } else { Side::Lower },
+                )
+            })
     }
 
     pub(crate) fn state(&self, i: usize) -> i8 {
-        if i < M { at(&self.row_state, i) } else { at(&self.bound_state, i - M) }
+        if i < M {
+            at(&self.row_state, i)
+        } else {
+            at(&self.bound_state, i - M)
+        }
     }
 
     pub(crate) fn set_state(&mut self, i: usize, state: i8) {
@@ -107,7 +118,11 @@ pub enum Constraint {
 
 impl Constraint {
     pub(crate) fn of<const M: usize>(i: usize) -> Self {
-        if i < M { Self::Row(i) } else { Self::Bound(i - M) }
+        if i < M {
+            Self::Row(i)
+        } else {
+            Self::Bound(i - M)
+        }
     }
 }
 
@@ -168,7 +183,13 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Solution<'w, T, N, M> {
     /// For [`Status::Infeasible`] the rows and bounds that contradict each other, and on which side.
     pub fn conflict(&self) -> impl Iterator<Item = (Constraint, Side)> + 'w {
         let infeasible = self.status == Status::Infeasible;
-        let side = |y: T| if y > T::ZERO { Side::Upper } else { Side::Lower };
+        let side = |y: T| {
+            if y > T::ZERO {
+                Side::Upper
+            } else {
+                Side::Lower
+            }
+        };
         let rows = self.row_multipliers.iter().enumerate();
         let rows = rows.map(move |(i, y)| (Constraint::Row(i), *y));
         let bounds = self.bound_multipliers.iter().enumerate();

@@ -1,10 +1,15 @@
 //! Status and optimum against Clarabel on random problems of 5 to 60 variables.
-#![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used, reason = "tests")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::expect_used,
+    reason = "tests"
+)]
 
 mod common;
 use clarabel::solver::SolverStatus;
 use common::{Qp, Rng, clarabel};
-use dense_qp::{Settings, Status, Workspace, infeasibility, solve, solve_warm};
+use dense_qp::{Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -73,13 +78,26 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
         let label = format!("{kind:?} N={N} M={M} seed={seed} k={k}: {:?}", s.status);
         match truth.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {
-                assert_eq!(s.status, Status::Solved, "{label} against {:?}", truth.status);
+                assert_eq!(
+                    s.status,
+                    Status::Solved,
+                    "{label} against {:?}",
+                    truth.status
+                );
                 assert!(s.residual.max() <= 1e-8, "{label}: {:?}", s.residual);
                 let cost = p.cost(s.x);
                 let scale = 1.0 + cost.abs();
-                assert!((cost - truth.cost).abs() <= 2e-6 * scale, "{label}: {cost} {}", truth.cost);
+                assert!(
+                    (cost - truth.cost).abs() <= 2e-6 * scale,
+                    "{label}: {cost} {}",
+                    truth.cost
+                );
                 if kind == Kind::Regular {
-                    let off = s.x.iter().zip(&truth.x).map(|(a, b)| (a - b).abs()).fold(0., f64::max);
+                    let off =
+                        s.x.iter()
+                            .zip(&truth.x)
+                            .map(|(a, b)| (a - b).abs())
+                            .fold(0., f64::max);
                     assert!(off < 1e-4, "{label}: x off by {off}");
                 }
                 // Warm from the answer: the same point at once.
@@ -87,25 +105,90 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
                 let cold = s.iterations;
                 let again = solve_warm(&p, &settings, &mut w).unwrap();
                 assert_eq!(again.status, Status::Solved, "{label} warm");
-                assert!(again.residual.max() <= 1e-8, "{label} warm: {:?}", again.residual);
+                assert!(
+                    again.residual.max() <= 1e-8,
+                    "{label} warm: {:?}",
+                    again.residual
+                );
                 if kind == Kind::Regular || kind == Kind::Equalities {
-                    assert!(again.iterations <= 3, "{label} warm {} {cold}", again.iterations);
-                    let off = again.x.iter().zip(&x).map(|(a, b)| (a - b).abs()).fold(0., f64::max);
+                    assert!(
+                        again.iterations <= 3,
+                        "{label} warm {} {cold}",
+                        again.iterations
+                    );
+                    let off = again
+                        .x
+                        .iter()
+                        .zip(&x)
+                        .map(|(a, b)| (a - b).abs())
+                        .fold(0., f64::max);
                     assert!(off < 1e-8, "{label}: warm off by {off}");
                 }
             }
             SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
                 assert_eq!(s.status, Status::Infeasible, "{label}");
                 let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
-                assert!(proof.support < 0.0 && proof.combination < 1e-9, "{label} {proof:?}");
+                assert!(
+                    proof.support < 0.0 && proof.combination < 1e-9,
+                    "{label} {proof:?}"
+                );
                 assert!(s.conflict().count() > 0);
             }
             SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
                 assert_eq!(s.status, Status::Unbounded, "{label}");
-                assert!(s.ray().is_some());
+                assert_unbounded(&q, &s, &label);
             }
-            other => panic!("{label}: the oracle itself says {other:?}"),
+            // The oracle gave up: our answer carries its own proof.
+            other => match s.status {
+                Status::Solved => assert!(s.residual.max() <= 1e-8, "{label}: {:?}", s.residual),
+                Status::Unbounded => assert_unbounded(&q, &s, &label),
+                Status::Infeasible => {
+                    let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+                    assert!(
+                        proof.support < 0.0 && proof.combination < 1e-9,
+                        "{label} {proof:?}"
+                    );
+                }
+                _ => panic!("{label}: the oracle says {other:?}"),
+            },
         }
+    }
+}
+
+/// x is feasible, and the ray is a direction of recession without curvature that lowers the cost.
+fn assert_unbounded<const N: usize, const M: usize>(
+    q: &Qp<N, M>,
+    s: &Solution<'_, f64, N, M>,
+    label: &str,
+) {
+    let d = s.ray().unwrap();
+    let dot = |a: &[f64; N]| a.iter().zip(d).map(|(a, d)| a * d).sum::<f64>();
+    assert!(s.residual.primal < 1e-6, "{label}: {:?}", s.residual);
+    assert!(dot(&q.g) < -1e-6, "{label}: no descent");
+    assert!(
+        q.h.iter().all(|h| dot(h).abs() < 1e-9),
+        "{label}: curvature along the ray"
+    );
+    for i in 0..M {
+        let rate = dot(&q.a[i]);
+        assert!(
+            rate < 1e-9 || q.u[i] == f64::INFINITY,
+            "{label}: row {i} stops the ray"
+        );
+        assert!(
+            rate > -1e-9 || q.l[i] == -f64::INFINITY,
+            "{label}: row {i} stops the ray"
+        );
+    }
+    for i in 0..N {
+        assert!(
+            d[i] < 1e-9 || q.ub[i] == f64::INFINITY,
+            "{label}: bound {i} stops the ray"
+        );
+        assert!(
+            d[i] > -1e-9 || q.lb[i] == -f64::INFINITY,
+            "{label}: bound {i} stops the ray"
+        );
     }
 }
 

@@ -1,5 +1,6 @@
 //! Random problems and the Clarabel oracle.
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, unreachable_pub, reason = "each test file uses a part")]
+#![allow(clippy::expect_used, clippy::needless_range_loop, reason = "tests")]
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -86,7 +87,11 @@ impl<const N: usize, const M: usize> Qp<N, M> {
         for i in 0..M {
             let sparse = r.chance(0.3);
             for j in 0..N {
-                self.a[i][j] = if sparse && !r.chance(0.3) { 0.0 } else { r.sym() };
+                self.a[i][j] = if sparse && !r.chance(0.3) {
+                    0.0
+                } else {
+                    r.sym()
+                };
             }
             if degenerate && i > 0 && r.chance(0.3) {
                 // A copy, a multiple or a combination of earlier rows.
@@ -101,12 +106,22 @@ impl<const N: usize, const M: usize> Qp<N, M> {
                 }
             }
             let v: f64 = (0..N).map(|j| self.a[i][j] * x0[j]).sum();
-            let gap = |r: &mut Rng| if degenerate && r.chance(0.5) { 0.0 } else { r.unit() };
+            let gap = |r: &mut Rng| {
+                if degenerate && r.chance(0.5) {
+                    0.0
+                } else {
+                    r.unit()
+                }
+            };
             if i < equalities {
                 (self.l[i], self.u[i]) = (v, v);
             } else {
                 self.u[i] = if r.chance(0.7) { v + gap(r) } else { INF };
-                self.l[i] = if r.chance(0.5) { v - gap(r) - 1e-3 } else { -INF };
+                self.l[i] = if r.chance(0.5) {
+                    v - gap(r) - 1e-3
+                } else {
+                    -INF
+                };
             }
         }
         for j in 0..N {
