@@ -2,7 +2,7 @@
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
-    clippy::expect_used,
+    clippy::needless_range_loop,
     reason = "tests"
 )]
 
