@@ -1,5 +1,10 @@
 //! exp, log, log_near and rotation_about: oracle, group laws, edges, near-rotations.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests: only inputs are made here"
+)]
+
 mod cases;
 mod oracle;
 

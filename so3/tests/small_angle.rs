@@ -1,5 +1,10 @@
 //! The coefficients of exp and the Jacobians against double-double series.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests: only inputs are made here"
+)]
+
 mod oracle;
 
 use oracle::{Dd, even_series};
