@@ -33,6 +33,8 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     const NAN: Self;
     /// Largest finite number.
     const MAX: Self;
+    #[doc(hidden)]
+    const SIN_COS_BOUND: Self;
 
     /// The nearest number of this type to `value`.
     fn of(value: f64) -> Self;
@@ -45,8 +47,6 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
 
     #[doc(hidden)]
     fn libm_sqrt(self) -> Self;
-    #[doc(hidden)]
-    const SIN_COS_BOUND: Self;
     #[doc(hidden)]
     fn sin_cos_within_bound(self) -> (Self, Self);
     #[doc(hidden)]
@@ -73,8 +73,17 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     fn libm_copysign(self, sign: Self) -> Self;
 }
 
+/// `libm` for one scalar: C's suffix hidden, so that one macro serves both.
+mod libm_f32 {
+    pub(super) use libm::{
+        acosf as acos, asinf as asin, atan2f as atan2, copysignf as copysign, expf as exp,
+        floorf as floor, hypotf as hypot, logf as log, sincosf as sincos, sqrtf as sqrt,
+        tanf as tan, tanhf as tanh,
+    };
+}
+
 macro_rules! scalar {
-    ($t:ident, $sin_cos_bound:expr, $sin_cos_kernel:ident, $sqrt:ident, $sincos:ident, $tan:ident, $asin:ident, $acos:ident, $atan2:ident, $hypot:ident, $exp:ident, $log:ident, $tanh:ident, $floor:ident, $copysign:ident) => {
+    ($t:ident, $libm:ident, sin_cos: $sin_cos:ident within $sin_cos_bound:literal) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -86,6 +95,7 @@ macro_rules! scalar {
             const NEG_INFINITY: Self = $t::NEG_INFINITY;
             const NAN: Self = $t::NAN;
             const MAX: Self = $t::MAX;
+            const SIN_COS_BOUND: Self = $sin_cos_bound;
 
             #[inline(always)]
             fn of(value: f64) -> Self {
@@ -105,92 +115,59 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn libm_sqrt(self) -> Self {
-                libm::$sqrt(self)
+                $libm::sqrt(self)
             }
-            const SIN_COS_BOUND: Self = $sin_cos_bound;
             #[inline(always)]
             fn sin_cos_within_bound(self) -> (Self, Self) {
-                $sin_cos_kernel(self)
+                $sin_cos(self)
             }
             #[cold]
             fn libm_sin_cos(self) -> (Self, Self) {
-                libm::$sincos(self)
+                $libm::sincos(self)
             }
             #[inline(always)]
             fn libm_tan(self) -> Self {
-                libm::$tan(self)
+                $libm::tan(self)
             }
             #[inline(always)]
             fn libm_asin(self) -> Self {
-                libm::$asin(self)
+                $libm::asin(self)
             }
             #[inline(always)]
             fn libm_acos(self) -> Self {
-                libm::$acos(self)
+                $libm::acos(self)
             }
             #[inline(always)]
             fn libm_atan2(self, x: Self) -> Self {
-                libm::$atan2(self, x)
+                $libm::atan2(self, x)
             }
             #[inline(always)]
             fn libm_hypot(self, y: Self) -> Self {
-                libm::$hypot(self, y)
+                $libm::hypot(self, y)
             }
             #[inline(always)]
             fn libm_exp(self) -> Self {
-                libm::$exp(self)
+                $libm::exp(self)
             }
             #[inline(always)]
             fn libm_log(self) -> Self {
-                libm::$log(self)
+                $libm::log(self)
             }
             #[inline(always)]
             fn libm_tanh(self) -> Self {
-                libm::$tanh(self)
+                $libm::tanh(self)
             }
             #[inline(always)]
             fn libm_floor(self) -> Self {
-                libm::$floor(self)
+                $libm::floor(self)
             }
             #[inline(always)]
             fn libm_copysign(self, sign: Self) -> Self {
-                libm::$copysign(self, sign)
+                $libm::copysign(self, sign)
             }
         }
     };
 }
 
-scalar!(
-    f32,
-    402.0,
-    sin_cos_f32,
-    sqrtf,
-    sincosf,
-    tanf,
-    asinf,
-    acosf,
-    atan2f,
-    hypotf,
-    expf,
-    logf,
-    tanhf,
-    floorf,
-    copysignf
-);
-scalar!(
-    f64,
-    3216.0,
-    sin_cos_f64,
-    sqrt,
-    sincos,
-    tan,
-    asin,
-    acos,
-    atan2,
-    hypot,
-    exp,
-    log,
-    tanh,
-    floor,
-    copysign
-);
+scalar!(f32, libm_f32, sin_cos: sin_cos_f32 within 402.0);
+scalar!(f64, libm, sin_cos: sin_cos_f64 within 3216.0);
