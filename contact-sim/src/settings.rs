@@ -1,0 +1,49 @@
+//! Everything about the plant that is not the robot's tables.
+
+use rbd_core::JointLimits;
+use so3::Scalar;
+
+use crate::{ContactLaw, Motor, Stops};
+
+/// Plant settings: step, ground, motors and joint losses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings<T, const N: usize> {
+    /// Time of one tick of [`Simulator::step`](crate::Simulator::step), s.
+    pub tick: T,
+    /// Integration steps per tick.
+    pub substeps: u32,
+    /// Ground.
+    pub contact: ContactLaw<T>,
+    /// Range, viscous and Coulomb friction of each joint.
+    pub limits: [JointLimits<T>; N],
+    /// Motors.
+    pub motors: [Motor<T>; N],
+    /// Joint stops.
+    pub stops: Stops<T>,
+    /// Speed below which Coulomb friction in the joints fades, rad/s.
+    pub friction_smoothing: T,
+}
+
+impl<T: Scalar, const N: usize> Settings<T, N> {
+    /// 10 kHz ticks of two steps, friction 0.6 on the ground, and joints as `limits` describes them: a motor
+    /// drives fully up to the joint's speed limit and not at all beyond 1.2 times that.
+    #[must_use]
+    pub fn new(limits: &[JointLimits<T>; N]) -> Self {
+        Self {
+            tick: T::of(1e-4),
+            substeps: 2,
+            contact: ContactLaw::new(T::of(0.6)),
+            limits: *limits,
+            motors: limits.map(|joint| Motor {
+                torque: joint.effort,
+                knee_speed: joint.speed,
+                no_load_speed: joint.speed * T::of(1.2),
+            }),
+            stops: Stops {
+                stiffness: T::of(800.0),
+                damping: T::of(2.0),
+            },
+            friction_smoothing: T::of(0.1),
+        }
+    }
+}
