@@ -11,7 +11,7 @@
 //! has v_t = 0 at its lowest point and meets no resistance.
 
 use nalgebra::Vector3;
-use rbd_core::Link;
+use rbd_core::{Contact, ContactShape, Link};
 use so3::{Scalar, math};
 
 use crate::Touch;
@@ -25,6 +25,21 @@ pub struct ContactSphere<T> {
     pub offset: [T; 3],
     /// Its radius, m.
     pub radius: T,
+}
+
+impl<T: Scalar> ContactSphere<T> {
+    /// A robot's contact as a sphere; `None` for other shapes.
+    #[must_use]
+    pub fn of(contact: &Contact<T>) -> Option<Self> {
+        match contact.shape {
+            ContactShape::Sphere { radius } => Some(Self {
+                link: contact.frame.link,
+                offset: contact.frame.offset,
+                radius,
+            }),
+            ContactShape::Rectangle { .. } => None,
+        }
+    }
 }
 
 /// Stiffness, dissipation and friction of the ground.

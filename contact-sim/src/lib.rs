@@ -3,7 +3,6 @@
 
 mod contact;
 mod error;
-mod integrate;
 mod joints;
 mod native;
 mod settings;
@@ -12,8 +11,7 @@ mod terrain;
 
 pub use contact::{ContactLaw, ContactSphere, ContactState};
 pub use error::Error;
-pub use integrate::integrate_configuration;
-pub use joints::{Motor, Stops};
+pub use joints::Stops;
 pub use native::NativeSimulator;
 pub use settings::Settings;
 pub use simulator::Simulator;

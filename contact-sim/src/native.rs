@@ -8,13 +8,11 @@
 use nalgebra::Vector3;
 use rbd_core::{
     AbaWorkspace, BodyMotions, Configuration, Effort, Force, Kinematics, Link, Posture, Tangent,
-    Tree, aba_with_forces, forward_kinematics, forward_velocities, joint_friction,
+    Tree, aba_with_forces, forward_kinematics, forward_velocities, integrate, joint_friction,
 };
-use so3::{Scalar, orthonormalize_step};
+use so3::{Scalar, math, orthonormalize_step};
 
-use crate::{
-    ContactSphere, ContactState, Error, Settings, Simulator, Terrain, integrate_configuration,
-};
+use crate::{ContactSphere, ContactState, Error, Settings, Simulator, Terrain};
 
 /// The embedded simulator: a robot `M` with `N` joints and `C` contact spheres, and all its state.
 #[derive(Clone, Debug)]
@@ -80,7 +78,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const C: usize> NativeSimulator<T
 
     fn advance(&mut self, command: &[T; N], h: T) {
         let half = h * T::HALF;
-        let middle = integrate_configuration(&self.configuration, &self.velocity, half);
+        let middle = integrate(&self.configuration, &(self.velocity * half));
         let posture = Posture::new(&self.model, &middle);
         let (base, bodies) = self.contact_forces(&posture, h);
         let smooth = self.velocity + self.acceleration * half;
@@ -97,7 +95,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const C: usize> NativeSimulator<T
             &mut self.workspace,
         );
         self.velocity = self.velocity + self.acceleration * h;
-        self.configuration = integrate_configuration(&middle, &self.velocity, half);
+        self.configuration = integrate(&middle, &(self.velocity * half));
     }
 
     /// Advances the contacts; returns their wrenches on the base and on the bodies, in body frames.
@@ -149,7 +147,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const C: usize> NativeSimulator<T
         for ((tau, ((delivered, wanted), motor)), ((q, qd), limits)) in
             torques.iter_mut().zip(given).zip(state)
         {
-            *delivered = motor.deliver(*wanted, *qd);
+            let [low, high] = motor.torque_range(*qd);
+            *delivered = math::clamp(*wanted, low, high);
             *tau += *delivered + s.stops.torque(limits, *q, *qd);
         }
         torques

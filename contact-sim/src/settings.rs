@@ -1,9 +1,9 @@
 //! Everything about the plant that is not the robot's tables.
 
-use rbd_core::JointLimits;
+use rbd_core::{JointLimits, Motor};
 use so3::Scalar;
 
-use crate::{ContactLaw, Motor, Stops};
+use crate::{ContactLaw, Stops};
 
 /// Plant settings: step, ground, motors and joint losses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,20 +25,16 @@ pub struct Settings<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Settings<T, N> {
-    /// 10 kHz ticks of two steps, friction 0.6 on the ground, and joints as `limits` describes them: a motor
-    /// drives fully up to the joint's speed limit and not at all beyond 1.2 times that.
+    /// 10 kHz ticks of two steps, friction 0.6 on the ground, and joints and motors as the robot's tables
+    /// have them.
     #[must_use]
-    pub fn new(limits: &[JointLimits<T>; N]) -> Self {
+    pub fn new(limits: &[JointLimits<T>; N], motors: &[Motor<T>; N]) -> Self {
         Self {
             tick: T::of(1e-4),
             substeps: 2,
             contact: ContactLaw::new(T::of(0.6)),
             limits: *limits,
-            motors: limits.map(|joint| Motor {
-                torque: joint.effort,
-                knee_speed: joint.speed,
-                no_load_speed: joint.speed * T::of(1.2),
-            }),
+            motors: *motors,
             stops: Stops {
                 stiffness: T::of(800.0),
                 damping: T::of(2.0),

@@ -1,32 +1,22 @@
 //! The plant obeys the laws it is made of.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use a1_model::{A1, a1};
+use a1_model::{A1Geared, FEET, MOTORS, a1};
 use contact_sim::{
     Block, ContactLaw, ContactSphere, ContactState, Error, NativeSimulator, Settings, Simulator,
     Terrain, Touch,
 };
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
-    Configuration, JointLimits, Link, Model, Motion, Posture, Tangent, Tree, centroidal_state,
+    Configuration, JointLimits, Link, Motion, Posture, Tangent, Tree, centroidal_state,
 };
 
-type Plant = NativeSimulator<f64, A1, 12, 12>;
+type Plant = NativeSimulator<f64, A1Geared, 12, 12>;
 
 /// Four feet and the eight corners of the trunk.
 fn spheres() -> [ContactSphere<f64>; 12] {
-    let feet = [
-        a1::frame::FL_FOOT,
-        a1::frame::FR_FOOT,
-        a1::frame::RL_FOOT,
-        a1::frame::RR_FOOT,
-    ];
-    core::array::from_fn(|i| match feet.get(i) {
-        Some(foot) => ContactSphere {
-            link: foot.link,
-            offset: foot.offset,
-            radius: 0.02,
-        },
+    core::array::from_fn(|i| match FEET.get(i) {
+        Some(foot) => ContactSphere::of(foot).unwrap(),
         None => {
             let sign = |bit: usize| if (i - 4) >> bit & 1 == 0 { 1.0 } else { -1.0 };
             ContactSphere {
@@ -39,7 +29,7 @@ fn spheres() -> [ContactSphere<f64>; 12] {
 }
 
 fn settings() -> Settings<f64, 12> {
-    Settings::new(Model::<f64, 12>::limits(&A1))
+    Settings::new(&a1::LIMITS, &MOTORS)
 }
 
 /// No losses, no stops, no motors' limits.
@@ -55,7 +45,7 @@ fn ideal() -> Settings<f64, 12> {
 }
 
 fn plant(settings: Settings<f64, 12>) -> Plant {
-    Plant::new(A1, spheres(), Terrain::FLAT, settings)
+    Plant::new(A1Geared, spheres(), Terrain::FLAT, settings)
 }
 
 fn standing(height: f64) -> Configuration<f64, 12> {
@@ -76,7 +66,11 @@ fn flight_keeps_energy_and_momentum() {
     };
     sim.reset(&q, &v);
     let look = |sim: &Plant| {
-        centroidal_state(&A1, &Posture::new(&A1, sim.configuration()), sim.velocity())
+        centroidal_state(
+            &A1Geared,
+            &Posture::new(&A1Geared, sim.configuration()),
+            sim.velocity(),
+        )
     };
     let before = look(&sim);
     for _ in 0..4000 {
@@ -128,11 +122,12 @@ fn ball(points: usize, friction: f64) -> NativeSimulator<f64, Ball, 1, 3> {
         },
         radius: if i < points { 0.02 } else { -10.0 },
     });
-    let mut s = Settings::new(&[JointLimits {
+    let limits = JointLimits {
         lower: -1e9,
         upper: 1e9,
         ..JointLimits::NONE
-    }]);
+    };
+    let mut s = Settings::new(&[limits], &[MOTORS[0]]);
     s.contact = ContactLaw::new(friction);
     NativeSimulator::new(Ball, spheres, Terrain::FLAT, s)
 }
@@ -237,8 +232,8 @@ fn a_dropped_robot_comes_to_rest_and_hardly_sinks() {
         sim.velocity().base.linear.norm()
     );
     assert!(sim.velocity().joints.iter().all(|v| v.abs() < 1e-2));
-    let mass: f64 = Tree::<f64, 12>::base(&A1).mass
-        + Tree::<f64, 12>::bodies(&A1)
+    let mass: f64 = Tree::<f64, 12>::base(&A1Geared).mass
+        + Tree::<f64, 12>::bodies(&A1Geared)
             .iter()
             .map(|b| b.mass)
             .sum::<f64>();

@@ -1,0 +1,183 @@
+//! The force QP.
+//!
+//! minimise w_f |Σ f − F|² + w_m |Σ r × f − M|² + w_e |f|² over the foot forces f in world axes, r from the centre
+//! of mass to the foot, subject to |f_x|, |f_y| ≤ μ f_z, 0 ≤ f_z ≤ f_max and |τ| ≤ τ_max with τ = −Jᵀ f + τ_0; feet in
+//! the air have bounds [0, 0], which the solver eliminates.
+
+use dense_qp::{Problem, Status, solve_warm};
+use nalgebra::{Matrix3, Vector3};
+use so3::{Scalar, hat};
+
+use crate::{Outcome, Settings};
+
+/// What the QP needs to know of one foot.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FootData<T: Scalar, const N: usize> {
+    pub(crate) in_contact: bool,
+    /// From the centre of mass to the foot, world axes.
+    pub(crate) arm_w: Vector3<T>,
+    /// Linear Jacobian columns of the joints, world axes.
+    pub(crate) columns: [Vector3<T>; N],
+}
+
+/// Wrench about the centre of mass that the forces are to make.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wrench<T: Scalar> {
+    pub(crate) force_w: Vector3<T>,
+    pub(crate) moment_w: Vector3<T>,
+}
+
+/// Arrays of one QP with `V` = 3 F variables and `M` = 4 F + N rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Data<T, const V: usize, const M: usize> {
+    hessian: [[T; V]; V],
+    gradient: [T; V],
+    rows: [[T; V]; M],
+    row_lower: [T; M],
+    row_upper: [T; M],
+    lower: [T; V],
+    upper: [T; V],
+}
+
+impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            hessian: [[T::ZERO; V]; V],
+            gradient: [T::ZERO; V],
+            rows: [[T::ZERO; V]; M],
+            row_lower: [T::ZERO; M],
+            row_upper: [T::ZERO; M],
+            lower: [T::ZERO; V],
+            upper: [T::ZERO; V],
+        }
+    }
+
+    /// Writes H, g and the bounds of the feet.
+    fn write_cost<const N: usize, const F: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        feet: &[FootData<T, N>; F],
+        wanted: &Wrench<T>,
+    ) {
+        for (i, (columns, foot)) in self.hessian.chunks_mut(3).zip(feet).enumerate() {
+            let turn = hat(&foot.arm_w).transpose() * settings.moment_weight;
+            for (j, other) in feet.iter().enumerate() {
+                let mut block = Matrix3::from_diagonal_element(settings.force_weight)
+                    + turn * hat(&other.arm_w);
+                if i == j {
+                    block += Matrix3::from_diagonal_element(settings.effort_weight);
+                }
+                for (row, values) in columns.iter_mut().zip(block.row_iter()) {
+                    for (slot, x) in row.iter_mut().skip(3 * j).zip(values.iter()) {
+                        *slot = *x;
+                    }
+                }
+            }
+        }
+        let limits = self.lower.chunks_mut(3).zip(self.upper.chunks_mut(3));
+        for ((gradient, (lower, upper)), foot) in self.gradient.chunks_mut(3).zip(limits).zip(feet)
+        {
+            let pull = wanted.force_w * settings.force_weight
+                + hat(&foot.arm_w).transpose() * wanted.moment_w * settings.moment_weight;
+            let top = settings.max_normal_force;
+            let (low, high) = if foot.in_contact {
+                let side = settings.friction * top;
+                ([-side, -side, T::ZERO], [side, side, top])
+            } else {
+                ([T::ZERO; 3], [T::ZERO; 3])
+            };
+            gradient.copy_from_slice((-pull).as_slice());
+            lower.copy_from_slice(&low);
+            upper.copy_from_slice(&high);
+        }
+    }
+
+    /// Writes the rows: four of friction per foot, then one per joint.
+    fn write_rows<const N: usize, const F: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        feet: &[FootData<T, N>; F],
+        other_torques: &[T; N],
+        max_torques: &[T; N],
+    ) {
+        let limits = self.row_lower.iter_mut().zip(self.row_upper.iter_mut());
+        let mut rows = self.rows.iter_mut().zip(limits);
+        for foot in 0..F {
+            for (axis, sign) in [(0, T::ONE), (0, -T::ONE), (1, T::ONE), (1, -T::ONE)] {
+                // sign f_axis − μ f_z ≤ 0
+                let Some((row, (low, high))) = rows.next() else {
+                    return;
+                };
+                *row = [T::ZERO; V];
+                for (i, x) in row.iter_mut().skip(3 * foot).take(3).enumerate() {
+                    if i == axis {
+                        *x = sign;
+                    } else if i == 2 {
+                        *x = -settings.friction;
+                    }
+                }
+                (*low, *high) = (-T::INFINITY, T::ZERO);
+            }
+        }
+        for (j, (other, most)) in other_torques.iter().zip(max_torques).enumerate() {
+            let Some((row, (low, high))) = rows.next() else {
+                return;
+            };
+            for (triple, foot) in row.chunks_mut(3).zip(feet) {
+                let column = foot.columns.get(j).copied().unwrap_or_else(Vector3::zeros);
+                triple.copy_from_slice((-column).as_slice());
+            }
+            // Where the other torques alone use up the joint, zero force must remain possible.
+            *low = so3::math::min(-*most - *other, T::ZERO);
+            *high = so3::math::max(*most - *other, T::ZERO);
+        }
+    }
+
+    /// Forces of the feet. A problem that cannot be solved gives the last iterate clipped into the limits, and says so.
+    pub(crate) fn solve<const N: usize, const F: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        feet: &[FootData<T, N>; F],
+        wanted: &Wrench<T>,
+        torques: (&[T; N], &[T; N]),
+        workspace: &mut dense_qp::Workspace<T, V, M>,
+    ) -> ([Vector3<T>; F], Outcome) {
+        self.write_cost(settings, feet, wanted);
+        self.write_rows(settings, feet, torques.0, torques.1);
+        let problem = Problem::new(
+            &self.hessian,
+            &self.gradient,
+            &self.rows,
+            &self.row_lower,
+            &self.row_upper,
+        )
+        .with_bounds(&self.lower, &self.upper);
+        let mut forces = [Vector3::zeros(); F];
+        let options = dense_qp::Settings {
+            max_iterations: 200,
+            ..dense_qp::Settings::default()
+        };
+        let Ok(solution) = solve_warm(&problem, &options, workspace) else {
+            return (forces, Outcome::BadData);
+        };
+        let clipped = solution.x.iter().zip(self.lower.iter().zip(&self.upper));
+        let mut numbers = clipped.map(|(x, (l, u))| {
+            if x.is_finite_number() {
+                so3::math::clamp(*x, *l, *u)
+            } else {
+                T::ZERO
+            }
+        });
+        for force in &mut forces {
+            for x in force.iter_mut() {
+                *x = numbers.next().unwrap_or(T::ZERO);
+            }
+        }
+        let outcome = if solution.status == Status::Solved {
+            Outcome::Solved(solution.iterations)
+        } else {
+            Outcome::Failed(solution.status)
+        };
+        (forces, outcome)
+    }
+}
