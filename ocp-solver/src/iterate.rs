@@ -59,7 +59,7 @@ pub(crate) fn evaluate<
     broken
 }
 
-/// Derivatives of every node at the current iterate.
+/// Derivatives of every node at the current iterate, and the residuals of the optimality conditions there.
 pub(crate) fn differentiate<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
@@ -69,7 +69,15 @@ pub(crate) fn differentiate<
 >(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI>],
-) {
+    free: &[bool; NX],
+    primal: T,
+    complementarity: &mut Complementarity<T>,
+) -> Residual<T> {
+    let mut dual = Dual {
+        largest: T::ZERO,
+        sum: T::ZERO,
+        count: T::ONE,
+    };
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
@@ -88,8 +96,72 @@ pub(crate) fn differentiate<
             at,
             &mut stage.derivatives,
         );
+        dual.add(stage, &costate, (k == 0).then_some(free));
+        stage.add_complementarity(complementarity);
         rest = tail;
         k = k.wrapping_add(1);
+    }
+    let hundred = T::of(100.0);
+    let scale = hundred / max(hundred, dual.sum / dual.count);
+    Residual {
+        primal,
+        dual: dual.largest * scale,
+        complementarity: complementarity.largest * scale,
+    }
+}
+
+/// Gradient of the Lagrangian and the size of the multipliers, summed over nodes.
+struct Dual<T> {
+    largest: T,
+    sum: T,
+    count: T,
+}
+
+impl<T: Scalar> Dual<T> {
+    /// Adds a node; `free` marks the coordinates that count if the state is otherwise fixed.
+    #[inline(always)]
+    fn add<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        stage: &Stage<T, X, NX, NU, NI>,
+        next_costate: &[T; NX],
+        free: Option<&[bool; NX]>,
+    ) {
+        let d = &stage.derivatives;
+        let (mut in_x, mut in_u) = (d.cost_x, d.cost_u);
+        add_transposed_product(&mut in_x, &d.dynamics_x, next_costate);
+        add_transposed_product(&mut in_u, &d.dynamics_u, next_costate);
+        let before_mixed = stage
+            .dims
+            .state_rows
+            .saturating_add(stage.dims.control_rows);
+        let rows = d.rows_x.iter().zip(&d.rows_u).zip(&stage.row_multiplier);
+        for (i, ((row_x, row_u), y)) in rows.enumerate().take(stage.row_count()) {
+            if i < stage.dims.state_rows || i >= before_mixed {
+                add_scaled(&mut in_x, *y, row_x);
+            }
+            if i >= stage.dims.state_rows {
+                add_scaled(&mut in_u, *y, row_u);
+            }
+            self.sum += abs(*y);
+            self.count += T::ONE;
+        }
+        match free {
+            Some(free) => {
+                for (value, _) in in_x.iter().zip(free).filter(|(_, free)| **free) {
+                    self.largest = larger(self.largest, *value);
+                }
+            }
+            None => {
+                for (value, costate) in in_x.iter().zip(&stage.costate) {
+                    self.largest = larger(self.largest, *value - *costate);
+                    self.sum += abs(*costate);
+                    self.count += T::ONE;
+                }
+            }
+        }
+        for value in in_u.iter().take(stage.dims.controls) {
+            self.largest = larger(self.largest, *value);
+        }
     }
 }
 
@@ -97,91 +169,34 @@ pub(crate) fn differentiate<
 pub(crate) fn merit<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
     stages: &[Stage<T, X, NX, NU, NI>],
 ) -> Merit<T> {
-    sum_merit(stages.iter().map(|stage| (stage, &stage.values)), T::ZERO)
-}
-
-fn sum_merit<'a, T: Scalar, X: Copy + 'a, const NX: usize, const NU: usize, const NI: usize>(
-    points: impl Iterator<Item = (&'a Stage<T, X, NX, NU, NI>, &'a Values<T, NX, NI>)>,
-    slack_step: T,
-) -> Merit<T> {
     let mut merit = Merit {
         cost: T::ZERO,
         worst: T::ZERO,
         sum: T::ZERO,
     };
-    for (stage, values) in points {
-        merit.cost += values.cost;
-        for gap in &values.gap {
-            merit.worst = larger(merit.worst, *gap);
-            merit.sum += abs(*gap);
-        }
-        let (worst, sum) = stage.row_violation(&values.rows, slack_step);
-        merit.worst = larger(merit.worst, worst);
-        merit.sum += sum;
+    for stage in stages {
+        merit.add(stage, &stage.values, T::ZERO);
     }
     merit
 }
 
-/// Residuals of the optimality conditions at the current iterate; needs derivatives.
-pub(crate) fn residual<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
-    stages: &[Stage<T, X, NX, NU, NI>],
-    free: &[bool; NX],
-    primal: T,
-    complementarity: &Complementarity<T>,
-) -> Residual<T> {
-    let (mut dual, mut sum, mut count) = (T::ZERO, T::ZERO, T::ONE);
-    let mut rest = stages;
-    let mut first = true;
-    while let Some((stage, tail)) = rest.split_first() {
-        let d = &stage.derivatives;
-        let (mut in_x, mut in_u) = (d.cost_x, d.cost_u);
-        add_scaled(&mut in_x, -T::ONE, &stage.costate);
-        if let Some(next) = tail.first() {
-            add_transposed_product(&mut in_x, &d.dynamics_x, &next.costate);
-            add_transposed_product(&mut in_u, &d.dynamics_u, &next.costate);
+impl<T: Scalar> Merit<T> {
+    /// Adds a node with the given values and its slacks moved by `slack_step` of their steps.
+    #[inline(always)]
+    fn add<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        stage: &Stage<T, X, NX, NU, NI>,
+        values: &Values<T, NX, NI>,
+        slack_step: T,
+    ) {
+        self.cost += values.cost;
+        for gap in &values.gap {
+            self.worst = larger(self.worst, *gap);
+            self.sum += abs(*gap);
         }
-        let before_mixed = stage
-            .dims
-            .state_rows
-            .saturating_add(stage.dims.control_rows);
-        for (i, ((row_x, row_u), y)) in d
-            .rows_x
-            .iter()
-            .zip(&d.rows_u)
-            .zip(&stage.row_multiplier)
-            .enumerate()
-            .take(stage.row_count())
-        {
-            if i < stage.dims.state_rows || i >= before_mixed {
-                add_scaled(&mut in_x, *y, row_x);
-            }
-            if i >= stage.dims.state_rows {
-                add_scaled(&mut in_u, *y, row_u);
-            }
-            sum += abs(*y);
-            count += T::ONE;
-        }
-        for ((value, costate), free) in in_x.iter().zip(&stage.costate).zip(free) {
-            if !first {
-                dual = larger(dual, *value);
-                sum += abs(*costate);
-                count += T::ONE;
-            } else if *free {
-                dual = larger(dual, *value);
-            }
-        }
-        for value in in_u.iter().take(stage.dims.controls) {
-            dual = larger(dual, *value);
-        }
-        first = false;
-        rest = tail;
-    }
-    let hundred = T::of(100.0);
-    let scale = hundred / max(hundred, sum / count);
-    Residual {
-        primal,
-        dual: dual * scale,
-        complementarity: complementarity.largest * scale,
+        let (worst, sum) = stage.row_violation(&values.rows, slack_step);
+        self.worst = larger(self.worst, worst);
+        self.sum += sum;
     }
 }
 
@@ -197,32 +212,53 @@ pub(crate) fn try_step<
     stages: &mut [Stage<T, P::State, NX, NU, NI>],
     alpha: T,
 ) -> Merit<T> {
-    let mut before: Option<(P::State, [T; NU])> = None;
-    for (k, stage) in stages.iter_mut().enumerate() {
-        let mut step = [T::ZERO; NX];
-        add_scaled(&mut step, alpha, &stage.step.state);
-        let previous = before.as_ref().map(|(state, control)| (state, control));
-        stage.trial.state = problem.retract(k, &stage.state, &step, previous);
-        stage.trial.control = stage.control;
-        add_scaled(&mut stage.trial.control, alpha, &stage.step.control);
-        before = Some((stage.trial.state, stage.trial.control));
+    let mut merit = Merit {
+        cost: T::ZERO,
+        worst: T::ZERO,
+        sum: T::ZERO,
+    };
+    if let Some(first) = stages.first_mut() {
+        first.move_to_trial(problem, 0, alpha, None);
     }
-    let mut rest = &mut *stages;
+    let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
+        let after = k.wrapping_add(1);
+        if let Some(next) = tail.first_mut() {
+            let before = (&stage.trial.state, &stage.trial.control);
+            next.move_to_trial(problem, after, alpha, Some(before));
+        }
         let trial = &mut stage.trial;
         let next = tail.first().map(|next| &next.trial.state);
         problem.evaluate(k, &trial.state, &trial.control, next, &mut trial.values);
         if next.is_none() {
             trial.values.gap = [T::ZERO; NX];
         }
+        merit.add(stage, &stage.trial.values, alpha);
         rest = tail;
-        k = k.wrapping_add(1);
+        k = after;
     }
-    sum_merit(
-        stages.iter().map(|stage| (stage, &stage.trial.values)),
-        alpha,
-    )
+    merit
+}
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
+    Stage<T, X, NX, NU, NI>
+{
+    /// Moves state and control by `alpha` of their steps into the trial point.
+    #[inline(always)]
+    fn move_to_trial<P: Problem<T, NX, NU, NI, State = X>>(
+        &mut self,
+        problem: &P,
+        k: usize,
+        alpha: T,
+        before: Option<(&X, &[T; NU])>,
+    ) {
+        let mut step = [T::ZERO; NX];
+        add_scaled(&mut step, alpha, &self.step.state);
+        self.trial.state = problem.retract(k, &self.state, &step, before);
+        self.trial.control = self.control;
+        add_scaled(&mut self.trial.control, alpha, &self.step.control);
+    }
 }
 
 /// Makes the trial point the iterate and moves all multipliers.

@@ -39,10 +39,29 @@ pub(crate) fn add_product<T: Scalar, const R: usize, const C: usize>(
     matrix: &[[T; R]; C],
     weights: &[T; C],
 ) {
+    let mut sum = *out;
     for (column, weight) in matrix.iter().zip(weights) {
         if *weight != T::ZERO {
-            add_scaled(out, *weight, column);
+            add_scaled(&mut sum, *weight, column);
         }
+    }
+    *out = sum;
+}
+
+/// `matrix += Σ_j left_j rowsᵀ_j` over the first `n` rows, `left_j` and `rows_j` of equal length.
+#[inline(always)]
+pub(crate) fn add_outer_products<T: Scalar, const N: usize, const M: usize>(
+    matrix: &mut [[T; N]; N],
+    left: &[[T; N]; M],
+    rows: &[[T; N]; M],
+    n: usize,
+) {
+    for (c, column) in matrix.iter_mut().enumerate() {
+        let mut sum = *column;
+        for (left, row) in left.iter().zip(rows).take(n) {
+            add_scaled(&mut sum, left[c], row);
+        }
+        *column = sum;
     }
 }
 
@@ -200,9 +219,10 @@ mod tests {
             x[0] *= d;
         }
         solve_upper(&l, &mut x, 3);
-        for i in 0..3 {
-            let b: f64 = (0..3).map(|j| a[j][i] * x[j][0]).sum();
-            assert!((b - (i as f64 + 1.0)).abs() < 1e-12);
+        // Rows and columns of a symmetric matrix agree.
+        for (row, wanted) in a.iter().zip([1.0, 2.0, 3.0]) {
+            let b: f64 = row.iter().zip(&x).take(3).map(|(a, x)| a * x[0]).sum();
+            assert!((b - wanted).abs() < 1e-12);
         }
     }
 

@@ -17,11 +17,13 @@
 //! coordinates of `P_0` is; otherwise the caller adds a multiple of the identity to `H` and repeats.
 
 use crate::kernel::{
-    add_outer, add_product, add_scaled, add_transposed_product, factor, solve_lower, solve_upper,
-    transpose,
+    add_outer, add_outer_products, add_product, add_scaled, add_transposed_product, factor,
+    solve_lower, solve_upper, transpose,
 };
+use crate::rows::RowBarrier;
 use crate::stage::Stage;
 use so3::Scalar;
+use so3::math::min;
 
 /// Cost-to-go of the node that follows.
 struct CostToGo<T, const NX: usize> {
@@ -35,10 +37,12 @@ struct CostToGo<T, const NX: usize> {
 #[must_use]
 pub(crate) fn factorise<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
     stages: &mut [Stage<T, X, NX, NU, NI>],
+    barrier: RowBarrier<T>,
     shift: T,
 ) -> bool {
     let mut next: Option<CostToGo<T, NX>> = None;
     for stage in stages.iter_mut().rev() {
+        stage.condense_rows(barrier);
         if !stage.factorise(next.as_ref(), shift) {
             return false;
         }
@@ -111,21 +115,27 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             }
             solve_lower(&q_uu, &mut q_xu, n);
             solve_lower(&q_uu, &mut q_u, n);
-            for (((z, y), inverse), _) in q_xu.iter_mut().zip(&mut q_u).zip(&inverse).zip(0..n) {
-                let row = *z;
-                for value in z.iter_mut() {
+            let z = q_xu;
+            let scaled = q_xu.iter_mut().zip(&mut q_u).zip(&inverse).zip(&z).take(n);
+            for (((column, y), inverse), z) in scaled {
+                for value in column.iter_mut() {
                     *value *= -*inverse;
                 }
-                for (column, weight) in q_xx.iter_mut().zip(z.iter()) {
-                    add_scaled(column, *weight, &row);
-                }
                 y[0] *= -*inverse;
-                add_scaled(&mut q_x, y[0], &row);
+                add_scaled(&mut q_x, y[0], z);
             }
+            add_outer_products(&mut q_xx, &q_xu, &z, n);
             solve_upper(&q_uu, &mut q_xu, n);
             solve_upper(&q_uu, &mut q_u, n);
             self.riccati.gain = q_xu;
             self.riccati.feedforward = q_u;
+        }
+        // Rounding makes the two triangles differ, and an unstable motion would amplify that.
+        let mirror = transpose(&q_xx);
+        for (column, mirror) in q_xx.iter_mut().zip(&mirror) {
+            for (a, b) in column.iter_mut().zip(mirror) {
+                *a = (*a + *b) * T::HALF;
+            }
         }
         self.riccati.hessian = q_xx;
         self.riccati.gradient = q_x;
@@ -133,7 +143,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     }
 
     /// Adds the condensed rows to the stage Hessian and gradient.
-    #[inline(always)]
+    #[inline(never)]
     fn add_rows(
         &self,
         q_xx: &mut [[T; NX]; NX],
@@ -212,12 +222,20 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
     true
 }
 
-/// Forward substitution from the step of the first state: state, control and full-step costates.
+/// Forward substitution from the step of the first state: states, controls, full-step costates, slacks
+/// and bound multipliers.
+///
+/// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance to a
+/// bound and of every bound multiplier.
+#[inline(never)]
 pub(crate) fn substitute<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
     stages: &mut [Stage<T, X, NX, NU, NI>],
     start: [T; NX],
-) {
+    mu: T,
+    fraction: T,
+) -> (T, T) {
     let mut step = start;
+    let mut lengths = (T::ONE, T::ONE);
     for stage in stages.iter_mut() {
         stage.step.state = step;
         stage.step.costate = stage.riccati.gradient;
@@ -242,5 +260,8 @@ pub(crate) fn substitute<T: Scalar, X: Copy, const NX: usize, const NU: usize, c
             &stage.step.control,
         );
         step = next;
+        let (primal, dual) = stage.step_rows(mu, fraction);
+        lengths = (min(lengths.0, primal), min(lengths.1, dual));
     }
+    lengths
 }

@@ -16,6 +16,15 @@ use crate::stage::{Side, Stage};
 use so3::Scalar;
 use so3::math::{max, min};
 
+/// Parameters of the condensed rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowBarrier<T> {
+    /// Barrier parameter µ.
+    pub(crate) mu: T,
+    /// Proximal weight ρ of equalities.
+    pub(crate) rho: T,
+}
+
 /// Sums over the bounds of a problem.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Complementarity<T> {
@@ -128,8 +137,9 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
-    /// Weights and targets of the condensed rows for barrier parameter `mu` and equality weight `rho`.
-    pub(crate) fn condense_rows(&mut self, mu: T, rho: T) {
+    /// Weights and targets of the condensed rows.
+    pub(crate) fn condense_rows(&mut self, barrier: RowBarrier<T>) {
+        let RowBarrier { mu, rho } = barrier;
         for i in 0..self.row_count() {
             let residual = self.values.rows[i] - self.slack[i];
             if self.is_equality(i) {

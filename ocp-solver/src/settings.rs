@@ -5,13 +5,14 @@ use so3::Scalar;
 /// How the barrier parameter µ goes to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Barrier {
-    /// Every iteration anew from the complementarity of the iterate (the rule of LOQO); fastest.
+    /// Every iteration anew from the complementarity of the iterate (the rule of LOQO); fewest iterations.
     Adaptive,
-    /// From `initial_mu` down, whenever the barrier problem is solved well enough; steadier, slower.
+    /// From `initial_mu` down, whenever the barrier problem is solved well enough; steadiest.
     Monotone,
-    /// Adaptive, and from the guess again with the monotone rule if the adaptive one stalls.
+    /// Monotone; where that does not end in a solution, from the guess again with the adaptive rule, and
+    /// then with the monotone rule from a thirty times larger µ.
     #[default]
-    AdaptiveThenMonotone,
+    Portfolio,
 }
 
 /// Options of a solve.
@@ -20,6 +21,8 @@ pub enum Barrier {
 pub struct Settings<T> {
     /// Largest number of iterations, over all attempts.
     pub max_iterations: usize,
+    /// Largest number of iterations of one attempt of a portfolio.
+    pub attempt_iterations: usize,
     /// Largest violation of dynamics and rows at a solution, in their own units.
     pub primal_tolerance: T,
     /// Largest entry of the gradient of the Lagrangian at a solution, relative to the mean multiplier
@@ -39,7 +42,8 @@ pub struct Settings<T> {
     pub bound_push: T,
     /// Proximal weight ρ of equality rows.
     pub equality_weight: T,
-    /// The adaptive rule has stalled after this many steps in a row shorter than `stall_step`.
+    /// The adaptive rule has stalled after this many steps in a row shorter than `stall_step`; the
+    /// monotone rule after ten times as many.
     pub stall_count: usize,
     /// See `stall_count`.
     pub stall_step: T,
@@ -50,15 +54,16 @@ impl<T: Scalar> Settings<T> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            max_iterations: 300,
+            max_iterations: 400,
+            attempt_iterations: 200,
             primal_tolerance: T::of(1e-8),
             dual_tolerance: T::of(1e-6),
             complementarity_tolerance: T::of(1e-6),
             barrier: Barrier::default(),
-            initial_mu: T::of(0.1),
+            initial_mu: T::of(0.03),
             adaptive_factor: T::of(0.03),
             initial_multiplier: T::ONE,
-            bound_push: T::of(1e-2),
+            bound_push: T::of(0.1),
             equality_weight: T::of(1e4),
             stall_count: 3,
             stall_step: T::of(0.03),

@@ -3,7 +3,7 @@
 use crate::iterate::{self, Merit};
 use crate::problem::Problem;
 use crate::riccati::{factorise, solve_start, substitute};
-use crate::rows::Complementarity;
+use crate::rows::{Complementarity, RowBarrier};
 use crate::settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
 use crate::stage::Stage;
 use core::ops::ControlFlow;
@@ -52,20 +52,22 @@ impl<T: Scalar> Solver<T> {
     ) -> Result<Solution<T>, Error> {
         self.settings.check()?;
         prepare(problem, stages)?;
-        let mut run = Run::new(problem, self.settings.barrier != Barrier::Monotone);
-        let mut status = self.attempt(problem, stages, &mut run, &mut observer);
-        let may_restart = matches!(
-            status,
-            Status::Stalled | Status::NotFinite | Status::Indefinite
-        );
-        if may_restart && self.settings.barrier == Barrier::AdaptiveThenMonotone {
-            for stage in stages.iter_mut() {
-                (stage.state, stage.control) = stage.guess;
+        let mut run = Run::new(problem);
+        let mut status = Status::IterationLimit;
+        let mut restarts = 0;
+        for (i, (adaptive, mu)) in self.settings.attempts().into_iter().flatten().enumerate() {
+            if i > 0 {
+                for stage in stages.iter_mut() {
+                    (stage.state, stage.control) = stage.guess;
+                }
+                let _ = iterate::evaluate(problem, stages);
             }
-            let _ = iterate::evaluate(problem, stages);
-            run.adaptive = false;
-            run.attempt = 1;
-            status = self.attempt(problem, stages, &mut run, &mut observer);
+            (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
+            status = self.attempt(problem, stages, &mut run, mu, &mut observer);
+            let out_of_iterations = run.iterations >= self.settings.max_iterations;
+            if matches!(status, Status::Solved | Status::Cancelled) || out_of_iterations {
+                break;
+            }
         }
         if status != Status::Solved {
             for stage in stages.iter_mut() {
@@ -80,7 +82,7 @@ impl<T: Scalar> Solver<T> {
             residual: run.best,
             mu: run.mu,
             factorisations: run.factorisations,
-            restarts: run.attempt,
+            restarts,
         })
     }
 
@@ -90,26 +92,30 @@ impl<T: Scalar> Solver<T> {
         problem: &P,
         stages: &mut [Stage<T, P::State, NX, NU, NI>],
         run: &mut Run<T, NX>,
+        initial_mu: T,
         observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Status {
         let settings = &self.settings;
-        run.mu = settings.initial_mu;
+        run.mu = initial_mu;
         run.shift = T::ZERO;
         run.short_steps = 0;
+        let last_iteration = run.iterations.saturating_add(settings.attempt_iterations);
         for stage in stages.iter_mut() {
             stage.costate = [T::ZERO; NX];
-            let mu = (!run.adaptive).then_some(settings.initial_mu);
+            let mu = (!run.adaptive).then_some(initial_mu);
             stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
         }
         let mut point = iterate::merit(stages);
         let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
         loop {
-            iterate::differentiate(problem, stages);
             let mut complementarity = Complementarity::new();
-            for stage in stages.iter() {
-                stage.add_complementarity(&mut complementarity);
-            }
-            let residual = iterate::residual(stages, &run.free, point.worst, &complementarity);
+            let residual = iterate::differentiate(
+                problem,
+                stages,
+                &run.free,
+                point.worst,
+                &mut complementarity,
+            );
             run.remember(settings, stages, &point, &residual);
             let progress = Progress {
                 iteration: run.iterations,
@@ -129,26 +135,16 @@ impl<T: Scalar> Solver<T> {
                 run.best_cost = point.cost;
                 return Status::Solved;
             }
-            if run.iterations >= settings.max_iterations {
+            if run.iterations >= settings.max_iterations.min(last_iteration) {
                 return Status::IterationLimit;
             }
             run.iterations = run.iterations.saturating_add(1);
             self.update_mu(run, &residual, &complementarity);
 
-            for stage in stages.iter_mut() {
-                stage.condense_rows(run.mu, settings.equality_weight);
-            }
-            used_shift = match self.newton(stages, run) {
-                Ok(shift) => shift,
+            (used_shift, primal_step, dual_step) = match self.newton(stages, run) {
+                Ok(step) => step,
                 Err(status) => return status,
             };
-            let fraction = max(T::of(0.99), T::ONE - run.mu);
-            (primal_step, dual_step) = (T::ONE, T::ONE);
-            for stage in stages.iter_mut() {
-                let (primal, dual) = stage.step_rows(run.mu, fraction);
-                primal_step = min(primal_step, primal);
-                dual_step = min(dual_step, dual);
-            }
             let mut trial = iterate::try_step(problem, stages, primal_step);
             let mut halvings = 0u8;
             while !trial.is_finite() {
@@ -167,7 +163,7 @@ impl<T: Scalar> Solver<T> {
                 settings.equality_weight,
                 floor,
             );
-            point = iterate::merit(stages);
+            point = trial;
             if primal_step < settings.stall_step {
                 run.short_steps = run.short_steps.saturating_add(1);
             } else {
@@ -222,25 +218,32 @@ impl<T: Scalar> Solver<T> {
     }
 
     /// Factorises with the least shift that makes the Hessian positive definite and computes the step.
+    ///
+    /// Returns the shift and the primal and dual step lengths to the boundary.
     fn newton<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
         &self,
         stages: &mut [Stage<T, X, NX, NU, NI>],
         run: &mut Run<T, NX>,
-    ) -> Result<T, Status> {
+    ) -> Result<(T, T, T), Status> {
+        let barrier = RowBarrier {
+            mu: run.mu,
+            rho: self.settings.equality_weight,
+        };
+        let fraction = max(T::of(0.99), T::ONE - run.mu);
         let mut shift = T::ZERO;
         for _ in 0..40 {
             run.factorisations = run.factorisations.saturating_add(1);
-            if factorise(stages, shift)
+            if factorise(stages, barrier, shift)
                 && let Some(first) = stages.first()
             {
                 let mut start = [T::ZERO; NX];
                 let riccati = &first.riccati;
                 if solve_start(&riccati.hessian, &riccati.gradient, &run.free, &mut start) {
-                    substitute(stages, start);
+                    let (primal, dual) = substitute(stages, start, run.mu, fraction);
                     if shift > T::ZERO {
                         run.shift = shift;
                     }
-                    return Ok(shift);
+                    return Ok((shift, primal, dual));
                 }
             }
             shift = if shift > T::ZERO {
@@ -259,10 +262,7 @@ impl<T: Scalar> Solver<T> {
 }
 
 impl<T: Scalar, const NX: usize> Run<T, NX> {
-    fn new<P: Problem<T, NX, NU, NI>, const NU: usize, const NI: usize>(
-        problem: &P,
-        adaptive: bool,
-    ) -> Self {
+    fn new<P: Problem<T, NX, NU, NI>, const NU: usize, const NI: usize>(problem: &P) -> Self {
         let mut free = [false; NX];
         for (i, free) in free.iter_mut().enumerate() {
             *free = problem.is_free_at_start(i);
@@ -274,7 +274,7 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
         };
         Self {
             free,
-            adaptive,
+            adaptive: false,
             mu: T::ZERO,
             shift: T::ZERO,
             short_steps: 0,
@@ -314,6 +314,20 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
 }
 
 impl<T: Scalar> Settings<T> {
+    /// Rules to try in turn: whether it is the adaptive one, and its first µ.
+    fn attempts(&self) -> [Option<(bool, T)>; 3] {
+        let mu = self.initial_mu;
+        match self.barrier {
+            Barrier::Adaptive => [Some((true, mu)), None, None],
+            Barrier::Monotone => [Some((false, mu)), None, None],
+            Barrier::Portfolio => [
+                Some((false, mu)),
+                Some((true, mu)),
+                Some((false, mu * T::of(30.0))),
+            ],
+        }
+    }
+
     fn smallest_mu(&self) -> T {
         self.complementarity_tolerance * T::of(0.1)
     }
@@ -340,8 +354,13 @@ impl<T: Scalar> Settings<T> {
                 return Err(Error::Setting(name));
             }
         }
-        if self.max_iterations == 0 {
-            return Err(Error::Setting("max_iterations"));
+        for (value, name) in [
+            (self.max_iterations, "max_iterations"),
+            (self.attempt_iterations, "attempt_iterations"),
+        ] {
+            if value == 0 {
+                return Err(Error::Setting(name));
+            }
         }
         Ok(())
     }

@@ -40,7 +40,7 @@ pub(crate) struct Args {
     #[arg(long)]
     trace: bool,
     /// Barrier rule.
-    #[arg(long, default_value = "both", value_parser = ["adaptive", "monotone", "both"])]
+    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"])]
     barrier: String,
 }
 
@@ -77,7 +77,7 @@ fn solve<const PHASES: usize, const NX: usize>(
     settings.barrier = match args.barrier.as_str() {
         "adaptive" => Barrier::Adaptive,
         "monotone" => Barrier::Monotone,
-        _ => Barrier::AdaptiveThenMonotone,
+        _ => Barrier::Portfolio,
     };
     let solver = Solver::new(settings);
     let mut times = Vec::new();
