@@ -27,8 +27,8 @@ pub(crate) struct Tables {
     pub(crate) bodies: Vec<Body<f64>>,
     pub(crate) joints: Vec<JointInfo>,
     pub(crate) frames: Vec<LinkFrame>,
-    /// For each body, whether any link lumped into it has an `<inertial>`.
-    pub(crate) has_inertial: Vec<bool>,
+    /// What each link of the file is lumped into.
+    pub(crate) body_of: Vec<Link>,
 }
 
 /// A link to visit: what it is lumped into, and where it is there.
@@ -46,7 +46,7 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
         bodies: Vec::new(),
         joints: Vec::new(),
         frames: Vec::new(),
-        has_inertial: Vec::new(),
+        body_of: vec![Link::Base; urdf.links.len()],
     };
     let mut base = Inertia::ZERO;
     let mut inertias: Vec<Inertia<f64>> = Vec::new();
@@ -71,7 +71,6 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
                 at.placement = placement;
                 out.bodies.push(body);
                 inertias.push(Inertia::ZERO);
-                out.has_inertial.push(false);
                 out.joints.push(JointInfo {
                     name: joint.name.clone(),
                     link: joint.child.clone(),
@@ -86,12 +85,10 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
             let lumped = inertia.transformed(&at.placement);
             match at.body {
                 Link::Base => base += lumped,
-                Link::Joint(i) => {
-                    inertias[i] += lumped;
-                    out.has_inertial[i] = true;
-                }
+                Link::Joint(i) => inertias[i] += lumped,
             }
         }
+        out.body_of[at.link] = at.body;
         out.frames.push(LinkFrame {
             name: link.name.clone(),
             joint: at.joint.map(|j| urdf.joints[j].name.clone()),

@@ -141,9 +141,9 @@ pub enum ImportError {
         /// Its mass, kg.
         mass: f64,
     },
-    /// Principal moments of inertia that no body has.
+    /// A moved body has an inertia that no body has, because of this link.
     #[error(
-        "{element} has principal moments {moments:?} kg m²: none may be negative, and the largest may not exceed the sum of the others"
+        "{element} has principal moments {moments:?} kg m²: none may be negative, and the largest may not exceed the sum of the others; correct them, or take them as they are with --inertia as-written"
     )]
     UnphysicalInertia {
         /// The link.
@@ -223,11 +223,12 @@ pub enum Warning {
         /// Length as written.
         length: f64,
     },
-    /// Principal moments break the triangle inequality or are negative by no more than rounding.
+    /// The link's principal moments are those of no body; the moved body's as a whole are, or the caller wants
+    /// them as written.
     #[error(
         "{element}: principal moments {moments:?} kg m² are those of no body, by {excess:.1e} of the largest; kept as written"
     )]
-    InertiaRounded {
+    UnphysicalLink {
         /// The link.
         element: String,
         /// Principal moments, kg m², ascending.

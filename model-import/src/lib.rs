@@ -12,5 +12,5 @@ mod locks;
 mod tree;
 
 pub use error::{ImportError, Warning};
-pub use options::{MimicPolicy, Options, parse_lock};
+pub use options::{InertiaPolicy, MimicPolicy, Options, parse_lock};
 pub use robot::{JointInfo, LinkFrame, Robot};

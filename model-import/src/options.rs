@@ -16,6 +16,16 @@ pub enum MimicPolicy {
     Free,
 }
 
+/// What becomes of moved bodies with moments of inertia that no body has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum InertiaPolicy {
+    /// They are an error. Links that are unphysical by themselves but not with what is fixed to them are not.
+    #[default]
+    Physical,
+    /// They are kept, as Pinocchio keeps them, as long as the mass matrix can be inverted.
+    AsWritten,
+}
+
 /// What the caller decides about an import.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -25,6 +35,8 @@ pub struct Options {
     pub locks: Vec<(String, f64)>,
     /// What becomes of mimic joints.
     pub mimic: MimicPolicy,
+    /// What becomes of moments of inertia that no body has.
+    pub inertia: InertiaPolicy,
 }
 
 impl Default for Options {
@@ -33,6 +45,7 @@ impl Default for Options {
             base: BaseKind::Floating,
             locks: Vec::new(),
             mimic: MimicPolicy::Refuse,
+            inertia: InertiaPolicy::Physical,
         }
     }
 }

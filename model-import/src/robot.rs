@@ -1,15 +1,15 @@
 //! A robot as imported: tables, names and what was tolerated.
 
 use rbd_core::algo::crba::{MassMatrix, crba};
-use rbd_core::model::{BaseBody, BaseKind, Body, Frame, JointLimits};
+use rbd_core::model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 use rbd_core::state::{Configuration, Posture};
 use rbd_core::{TableError, TableModel};
 use so3::Scalar;
 
-use crate::canonical::{self, Tables};
+use crate::canonical;
 use crate::error::{ImportError, Warning};
 use crate::locks::locked_positions;
-use crate::options::Options;
+use crate::options::{InertiaPolicy, Options};
 use crate::tree::LinkTree;
 use crate::urdf::Urdf;
 
@@ -62,6 +62,8 @@ pub struct Robot {
     pub locked: Vec<(String, f64)>,
     /// What was tolerated.
     pub warnings: Vec<Warning>,
+    /// What was decided about moments of inertia that no body has.
+    pub inertia: InertiaPolicy,
 }
 
 impl Robot {
@@ -76,19 +78,20 @@ impl Robot {
         let at = locked_positions(&urdf, options, &mut warnings)?;
         let tables = canonical::tables(&urdf, &tree, &at);
         let locked = urdf.joints.iter().zip(&at);
-        let robot = Self {
+        let mut robot = Self {
             name: urdf.name.clone(),
             base_kind: options.base,
+            base: tables.base,
+            bodies: tables.bodies,
+            joints: tables.joints,
+            frames: tables.frames,
             locked: locked
                 .filter_map(|(j, at)| at.map(|x| (j.name.clone(), x)))
                 .collect(),
             warnings,
-            base: tables.base,
-            bodies: tables.bodies.clone(),
-            joints: tables.joints.clone(),
-            frames: tables.frames.clone(),
+            inertia: options.inertia,
         };
-        robot.check(&tables)?;
+        robot.check(&urdf, &tables.body_of)?;
         Ok(robot)
     }
 
@@ -109,7 +112,10 @@ impl Robot {
             first: self.base.first.map(T::of),
             second: self.base.second.map(T::of),
         };
-        TableModel::new(self.base_kind, base, &bodies)
+        match self.inertia {
+            InertiaPolicy::Physical => TableModel::new(self.base_kind, base, &bodies),
+            InertiaPolicy::AsWritten => TableModel::with_any_inertia(self.base_kind, base, &bodies),
+        }
     }
 
     /// The frame of a link, by the link's name.
@@ -119,9 +125,9 @@ impl Robot {
         found.map(|f| f.frame)
     }
 
-    /// Every joint must feel inertia with the others free, at zero and where no two axes need coincide:
-    /// then the mass matrix can be inverted.
-    fn check(&self, tables: &Tables) -> Result<(), ImportError> {
+    /// The tables make a model, and its mass matrix can be inverted: every joint feels inertia with the others
+    /// free, where no two axes need coincide.
+    fn check(&mut self, urdf: &Urdf, body_of: &[Link]) -> Result<(), ImportError> {
         let joints = self.bodies.len();
         if joints > MOST_JOINTS {
             return Err(ImportError::TooManyJoints {
@@ -129,7 +135,25 @@ impl Robot {
                 most: MOST_JOINTS,
             });
         }
-        let model: TableModel<f64, MOST_JOINTS> = self.model()?;
+        let model: TableModel<f64, MOST_JOINTS> = match self.model() {
+            Ok(model) => model,
+            Err(TableError::BadInertia { body }) => {
+                let moved = if body == joints {
+                    Link::Base
+                } else {
+                    Link::Joint(body)
+                };
+                return Err(worst_link(urdf, body_of, moved));
+            }
+            Err(error) => return Err(error.into()),
+        };
+        self.warnings.extend(urdf.links.iter().filter_map(|link| {
+            link.violation.map(|v| Warning::UnphysicalLink {
+                element: link.element.clone(),
+                moments: v.moments,
+                excess: v.excess,
+            })
+        }));
         if self.base_kind == BaseKind::Floating && self.mass() <= 0.0 {
             return Err(ImportError::NoMass);
         }
@@ -139,18 +163,34 @@ impl Robot {
         }
         let mut mass = Box::new(MassMatrix::ZERO);
         crba(&model, &Posture::new(&model, &configuration), &mut mass);
-        match first_weightless(&mut mass.joints, joints) {
-            None => Ok(()),
-            Some(i) => Err(ImportError::MissingInertia {
-                joint: self.joints[i].name.clone(),
-                link: self.joints[i].link.clone(),
-                state: if tables.has_inertial[i] {
-                    "has an <inertial> of zero about the joint's axis"
-                } else {
-                    "has no <inertial>"
-                },
-            }),
-        }
+        let Some(i) = first_weightless(&mut mass.joints, joints) else {
+            return Ok(());
+        };
+        let mut links = urdf.links.iter().zip(body_of);
+        let weighed = links.any(|(l, body)| *body == Link::Joint(i) && l.inertia.is_some());
+        Err(ImportError::MissingInertia {
+            joint: self.joints[i].name.clone(),
+            link: self.joints[i].link.clone(),
+            state: if weighed {
+                "has an <inertial> that does not resist the joint"
+            } else {
+                "has no <inertial>"
+            },
+        })
+    }
+}
+
+/// The link that makes the moved body `moved` unphysical, as an error.
+fn worst_link(urdf: &Urdf, body_of: &[Link], moved: Link) -> ImportError {
+    let links = urdf.links.iter().zip(body_of);
+    let bad = links.filter(|(_, body)| **body == moved);
+    let bad = bad.filter_map(|(link, _)| link.violation.map(|v| (link, v)));
+    match bad.max_by(|(_, a), (_, b)| a.moments[2].total_cmp(&b.moments[2])) {
+        Some((link, violation)) => ImportError::UnphysicalInertia {
+            element: link.element.clone(),
+            moments: violation.moments,
+        },
+        None => ImportError::Table(TableError::BadInertia { body: 0 }),
     }
 }
 

@@ -15,9 +15,7 @@ use crate::error::{ImportError, Warning};
 const AXIS_ROUNDING: f64 = 1e-2;
 /// Deviation of an axis from unit length below which nothing is said.
 const AXIS_SILENT: f64 = 1e-6;
-/// Largest violation of the triangle inequality, relative to the largest moment, that is taken for rounding.
-const INERTIA_ROUNDING: f64 = 5e-2;
-/// Violation below which nothing is said.
+/// Violation of the triangle inequality, relative to the largest moment, below which nothing is said.
 const INERTIA_SILENT: f64 = 1e-9;
 
 /// A robot as its file describes it.
@@ -38,8 +36,21 @@ pub struct Urdf {
 pub struct UrdfLink {
     /// Its name.
     pub name: String,
+    /// Kind, name and line, for messages.
+    pub element: String,
     /// Inertia in the link's own frame; `None` without `<inertial>`.
     pub inertia: Option<Inertia<f64>>,
+    /// How the inertia is none that a body can have, if so.
+    pub violation: Option<Violation>,
+}
+
+/// Principal moments of inertia that no body has: one is negative, or more than the sum of the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Violation {
+    /// The principal moments about the centre of mass, ascending, kg m².
+    pub moments: [f64; 3],
+    /// By how much, relative to the largest.
+    pub excess: f64,
 }
 
 /// What a joint lets happen.
@@ -133,12 +144,23 @@ impl Urdf {
             Some(inertial) => Some(self.inertia(inertial, &element)?),
             None => None,
         };
-        self.links.push(UrdfLink { name, inertia });
+        let (inertia, violation) = inertia.unzip();
+        let violation = violation.flatten();
+        self.links.push(UrdfLink {
+            name,
+            element,
+            inertia,
+            violation,
+        });
         Ok(())
     }
 
     /// Mass, first and second moments in the link's frame.
-    fn inertia(&mut self, node: Node<'_, '_>, element: &str) -> Result<Inertia<f64>, ImportError> {
+    fn inertia(
+        &mut self,
+        node: Node<'_, '_>,
+        element: &str,
+    ) -> Result<(Inertia<f64>, Option<Violation>), ImportError> {
         let mass_node = required(node, "mass", element, "<mass> in its <inertial>")?;
         let mass = number(mass_node, "value", element, "mass")?;
         if mass < 0.0 {
@@ -155,36 +177,14 @@ impl Urdf {
         }
         let origin = pose(child(node, "origin"), element)?;
         let rotational = Symmetric3::new(entries);
-        self.check_inertia(mass, &rotational.to_matrix(), element)?;
-        let rotated = rotational.rotated(origin.rotation.matrix());
-        Ok(Inertia::from_com(mass, origin.translation, rotated))
-    }
-
-    fn check_inertia(
-        &mut self,
-        mass: f64,
-        rotational: &Matrix3<f64>,
-        element: &str,
-    ) -> Result<(), ImportError> {
-        let mut moments: [f64; 3] = rotational.symmetric_eigenvalues().into();
-        moments.sort_by(f64::total_cmp);
-        let [low, middle, high] = moments;
-        let element = element.to_owned();
-        let excess = math::max(-low, high - middle - low);
-        if excess > INERTIA_ROUNDING * high || (high <= 0.0 && excess > 0.0) {
-            return Err(ImportError::UnphysicalInertia { element, moments });
-        }
-        if mass == 0.0 && high > 0.0 {
+        let violation = violation(&rotational.to_matrix());
+        if mass == 0.0 && entries.iter().any(|x| *x != 0.0) {
+            let element = element.to_owned();
             self.warnings.push(Warning::InertiaWithoutMass { element });
-        } else if excess > INERTIA_SILENT * high {
-            let excess = excess / high;
-            self.warnings.push(Warning::InertiaRounded {
-                element,
-                moments,
-                excess,
-            });
         }
-        Ok(())
+        let rotated = rotational.rotated(origin.rotation.matrix());
+        let inertia = Inertia::from_com(mass, origin.translation, rotated);
+        Ok((inertia, violation))
     }
 
     fn add_joint(&mut self, node: Node<'_, '_>) -> Result<(), ImportError> {
@@ -300,6 +300,18 @@ impl Urdf {
         limits.effort = positive("effort", "effort")?;
         Ok(limits)
     }
+}
+
+fn violation(rotational: &Matrix3<f64>) -> Option<Violation> {
+    let mut moments: [f64; 3] = rotational.symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    let [low, middle, high] = moments;
+    let largest = math::max(math::abs(low), math::abs(high));
+    let excess = math::max(-low, high - middle - low);
+    (excess > INERTIA_SILENT * largest).then(|| Violation {
+        moments,
+        excess: excess / largest,
+    })
 }
 
 fn mimic(node: Node<'_, '_>, element: &str) -> Result<Mimic, ImportError> {

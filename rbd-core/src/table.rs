@@ -97,6 +97,26 @@ impl<T: Scalar, const CAP: usize> TableModel<T, CAP> {
         base: BaseBody<T>,
         rows: &[Body<T>],
     ) -> Result<Self, TableError> {
+        let model = Self::with_any_inertia(base_kind, base, rows)?;
+        check_distribution(base.mass, &base.first, &base.second, rows.len())?;
+        for (i, row) in rows.iter().enumerate() {
+            check_distribution(row.mass, &row.first, &row.second, i)?;
+        }
+        Ok(model)
+    }
+
+    /// As [`TableModel::new`], but second moments that no mass distribution has are taken as they are.
+    ///
+    /// Published robot descriptions have such links, and dynamics are defined for them as long as the mass
+    /// matrix stays positive definite: that is for the caller to know.
+    ///
+    /// # Errors
+    /// Names the first row that breaks another rule of [`TableError`].
+    pub fn with_any_inertia(
+        base_kind: BaseKind,
+        base: BaseBody<T>,
+        rows: &[Body<T>],
+    ) -> Result<Self, TableError> {
         let count = rows.len();
         if count > CAP {
             return Err(TableError::TooManyBodies {
@@ -104,7 +124,7 @@ impl<T: Scalar, const CAP: usize> TableModel<T, CAP> {
                 capacity: CAP,
             });
         }
-        check_inertia(base.mass, &base.first, &base.second, count)?;
+        check_moments(base.mass, &base.first, &base.second, count)?;
         let mut bodies = [Body::EMPTY; CAP];
         for (slot, row) in bodies.iter_mut().zip(rows) {
             *slot = *row;
@@ -147,7 +167,7 @@ fn check_body<T: Scalar>(row: &Body<T>, body: usize) -> Result<(), TableError> {
     {
         return Err(TableError::NotFinite { body });
     }
-    check_inertia(row.mass, &row.first, &row.second, body)?;
+    check_moments(row.mass, &row.first, &row.second, body)?;
     if row.rotor_inertia < T::ZERO {
         return Err(TableError::BadInertia { body });
     }
@@ -165,25 +185,31 @@ fn check_body<T: Scalar>(row: &Body<T>, body: usize) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Second moments about the centre of mass must be positive semidefinite; that is the triangle
-/// inequality of the principal inertias.
-fn check_inertia<T: Scalar>(
+/// Moments of mass must be finite, and mass not negative.
+fn check_moments<T: Scalar>(
     mass: T,
     first: &[T; 3],
     second: &[T; 6],
     body: usize,
 ) -> Result<(), TableError> {
-    if ![&mass]
-        .into_iter()
-        .chain(first)
-        .chain(second)
-        .all(|x| x.is_finite_number())
-    {
+    let mut numbers = [&mass].into_iter().chain(first).chain(second);
+    if !numbers.all(|x| x.is_finite_number()) {
         return Err(TableError::NotFinite { body });
     }
     if mass < T::ZERO {
         return Err(TableError::BadInertia { body });
     }
+    Ok(())
+}
+
+/// Second moments about the centre of mass must be positive semidefinite; that is the triangle
+/// inequality of the principal inertias.
+fn check_distribution<T: Scalar>(
+    mass: T,
+    first: &[T; 3],
+    second: &[T; 6],
+    body: usize,
+) -> Result<(), TableError> {
     let com = if mass > T::ZERO {
         first.map(|h| h / mass)
     } else {

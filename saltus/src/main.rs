@@ -17,11 +17,14 @@ struct Cli {
 enum Command {
     /// Plan a jump.
     Plan(cmd::plan::Args),
+    /// Turn a URDF into a model crate.
+    Import(cmd::import::Args),
 }
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Plan(args) => cmd::plan::run(&args),
+        Command::Import(args) => Ok(cmd::import::run(&args)),
     };
     match outcome {
         Ok(code) => code,

@@ -1,0 +1,176 @@
+//! `saltus import`: turn a URDF into a `no_std` model crate.
+//!
+//! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
+//! folder is not.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use model_import::emit::{Crate, Dependency, Provenance, write_crate};
+use model_import::limbs::{expression, structure};
+use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, parse_lock};
+use rbd_core::BaseKind;
+use serde_json::{Value, json};
+
+/// Options of `saltus import`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The URDF.
+    urdf: PathBuf,
+    /// Lock joints at a position, rad or m.
+    #[arg(long, num_args = 1.., value_name = "JOINT=VALUE", allow_hyphen_values = true)]
+    lock: Vec<String>,
+    /// Whether the base moves.
+    #[arg(long, default_value = "floating", value_parser = ["floating", "fixed"])]
+    base: String,
+    /// What becomes of joints that follow another: an error, locked, or free to move on their own.
+    #[arg(long, default_value = "refuse", value_parser = ["refuse", "lock", "free"])]
+    mimic: String,
+    /// Whether moments of inertia that no body has are an error or kept.
+    #[arg(long, default_value = "physical", value_parser = ["physical", "as-written"])]
+    inertia: String,
+    /// Folder to write the crate to; it must not exist or be empty. Without it the robot is only checked.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Package name of the crate; the robot's name with `-model` by default.
+    #[arg(long)]
+    package: Option<String>,
+    /// Where the crate finds rbd-core: a folder, or a version.
+    #[arg(long, default_value = env!("CARGO_PKG_VERSION"), value_name = "FOLDER|VERSION")]
+    rbd_core: String,
+    /// Licence of the URDF (SPDX), which becomes the crate's.
+    #[arg(long, default_value = "LicenseRef-unknown")]
+    licence: String,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> ExitCode {
+    match import(args) {
+        Ok((robot, provenance)) => {
+            report(args, &robot, &provenance);
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            if args.json {
+                println!("{}", json!({ "error": message }));
+            }
+            eprintln!("saltus: {}: {message}", args.urdf.display());
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn import(args: &Args) -> Result<(Robot, Provenance), String> {
+    let text = std::fs::read_to_string(&args.urdf).map_err(|error| error.to_string())?;
+    let robot = options(args)
+        .and_then(|options| Robot::from_urdf(&text, &options))
+        .map_err(|error| error.to_string())?;
+    let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
+    let provenance = Provenance::new(&file, &text, &args.licence);
+    if let Some(folder) = &args.out {
+        write_crate(folder, &robot, &about(args, &robot)?, &provenance)
+            .map_err(|error| error.to_string())?;
+    }
+    Ok((robot, provenance))
+}
+
+fn options(args: &Args) -> Result<Options, ImportError> {
+    let locks = args.lock.iter().map(|text| parse_lock(text));
+    Ok(Options {
+        base: match args.base.as_str() {
+            "fixed" => BaseKind::Fixed,
+            _ => BaseKind::Floating,
+        },
+        locks: locks.collect::<Result<_, _>>()?,
+        mimic: match args.mimic.as_str() {
+            "lock" => MimicPolicy::Lock,
+            "free" => MimicPolicy::Free,
+            _ => MimicPolicy::Refuse,
+        },
+        inertia: match args.inertia.as_str() {
+            "as-written" => InertiaPolicy::AsWritten,
+            _ => InertiaPolicy::Physical,
+        },
+    })
+}
+
+fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
+    let folder = Path::new(&args.rbd_core);
+    let rbd_core = if folder.is_dir() {
+        let path = folder.canonicalize().map_err(|error| error.to_string())?;
+        Dependency::Path(path)
+    } else if args.rbd_core.starts_with(|c: char| c.is_ascii_digit()) {
+        Dependency::Version(args.rbd_core.clone())
+    } else {
+        return Err(format!(
+            "--rbd-core {}: neither a folder nor a version",
+            args.rbd_core
+        ));
+    };
+    let package = match &args.package {
+        Some(package) => package.clone(),
+        None => default_package(&robot.name),
+    };
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !package.starts_with(|c: char| c.is_ascii_alphabetic()) || !package.chars().all(word) {
+        return Err(format!("--package {package}: not a package name"));
+    }
+    Ok(Crate { package, rbd_core })
+}
+
+/// `My Robot_v2` to `my-robot-v2-model`.
+fn default_package(robot: &str) -> String {
+    let words = robot.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<String> = (words.filter(|w| !w.is_empty()))
+        .map(str::to_ascii_lowercase)
+        .collect();
+    let name = words.join("-");
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        format!("{name}-model")
+    } else {
+        format!("robot-{name}-model")
+    }
+}
+
+fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
+    for warning in &robot.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let limbs = expression(&structure(&robot.bodies));
+    if args.json {
+        let locked: Value = (robot.locked.iter())
+            .map(|(joint, value)| (joint.clone(), json!(value)))
+            .collect::<serde_json::Map<_, _>>()
+            .into();
+        let warnings: Vec<String> = robot.warnings.iter().map(ToString::to_string).collect();
+        let object = json!({
+            "robot": robot.name,
+            "base": args.base,
+            "joints": robot.joints.iter().map(|j| &j.name).collect::<Vec<_>>(),
+            "frames": robot.frames.len(),
+            "mass_kg": robot.mass(),
+            "limbs": limbs,
+            "locked": locked,
+            "warnings": warnings,
+            "source": provenance.source,
+            "sha256": provenance.sha256,
+            "out": args.out,
+        });
+        println!("{object}");
+        return;
+    }
+    let (joints, frames) = (robot.joints.len(), robot.frames.len());
+    println!(
+        "{}: {joints} joints on a {} base, {frames} frames, {:.6} kg",
+        robot.name,
+        args.base,
+        robot.mass()
+    );
+    println!("limbs: {limbs}");
+    if let Some(folder) = &args.out {
+        println!("wrote {}", folder.display());
+    }
+}
