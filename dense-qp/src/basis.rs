@@ -5,7 +5,8 @@
 //! lengths d. This is the LDLᵀ factor of A_W H⁻¹ A_Wᵀ with the orthogonal part kept, so that a new
 //! row's distance from the span of the others is computed without squaring the condition number.
 
-use crate::kernels::{at, copy, dot, head, put, row, span, sub_scaled, weighted_dot};
+use crate::kernels::weighted_dot;
+use crate::kernels::{at, ceil4, copy, dot, head, head_mut, put, row, span_mut, sub_scaled};
 use crate::settings::dependence_tolerance;
 use so3::Scalar;
 
@@ -77,6 +78,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// Splits `c.q` (holding m on entry) into its part in the basis and the rest.
     pub(crate) fn project(&mut self, weight: &[T; N], c: &mut Candidate<T, N>) {
         let (n, len) = (self.dim, self.len);
+        let end = ceil4(n, N);
         c.norm = weighted_dot(head(weight, n), &c.q, &c.q);
         c.d = c.norm;
         // Twice is enough: after a second pass what is left is orthogonal or is round-off.
@@ -84,18 +86,18 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             if len == 0 || (pass == 1 && c.d > T::of(0.04) * c.norm) {
                 break;
             }
-            for ((s, q), w) in self.work.iter_mut().zip(&c.q).zip(weight).take(n) {
+            for ((s, q), w) in self.work.iter_mut().zip(&c.q).zip(weight).take(end) {
                 *s = *q * *w;
             }
-            let scaled = head(&self.work, n);
+            let scaled = head(&self.work, end);
             for (j, (q, di)) in self.q.iter().zip(&self.d_inverse).take(len).enumerate() {
-                let f = dot(head(q, n), scaled) * *di;
+                let f = dot(head(q, end), scaled) * *di;
                 let before = if pass == 0 { T::ZERO } else { at(&c.l, j) };
                 put(&mut c.l, j, before + f);
                 put(&mut self.rot_row, j, f);
             }
             for (q, f) in self.q.iter().zip(&self.rot_row).take(len) {
-                sub_scaled(&mut c.q, *f, head(q, n));
+                sub_scaled(&mut c.q, *f, head(q, end));
             }
             c.d = weighted_dot(head(weight, n), &c.q, &c.q);
         }
@@ -106,8 +108,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     pub(crate) fn append(&mut self, c: &Candidate<T, N>) {
         let k = self.len;
         if let (Some(q), Some(l)) = (self.q.get_mut(k), self.l.get_mut(k)) {
-            copy(q, head(&c.q, self.dim));
+            copy(q, &c.q);
             copy(l, head(&c.l, k));
+            span_mut(l, k, ceil4(k, N)).fill(T::ZERO);
             put(&mut self.d, k, c.d);
             put(&mut self.d_inverse, k, T::ONE / c.d);
             self.len += 1;
@@ -120,11 +123,12 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// q' = qᵢ + l·carry and carry' = (dᵢ carry − l d_carry qᵢ)/d', d' = dᵢ + l² d_carry.
     pub(crate) fn remove(&mut self, k: usize, c: &mut Candidate<T, N>) {
         let (n, len) = (self.dim, self.len);
+        let end = ceil4(n, N);
         if k >= len {
             return;
         }
         let mut carry_d = at(&self.d, k);
-        copy(&mut self.work, head(row(&self.q, k), n));
+        copy(&mut self.work, head(row(&self.q, k), end));
         for i in k + 1..len {
             let Ok([to, from]) = self.l.get_disjoint_mut([i - 1, i]) else {
                 break;
@@ -142,6 +146,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
                 put(to, j - 1, a * fc + b * fr);
                 a -= l * b;
             }
+            span_mut(to, i - 1, ceil4(i - 1, N)).fill(T::ZERO);
             let di = at(&self.d, i);
             let d = di + a * a * carry_d;
             let inverse = T::ONE / d;
@@ -152,7 +157,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             let Ok([to, from]) = self.q.get_disjoint_mut([i - 1, i]) else {
                 break;
             };
-            for ((to, q), carry) in to.iter_mut().zip(from.iter()).zip(&mut self.work).take(n) {
+            for ((to, q), carry) in to.iter_mut().zip(from.iter()).zip(&mut self.work).take(end) {
                 let (v, w) = (*q, *carry);
                 *to = v + a * w;
                 *carry = fr * w - fc * v;
@@ -175,7 +180,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         if c.d == T::ZERO {
             c.q.fill(T::ZERO);
         }
-        sub_scaled(&mut c.q, -a, head(&self.work, n));
+        sub_scaled(&mut c.q, -a, head(&self.work, end));
         c.d += a * a * carry_d;
         self.len -= 1;
         c.settle(self.len >= n);
@@ -185,14 +190,16 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
         for (i, l) in self.l.iter().take(self.len).enumerate().rev() {
             let f = at(v.as_slice(), i);
-            sub_scaled(crate::kernels::head_mut(v, i), f, head(l, i));
+            let end = ceil4(i, N);
+            sub_scaled(head_mut(v, end), f, head(l, end));
         }
     }
 
     /// v ← D⁻¹L⁻¹ v.
     pub(crate) fn solve_scaled(&self, v: &mut [T; N]) {
         for (i, l) in self.l.iter().take(self.len).enumerate() {
-            let s = dot(head(l, i), span(v.as_slice(), 0, i));
+            let end = ceil4(i, N);
+            let s = dot(head(l, end), head(v.as_slice(), end));
             if let Some(e) = v.get_mut(i) {
                 *e -= s;
             }
@@ -204,9 +211,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
 
     /// out ← Σ cⱼ qⱼ.
     pub(crate) fn combine(&self, c: &[T; N], out: &mut [T; N]) {
+        let end = ceil4(self.dim, N);
         out.fill(T::ZERO);
         for (q, c) in self.q.iter().zip(c).take(self.len) {
-            sub_scaled(out, -*c, head(q, self.dim));
+            sub_scaled(out, -*c, head(q, end));
         }
     }
 }

@@ -9,7 +9,7 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
+use crate::kernels::{at, ceil4, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
 use crate::kernels::{copy, sub_scaled};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
@@ -75,14 +75,14 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         if let (Some(lower), Some(upper)) = (problem.lower, problem.upper) {
             for (i, (l, u)) in lower.iter().zip(upper).enumerate() {
-                if l == u {
+                if l == u && l.is_finite_number() {
                     self.fix(i, M + i, *l);
                 }
             }
         }
         self.fixed = self.rank;
         for (i, (l, u)) in problem.row_lower.iter().zip(problem.row_upper).enumerate() {
-            if l == u {
+            if l == u && l.is_finite_number() {
                 self.insert(problem, i, *l, feasibility, scratch)?;
             }
         }
@@ -215,6 +215,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             *y = at(a, *v);
         }
         let free = self.free();
+        span_mut(y, free, N).fill(T::ZERO);
         for (w, v) in self
             .lu
             .iter()
@@ -307,6 +308,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             for (o, w) in o.iter_mut().zip(self.free_vars()).skip(i) {
                 *o = at(hv, *w);
             }
+            span_mut(o, free, ceil4(free, N)).fill(T::ZERO);
         }
         for (m, v) in magnitude.iter_mut().zip(self.free_vars()) {
             *m = at(row(h, *v), *v);

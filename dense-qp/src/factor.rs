@@ -1,14 +1,15 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
 use crate::Error;
-use crate::kernels::{at, dot, put, span, span_mut, sub_scaled};
+use crate::kernels::{at, ceil4, dot, floor4, put, span, span_mut, sub_scaled};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use so3::Scalar;
 
 /// Factor of the leading `dim`×`dim` block.
 #[derive(Clone, Debug)]
 pub(crate) struct Factor<T, const N: usize> {
-    /// On entry to [`Factor::factorise`] the upper triangle of H, then U.
+    /// On entry to [`Factor::factorise`] the upper triangle of H, then U without its diagonal. Up to
+    /// the next multiple of the kernels' width zeros stand beside the entries.
     pub(crate) u: [[T; N]; N],
     /// On entry to [`Factor::factorise`] the size of the terms that each diagonal entry was summed
     /// from, then 1/D.
@@ -34,6 +35,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     /// `reference` sets the weight's scale when H is zero altogether.
     pub(crate) fn factorise(&mut self, reference: T) -> Result<(), Error> {
         let n = self.dim;
+        let end = ceil4(n, N);
         let mut largest = T::ZERO;
         for h in self.weight.iter().take(n) {
             if *h > largest {
@@ -48,6 +50,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             T::ONE
         };
         self.proximal = false;
+        span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let tolerance = pivot_tolerance::<T>();
         for k in 0..n {
             let Some((upper, lower)) = self.u.split_at_mut_checked(k + 1) else {
@@ -67,16 +70,17 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             }
             let inverse = T::ONE / d;
             put(&mut self.weight, k, inverse);
-            let tail = span_mut(pivot_row, k + 1, n);
             for (i, r) in lower.iter_mut().take(n - k - 1).enumerate() {
-                let f = at(tail, i) * inverse;
+                let f = at(pivot_row.as_slice(), k + 1 + i) * inverse;
                 if f != T::ZERO {
-                    sub_scaled(span_mut(r, k + 1 + i, n), f, span(tail, i, n - k - 1));
+                    let from = floor4(k + 1 + i);
+                    sub_scaled(span_mut(r, from, end), f, span(pivot_row, from, end));
                 }
             }
-            for v in tail {
+            for v in span_mut(pivot_row, k + 1, n) {
                 *v *= inverse;
             }
+            span_mut(pivot_row, floor4(k + 1), k + 1).fill(T::ZERO);
         }
         Ok(())
     }
@@ -99,9 +103,10 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     /// v ← U⁻¹ v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        let n = self.dim;
-        for (k, r) in self.u.iter().take(n).enumerate().rev() {
-            let s = dot(span(r, k + 1, n), span(v.as_slice(), k + 1, n));
+        let end = ceil4(self.dim, N);
+        for (k, r) in self.u.iter().take(self.dim).enumerate().rev() {
+            let from = floor4(k + 1);
+            let s = dot(span(r, from, end), span(v.as_slice(), from, end));
             if let Some(e) = v.get_mut(k) {
                 *e -= s;
             }

@@ -10,6 +10,8 @@ use so3::Scalar;
 /// target round alike, and one the compiler can vectorise).
 #[inline(always)]
 pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let n = a.len().min(b.len());
+    let (a, b) = (head(a, n), head(b, n));
     let (a4, a1) = a.as_chunks::<4>();
     let (b4, b1) = b.as_chunks::<4>();
     let mut s = [T::ZERO; 4];
@@ -29,9 +31,33 @@ pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
 /// y ← y − f·x.
 #[inline(always)]
 pub(crate) fn sub_scaled<T: Scalar>(y: &mut [T], f: T, x: &[T]) {
-    for (y, x) in y.iter_mut().zip(x) {
+    let n = y.len().min(x.len());
+    let (y, x) = (head_mut(y, n), head(x, n));
+    let (y4, y1) = y.as_chunks_mut::<4>();
+    let (x4, x1) = x.as_chunks::<4>();
+    for (y, x) in y4.iter_mut().zip(x4) {
+        y[0] -= f * x[0];
+        y[1] -= f * x[1];
+        y[2] -= f * x[2];
+        y[3] -= f * x[3];
+    }
+    for (y, x) in y1.iter_mut().zip(x1) {
         *y -= f * *x;
     }
+}
+
+/// `i` rounded down to a multiple of the kernels' width. Triangular factors hold zeros there, so that
+/// loops over them start at full width.
+#[inline(always)]
+pub(crate) const fn floor4(i: usize) -> usize {
+    i & !3
+}
+
+/// `i` rounded up to a multiple of the kernels' width, at most `limit`.
+#[inline(always)]
+pub(crate) const fn ceil4(i: usize, limit: usize) -> usize {
+    let up = (i + 3) & !3;
+    if up < limit { up } else { limit }
 }
 
 /// Σ wᵢ aᵢ bᵢ.

@@ -99,7 +99,7 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         }
     }
 
-    /// All but the rows of A (those are checked where their scale is taken).
+    /// Names the first number that no solver could use.
     pub(crate) fn validate(&self) -> Result<(), Error> {
         for (i, h) in self.hessian.iter().enumerate() {
             if !all_finite(h) {
@@ -118,6 +118,11 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
                 if math::abs(*v - mirror) > asymmetry * scale {
                     return Err(Error::HessianNotSymmetric(i));
                 }
+            }
+        }
+        for (i, a) in self.rows.iter().enumerate() {
+            if !all_finite(a) {
+                return Err(Error::RowNotFinite(i));
             }
         }
         for (i, g) in self.gradient.iter().enumerate() {

@@ -7,9 +7,10 @@
 //! falls, the rows contradict each other. Each full step raises the dual cost, so no active set
 //! repeats (Goldfarb and Idnani 1983; the LDLᵀ form of the same idea is in Arnström et al. 2022).
 
-use crate::kernels::{all_finite, at, dot, max_abs, put, span};
+use crate::kernels::{at, dot, max_abs, put, row};
 use crate::residual::{infeasibility, kkt_residual, worse};
 use crate::settings::row_tolerance;
+use crate::workspace::POOL;
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use so3::{Scalar, math};
 
@@ -42,16 +43,22 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
         w: workspace,
         iterations: 0,
         tolerance: T::ZERO,
+        drift: T::ZERO,
+        primal: T::ZERO,
     };
+    // A solved problem has passed through finite arithmetic entry by entry. Only otherwise is it
+    // worth asking whether the data can be at fault.
     let status = match search.run() {
-        Ok(status) => status,
-        Err(error) => {
-            search.w.forget();
-            return Err(error);
+        Ok(Status::Solved) => Status::Solved,
+        outcome => {
+            if let Err(error) = problem.validate() {
+                search.w.forget();
+                return Err(error);
+            }
+            outcome.inspect_err(|_| search.w.forget())?
         }
     };
-    let iterations = search.iterations;
-    Ok(search.finish(status, iterations))
+    Ok(search.finish(status))
 }
 
 struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
@@ -61,6 +68,20 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     iterations: u32,
     /// Distance outside a row that counts as violated, at the present x.
     tolerance: T,
+    /// Largest distance of x from the limit of an active row, at the last look.
+    drift: T,
+    /// Largest violation of any row in its own units, at the last look.
+    primal: T,
+}
+
+/// State of a row that is eliminated; ±1 when it is active on a side, 0 otherwise.
+const EQUALITY: i8 = 2;
+
+/// What a look at all rows found.
+enum Look {
+    Feasible,
+    Violated,
+    Unsound,
 }
 
 /// How the search for a point that satisfies all rows ended.
@@ -72,11 +93,16 @@ enum Pass {
 impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> {
     fn run(&mut self) -> Result<Status, Error> {
         self.s.validate()?;
-        self.p.validate()?;
-        self.scan_rows()?;
         let w = &mut *self.w;
         let seeds = w.basis.len.min(N);
         w.basis.clear(0);
+        // A workspace left by bad data may hold NaN, which zero coefficients would not silence.
+        w.vec_a.fill(T::ZERO);
+        w.vec_b.fill(T::ZERO);
+        w.lambda.fill(T::ZERO);
+        w.candidate.l.fill(T::ZERO);
+        w.candidate.q.fill(T::ZERO);
+        w.row_scale_inverse.fill(T::ZERO);
         w.row_state.fill(0);
         w.bound_state.fill(0);
         w.previous.fill(T::ZERO);
@@ -86,10 +112,19 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         {
             return Ok(self.contradiction(c.id, c.residual_positive));
         }
-        let rank = w.elimination.rank;
-        for k in 0..rank {
-            let id = at(&w.elimination.id, k);
-            w.set_state(id, 2);
+        // Dependent equalities hold when the others do.
+        let limits = self.p.row_lower.iter().zip(self.p.row_upper);
+        for (state, (l, u)) in w.row_state.iter_mut().zip(limits) {
+            if l == u {
+                *state = EQUALITY;
+            }
+        }
+        if let (Some(lower), Some(upper)) = (self.p.lower, self.p.upper) {
+            for (state, (l, u)) in w.bound_state.iter_mut().zip(lower.iter().zip(upper)) {
+                if l == u {
+                    *state = EQUALITY;
+                }
+            }
         }
         w.factor.dim = w.elimination.free();
         w.elimination.reduce_hessian(
@@ -104,28 +139,6 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         self.seed(seeds);
         self.evaluate_gradient();
         self.outer()
-    }
-
-    /// Scale and extent of every row; dense rows cost one pass, sparse ones save work later.
-    fn scan_rows(&mut self) -> Result<(), Error> {
-        let w = &mut *self.w;
-        let out = w
-            .row_scale
-            .iter_mut()
-            .zip(&mut w.row_scale_inverse)
-            .zip(&mut w.row_span);
-        for (i, (a, ((scale, inverse), extent))) in self.p.rows.iter().zip(out).enumerate() {
-            if !all_finite(a) {
-                return Err(Error::RowNotFinite(i));
-            }
-            let m = max_abs(a);
-            *scale = if m > T::ZERO { m } else { T::ONE };
-            *inverse = T::ONE / *scale;
-            let first = a.iter().position(|v| *v != T::ZERO).unwrap_or(0);
-            let last = a.iter().rposition(|v| *v != T::ZERO).map_or(0, |k| k + 1);
-            *extent = (first as u16, last as u16);
-        }
-        Ok(())
     }
 
     /// Re-enters the remembered active set, without multipliers yet.
@@ -158,16 +171,17 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             if let Pass::Stop(status) = self.search() {
                 return Ok(status);
             }
-            // Far excursions (large proximal steps) leave round-off in the equalities.
-            self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
             let scale = self.evaluate_gradient();
             let residual = self.reduced_residual();
-            let drift = self.active_drift();
+            let drift = self.drift;
             let (dual, primal) = (self.s.optimality * scale, self.s.feasibility);
             let merit = math::max(residual * primal, drift * dual);
             let progress = merit < last * T::HALF;
             // Well inside the tolerances, or inside and no longer improving.
             let margin = T::of(0.01);
+            if !scale.is_finite_number() {
+                return Ok(Status::Numerical);
+            }
             if (residual <= margin * dual && drift <= margin * primal)
                 || (residual <= dual && drift <= self.tolerance && !progress)
             {
@@ -181,7 +195,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             {
                 return Ok(status);
             }
-            if (!self.w.factor.proximal && stalls > 4) || merit.is_nan_number() {
+            if !self.w.factor.proximal && stalls > 4 {
                 return Ok(Status::Numerical);
             }
             last = math::min(last, merit);
@@ -203,15 +217,13 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             scale = worse(scale, worse(math::abs(hx), math::abs(*g)));
             *out = hx + *g;
         }
-        for ((id, side), lambda) in w.id.iter().zip(&w.side).zip(&w.lambda).take(w.basis.len) {
-            let f = if *side > 0 { *lambda } else { -*lambda };
-            let size = if *id < M {
-                at(&w.row_scale, *id)
-            } else {
-                T::ONE
-            };
-            scale = worse(scale, math::abs(f) * size);
-            self.p.add_row(*id, f, &mut w.gradient);
+        for k in 0..w.basis.len {
+            let (id, f) = (at(&w.id, k), signed(at(&w.side, k), at(&w.lambda, k)));
+            scale = worse(
+                scale,
+                math::abs(f) / scale_inverse::<T, N, M>(self.p, w, id),
+            );
+            self.p.add_row(id, f, &mut w.gradient);
         }
         scale
     }
@@ -223,45 +235,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         crate::residual::norm(crate::kernels::head(&w.vec_a, w.factor.dim))
     }
 
-    /// Largest distance of x from the limits of the active rows.
-    fn active_drift(&mut self) -> T {
-        let mut worst = T::ZERO;
-        for k in 0..self.w.basis.len {
-            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-            worst = worse(
-                worst,
-                math::abs(self.excess(id, side)) * self.scale_inverse(id),
-            );
-        }
-        worst
-    }
-
-    fn scale_inverse(&self, id: usize) -> T {
-        if id < M {
-            at(&self.w.row_scale_inverse, id)
-        } else {
-            T::ONE
-        }
-    }
-
     /// Amount by which x exceeds the limit of a row on one side.
     fn excess(&self, id: usize, side: i8) -> T {
         let (l, u) = self.p.limits(id);
-        let v = self.row_value(id);
+        let v = self.p.value(id, &self.w.x);
         if side > 0 { v - u } else { l - v }
-    }
-
-    fn row_value(&self, id: usize) -> T {
-        if id < M {
-            let (from, to) = at(&self.w.row_span, id);
-            let (from, to) = (from as usize, to as usize);
-            dot(
-                span(crate::kernels::row(self.p.rows, id), from, to),
-                span(&self.w.x, from, to),
-            )
-        } else {
-            at(&self.w.x, id - M)
-        }
     }
 
     /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops
@@ -291,6 +269,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             self.move_along(T::ONE);
             self.drop_negative();
         }
+        // Far excursions (large proximal steps) leave round-off in the equalities.
+        self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
     }
 
     /// x ← x − t·Z·vec_a.
@@ -322,6 +302,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     /// Transforms a row and splits it into its part along the active rows and the rest.
     fn prepare(&mut self, id: usize, side: i8) {
         let w = &mut *self.w;
+        let scale = scale_inverse::<T, N, M>(self.p, w, id);
         let q = &mut w.candidate.q;
         if id < M {
             w.elimination
@@ -331,8 +312,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
         // What is left of a row that depends on the equalities is round-off, not a row.
         if w.elimination.rank > 0 {
-            let size = if id < M { at(&w.row_scale, id) } else { T::ONE };
-            if max_abs(q) <= row_tolerance::<T>() * size {
+            if max_abs(q) * scale <= row_tolerance::<T>() {
                 q.fill(T::ZERO);
             }
         }
@@ -396,8 +376,9 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
     }
 
-    /// The inactive row that x violates most, relative to its scale.
-    fn most_violated(&mut self) -> Option<(usize, i8)> {
+    /// Looks at every row and bound: collects the most violated inactive ones (relative to their
+    /// scale) in the pool, and measures how far x is from the active ones and from all.
+    fn look(&mut self) -> Look {
         let mut length = T::ZERO;
         for v in &self.w.x {
             length += math::abs(*v);
@@ -407,39 +388,108 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             math::max(self.s.feasibility, round_off),
             T::of(1000.0) * self.s.feasibility,
         );
-        let mut worst = self.tolerance;
-        let mut found = None;
-        for i in 0..M {
-            if at(&self.w.row_state, i) != 0 {
+        self.drift = T::ZERO;
+        self.primal = T::ZERO;
+        self.w.pool_len = 0;
+        let mut sound = length.is_finite_number();
+        let mut excess = [T::ZERO; POOL];
+        let limits = self.p.row_lower.iter().zip(self.p.row_upper);
+        for (i, (a, (l, u))) in self.p.rows.iter().zip(limits).enumerate() {
+            let v = dot(a, &self.w.x);
+            let state = at(&self.w.row_state, i);
+            // False for a NaN anywhere.
+            if v <= *u && v >= *l && state == 0 {
                 continue;
             }
-            let (l, u) = (at(self.p.row_lower, i), at(self.p.row_upper, i));
-            let v = self.row_value(i);
-            let (e, side) = if v > u { (v - u, 1) } else { (l - v, -1) };
-            let e = e * at(&self.w.row_scale_inverse, i);
-            if e > worst {
-                (worst, found) = (e, Some((i, side)));
-            }
+            sound &= self.judge(i, v, state, *l, *u, &mut excess);
         }
         if self.p.lower.is_some() || self.p.upper.is_some() {
             for i in 0..N {
-                if at(&self.w.bound_state, i) != 0 {
+                let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
+                let state = at(&self.w.bound_state, i);
+                if v <= u && v >= l && state == 0 {
                     continue;
                 }
-                let (l, u) = self.p.limits(M + i);
-                let v = at(&self.w.x, i);
-                let (e, side) = if v > u { (v - u, 1) } else { (l - v, -1) };
-                if e > worst {
-                    (worst, found) = (e, Some((M + i, side)));
-                }
+                sound &= self.judge(M + i, v, state, l, u, &mut excess);
             }
         }
-        found
+        if !sound {
+            return Look::Unsound;
+        }
+        if self.w.pool_len > 0 {
+            Look::Violated
+        } else {
+            Look::Feasible
+        }
+    }
+
+    /// A row that is not simply satisfied: an active one, a violated one, or one with bad numbers
+    /// (then the answer is false).
+    fn judge(&mut self, i: usize, v: T, state: i8, l: T, u: T, excess: &mut [T; POOL]) -> bool {
+        if !(v.is_finite_number() && l <= u && l < T::INFINITY && u > -T::INFINITY) {
+            return false;
+        }
+        let (e, side) = if v - u > l - v {
+            (v - u, 1)
+        } else {
+            (l - v, -1)
+        };
+        self.primal = math::max(self.primal, e);
+        let w = &mut *self.w;
+        let scaled = e * scale_inverse::<T, N, M>(self.p, w, i);
+        if state == 0 {
+            if scaled > self.tolerance {
+                pool_insert(w, excess, scaled, (i, side));
+            }
+        } else {
+            // On its limit a row is off by as much on either side.
+            let off = match state {
+                EQUALITY => e,
+                s if s > 0 => math::abs(v - u),
+                _ => math::abs(l - v),
+            };
+            let off = off * scale_inverse::<T, N, M>(self.p, w, i);
+            self.drift = math::max(self.drift, off);
+        }
+        true
+    }
+
+    /// The row to enter next: the most violated one of the pool, or of all rows when the pool is
+    /// used up.
+    fn next(&mut self) -> Result<Option<(usize, i8)>, Status> {
+        for refilled in [false, true] {
+            let (mut worst, mut found) = (self.tolerance, None);
+            for k in 0..self.w.pool_len {
+                let (id, side) = at(&self.w.pool, k);
+                if self.w.state(id) != 0 {
+                    continue;
+                }
+                let e = self.excess(id, side) * scale_inverse::<T, N, M>(self.p, self.w, id);
+                if e > worst {
+                    (worst, found) = (e, Some((id, side)));
+                }
+            }
+            if found.is_some() || refilled {
+                return Ok(found);
+            }
+            match self.look() {
+                Look::Unsound => return Err(Status::Numerical),
+                Look::Feasible => return Ok(None),
+                Look::Violated => {}
+            }
+        }
+        Ok(None)
     }
 
     /// Enters violated rows until none is left.
     fn search(&mut self) -> Pass {
-        while let Some((id, side)) = self.most_violated() {
+        self.w.pool_len = 0;
+        loop {
+            let (id, side) = match self.next() {
+                Ok(Some(found)) => found,
+                Ok(None) => return Pass::Feasible,
+                Err(status) => return Pass::Stop(status),
+            };
             self.prepare(id, side);
             let mut lambda = T::ZERO;
             loop {
@@ -484,7 +534,6 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
                 self.leave(k);
             }
         }
-        Pass::Feasible
     }
 
     /// The entering row depends on the active ones and nothing blocks: y = 1 on it, −r on them.
@@ -578,17 +627,13 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
         let mut reach = T::INFINITY;
         for i in 0..M + N {
-            if self.w.state(i) == 2 {
+            if self.w.state(i) == EQUALITY {
                 continue;
             }
             let (l, u) = self.p.limits(i);
             let rate = self.p.value(i, &self.w.step);
-            let scale = if i < M {
-                at(&self.w.row_scale, i)
-            } else {
-                T::ONE
-            };
-            let value = self.row_value(i);
+            let scale = T::ONE / scale_inverse::<T, N, M>(self.p, self.w, i);
+            let value = self.p.value(i, &self.w.x);
             let room = if rate > small * scale {
                 (u - value) / rate
             } else if rate < -(small * scale) {
@@ -609,32 +654,25 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     }
 
     /// Multipliers of all rows, residual, and the solution.
-    fn finish(mut self, status: Status, iterations: u32) -> Solution<'w, T, N, M> {
-        if status == Status::Infeasible {
-            let (rows, bounds) = (self.w.row_multipliers, self.w.bound_multipliers);
+    fn finish(mut self, status: Status) -> Solution<'w, T, N, M> {
+        if status == Status::Solved {
             self.publish();
-            let residual = kkt_residual(
-                self.p,
-                &self.w.x,
-                &self.w.row_multipliers,
-                &self.w.bound_multipliers,
-            );
-            self.w.row_multipliers = rows;
-            self.w.bound_multipliers = bounds;
-            return self.solution(status, iterations, residual);
+            let residual = self.residual();
+            return self.solution(status, residual);
         }
+        let proof = (self.w.row_multipliers, self.w.bound_multipliers);
+        self.evaluate_gradient();
         self.publish();
-        let residual = kkt_residual(
-            self.p,
-            &self.w.x,
-            &self.w.row_multipliers,
-            &self.w.bound_multipliers,
-        );
-        self.solution(status, iterations, residual)
+        let (rows, bounds) = (&self.w.row_multipliers, &self.w.bound_multipliers);
+        let residual = kkt_residual(self.p, &self.w.x, rows, bounds);
+        if status == Status::Infeasible {
+            (self.w.row_multipliers, self.w.bound_multipliers) = proof;
+        }
+        self.solution(status, residual)
     }
 
+    /// Multipliers of all rows from those of the active ones and the gradient.
     fn publish(&mut self) {
-        self.evaluate_gradient();
         let w = &mut *self.w;
         w.row_multipliers.fill(T::ZERO);
         w.bound_multipliers.fill(T::ZERO);
@@ -645,16 +683,34 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
         for k in 0..w.basis.len {
             let (id, side, y) = (at(&w.id, k), at(&w.side, k), at(&w.lambda, k));
-            set_multiplier(w, id, if side > 0 { y } else { -y });
+            set_multiplier(w, id, signed(side, y));
         }
     }
 
-    fn solution(
-        self,
-        status: Status,
-        iterations: u32,
-        residual: crate::Residual<T>,
-    ) -> Solution<'w, T, N, M> {
+    /// [`kkt_residual`] from what the last look and the last gradient left behind.
+    fn residual(&mut self) -> crate::Residual<T> {
+        let mut complementarity = T::ZERO;
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let c = math::abs(at(&self.w.lambda, k) * self.excess(id, side));
+            complementarity = worse(complementarity, c);
+        }
+        let w = &mut *self.w;
+        for k in 0..w.elimination.rank {
+            let (id, mu) = (at(&w.elimination.id, k), at(&w.vec_a, k));
+            let off = self.p.value(id, &w.x) - self.p.limits(id).1;
+            complementarity = worse(complementarity, math::abs(mu * off));
+            self.p.add_row(id, mu, &mut w.gradient);
+        }
+        crate::Residual {
+            stationarity: crate::residual::norm(&w.gradient),
+            primal: self.primal,
+            complementarity,
+        }
+    }
+
+    fn solution(self, status: Status, residual: crate::Residual<T>) -> Solution<'w, T, N, M> {
+        let iterations = self.iterations;
         let w: &'w Workspace<T, N, M> = self.w;
         Solution {
             status,
@@ -677,5 +733,53 @@ fn set_multiplier<T: Scalar, const N: usize, const M: usize>(
         put(&mut w.row_multipliers, id, y);
     } else {
         put(&mut w.bound_multipliers, id - M, y);
+    }
+}
+
+/// y at an upper limit, −y at a lower one.
+#[inline(always)]
+fn signed<T: Scalar>(side: i8, y: T) -> T {
+    if side > 0 { y } else { -y }
+}
+
+/// 1 / max |aᵢ|, computed for the rows that need it.
+#[inline]
+fn scale_inverse<T: Scalar, const N: usize, const M: usize>(
+    problem: &Problem<'_, T, N, M>,
+    w: &mut Workspace<T, N, M>,
+    id: usize,
+) -> T {
+    let Some(known) = w.row_scale_inverse.get_mut(id) else {
+        return T::ONE;
+    };
+    if *known == T::ZERO {
+        let size = max_abs(row(problem.rows, id));
+        *known = if size > T::ZERO {
+            T::ONE / size
+        } else {
+            T::ONE
+        };
+    }
+    *known
+}
+
+/// Inserts into the list sorted by excess, which keeps the worst.
+fn pool_insert<T: Scalar, const N: usize, const M: usize>(
+    w: &mut Workspace<T, N, M>,
+    excess: &mut [T; POOL],
+    e: T,
+    entry: (usize, i8),
+) {
+    let (mut e, mut entry) = (e, entry);
+    for (known, slot) in excess.iter_mut().zip(&mut w.pool).take(w.pool_len) {
+        if e > *known {
+            core::mem::swap(known, &mut e);
+            core::mem::swap(slot, &mut entry);
+        }
+    }
+    if w.pool_len < POOL {
+        put(excess, w.pool_len, e);
+        put(&mut w.pool, w.pool_len, entry);
+        w.pool_len += 1;
     }
 }

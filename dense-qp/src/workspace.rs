@@ -7,7 +7,10 @@ use crate::factor::Factor;
 use crate::kernels::at;
 use so3::Scalar;
 
-/// Scratch of a solve: about 4N² + 15N + 4M scalars. `new` is const and all zero, so a
+/// Length of the list of violated rows: enough to save most looks at all rows, and short to sort.
+pub(crate) const POOL: usize = 8;
+
+/// Scratch of a solve: about 4N² + 25N + 2M scalars. `new` is const and all zero, so a
 /// `static` of it lives in `.bss`. It remembers the last active set for [`crate::solve_warm`].
 #[derive(Clone, Debug)]
 pub struct Workspace<T, const N: usize, const M: usize> {
@@ -25,11 +28,11 @@ pub struct Workspace<T, const N: usize, const M: usize> {
     /// Side on which each row and bound is active; 2 for an equality.
     pub(crate) row_state: [i8; M],
     pub(crate) bound_state: [i8; N],
-    /// max |aᵢ| and its inverse (1 for a zero row).
-    pub(crate) row_scale: [T; M],
+    /// 1 / max |aᵢ| of the rows that needed it (1 for a zero row), else 0.
     pub(crate) row_scale_inverse: [T; M],
-    /// Columns of the first and past the last non-zero entry.
-    pub(crate) row_span: [(u16, u16); M],
+    /// Rows that the last look at all of them found most violated, worst first.
+    pub(crate) pool: [(usize, i8); POOL],
+    pub(crate) pool_len: usize,
     pub(crate) gradient: [T; N],
     pub(crate) step: [T; N],
     pub(crate) vec_a: [T; N],
@@ -54,9 +57,9 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             lambda: [T::ZERO; N],
             row_state: [0; M],
             bound_state: [0; N],
-            row_scale: [T::ZERO; M],
             row_scale_inverse: [T::ZERO; M],
-            row_span: [(0, 0); M],
+            pool: [(0, 0); POOL],
+            pool_len: 0,
             gradient: [T::ZERO; N],
             step: [T::ZERO; N],
             vec_a: [T::ZERO; N],
