@@ -5,6 +5,8 @@
     reason = "tests, each of which uses its own part"
 )]
 
+pub(crate) mod dual;
+
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use rbd_core::joint::Kind;
