@@ -40,8 +40,8 @@ impl Seen {
 
 fn tangent<const N: usize>(x: &[f64]) -> Tangent<f64, N> {
     Tangent {
-        base: Motion::from_array(std::array::from_fn(|i| x[i])),
-        joints: std::array::from_fn(|i| x[6 + i]),
+        base: Motion::from_array(core::array::from_fn(|i| x[i])),
+        joints: core::array::from_fn(|i| x[6 + i]),
     }
 }
 
@@ -49,7 +49,7 @@ fn configuration<const N: usize>(x: &[f64]) -> Configuration<f64, N> {
     let quat = UnitQuaternion::new_unchecked(Quaternion::new(x[6], x[3], x[4], x[5]));
     Configuration {
         base: Transform::new(quat.to_rotation_matrix(), Vector3::new(x[0], x[1], x[2])),
-        joints: std::array::from_fn(|i| x[7 + i]),
+        joints: core::array::from_fn(|i| x[7 + i]),
     }
 }
 
