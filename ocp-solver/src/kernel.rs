@@ -93,6 +93,16 @@ pub(crate) fn transpose<T: Scalar, const R: usize, const C: usize>(
     out
 }
 
+/// Copies the lower triangle onto the upper one.
+#[inline(always)]
+pub(crate) fn mirror_lower<T: Scalar, const N: usize>(matrix: &mut [[T; N]; N]) {
+    for i in 1..N {
+        for j in 0..i {
+            matrix[i][j] = matrix[j][i];
+        }
+    }
+}
+
 /// `matrix += weight · row · rowᵀ`, skipping zero entries of `row`.
 #[inline(always)]
 pub(crate) fn add_outer<T: Scalar, const N: usize>(

@@ -18,18 +18,12 @@
 
 use crate::kernel::{
     add_outer, add_outer_products, add_product, add_scaled, add_transposed_product, factor,
-    solve_lower, solve_upper, transpose,
+    mirror_lower, solve_lower, solve_upper, transpose,
 };
 use crate::rows::RowBarrier;
-use crate::stage::Stage;
+use crate::stage::{Riccati, Stage};
 use so3::Scalar;
 use so3::math::min;
-
-/// Cost-to-go of the node that follows.
-struct CostToGo<T, const NX: usize> {
-    hessian: [[T; NX]; NX],
-    gradient: [T; NX],
-}
 
 /// Backward recursion with `shift` added to the diagonal of every stage Hessian.
 ///
@@ -40,16 +34,14 @@ pub(crate) fn factorise<T: Scalar, X: Copy, const NX: usize, const NU: usize, co
     barrier: RowBarrier<T>,
     shift: T,
 ) -> bool {
-    let mut next: Option<CostToGo<T, NX>> = None;
-    for stage in stages.iter_mut().rev() {
+    let mut k = stages.len();
+    while let Some((head, tail)) = stages.split_at_mut_checked(k) {
+        let Some(stage) = head.last_mut() else { break };
         stage.condense_rows(barrier);
-        if !stage.factorise(next.as_ref(), shift) {
+        if !stage.factorise(tail.first().map(|next| &next.riccati), shift) {
             return false;
         }
-        next = Some(CostToGo {
-            hessian: stage.riccati.hessian,
-            gradient: stage.riccati.gradient,
-        });
+        k = k.wrapping_sub(1);
     }
     true
 }
@@ -59,7 +51,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 {
     /// One step of the backward recursion.
     #[inline(always)]
-    fn factorise(&mut self, next: Option<&CostToGo<T, NX>>, shift: T) -> bool {
+    fn factorise(&mut self, next: Option<&Riccati<T, NX, NU>>, shift: T) -> bool {
         let n = self.dims.controls.min(NU);
         let d = &self.derivatives;
         let (mut q_xx, mut q_x) = (d.hessian_xx, d.cost_x);
@@ -131,12 +123,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             self.riccati.feedforward = q_u;
         }
         // Rounding makes the two triangles differ, and an unstable motion would amplify that.
-        let mirror = transpose(&q_xx);
-        for (column, mirror) in q_xx.iter_mut().zip(&mirror) {
-            for (a, b) in column.iter_mut().zip(mirror) {
-                *a = (*a + *b) * T::HALF;
-            }
-        }
+        mirror_lower(&mut q_xx);
         self.riccati.hessian = q_xx;
         self.riccati.gradient = q_x;
         true

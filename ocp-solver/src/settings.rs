@@ -34,6 +34,12 @@ pub struct Settings<T> {
     pub barrier: Barrier,
     /// First µ of the monotone rule.
     pub initial_mu: T,
+    /// The monotone rule multiplies µ by this, or raises it to the power of `mu_power`, whichever is less.
+    pub mu_factor: T,
+    /// See `mu_factor`.
+    pub mu_power: T,
+    /// The monotone rule goes on once the residuals are below this many times µ.
+    pub mu_margin: T,
     /// Factor of the adaptive rule.
     pub adaptive_factor: T,
     /// Multiplier every bound starts with under the adaptive rule.
@@ -56,14 +62,17 @@ impl<T: Scalar> Settings<T> {
         Self {
             max_iterations: 400,
             attempt_iterations: 200,
-            primal_tolerance: T::of(1e-8),
+            primal_tolerance: T::of(2e-7),
             dual_tolerance: T::of(1e-6),
             complementarity_tolerance: T::of(1e-6),
             barrier: Barrier::default(),
-            initial_mu: T::of(0.03),
+            initial_mu: T::of(0.02),
+            mu_factor: T::of(0.2),
+            mu_power: T::of(1.5),
+            mu_margin: T::of(30.0),
             adaptive_factor: T::of(0.03),
             initial_multiplier: T::ONE,
-            bound_push: T::of(0.1),
+            bound_push: T::of(0.2),
             equality_weight: T::of(1e4),
             stall_count: 3,
             stall_step: T::of(0.03),

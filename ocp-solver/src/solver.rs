@@ -201,18 +201,18 @@ impl<T: Scalar> Solver<T> {
                 smallest,
             );
         } else {
-            // The barrier problem is solved to ten times µ: go on to the next.
+            // The barrier problem is solved closely enough: go on to the next.
             for _ in 0..8 {
                 let gap = max(
                     complementarity.largest - run.mu,
                     run.mu - complementarity.smallest,
                 );
                 let error = max(max(residual.primal, residual.dual), gap);
-                if error > T::of(10.0) * run.mu || run.mu <= smallest {
+                if error > settings.mu_margin * run.mu || run.mu <= smallest {
                     break;
                 }
-                let power = run.mu * so3::math::sqrt(run.mu);
-                run.mu = max(min(T::of(0.2) * run.mu, power), smallest);
+                let power = so3::math::exp(settings.mu_power * so3::math::log(run.mu));
+                run.mu = max(min(settings.mu_factor * run.mu, power), smallest);
             }
         }
     }
@@ -344,6 +344,9 @@ impl<T: Scalar> Settings<T> {
             (self.dual_tolerance, "dual_tolerance"),
             (self.complementarity_tolerance, "complementarity_tolerance"),
             (self.initial_mu, "initial_mu"),
+            (self.mu_factor, "mu_factor"),
+            (self.mu_power, "mu_power"),
+            (self.mu_margin, "mu_margin"),
             (self.adaptive_factor, "adaptive_factor"),
             (self.initial_multiplier, "initial_multiplier"),
             (self.bound_push, "bound_push"),
