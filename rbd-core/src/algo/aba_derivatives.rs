@@ -78,6 +78,7 @@ pub struct AbaDerivativesWorkspace<T, const N: usize> {
     inverse_dynamics: DerivativesWorkspace<T, N>,
     efforts: RneaDerivatives<T, N>,
     factors: MassFactors<T, N>,
+    joints_inverse: [[T; N]; N],
 }
 
 impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
@@ -89,6 +90,7 @@ impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
             inverse_dynamics: DerivativesWorkspace::new(),
             efforts: RneaDerivatives::ZERO,
             factors: MassFactors::new(),
+            joints_inverse: [[T::ZERO; N]; N],
         }
     }
 
@@ -107,12 +109,17 @@ impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
     /// From the derivatives of inverse dynamics to those of forward dynamics.
     #[inline(always)]
     fn finish<M: Tree<T, N>>(&mut self, model: &M, out: &mut AbaDerivatives<T, N>) {
-        self.factors.factor(model, &self.efforts.by_acceleration);
-        self.factors.inverse(&mut out.by_effort);
-        out.by_position = -self.efforts.by_position;
-        self.factors.solve_columns(&mut out.by_position);
-        out.by_velocity = -self.efforts.by_velocity;
-        self.factors.solve_columns(&mut out.by_velocity);
+        let factors = &mut self.factors;
+        factors.factor(model, &self.efforts.by_acceleration);
+        factors.joints_inverse(&mut self.joints_inverse);
+        out.by_effort.joints = self.joints_inverse;
+        factors.complete_inverse(&mut out.by_effort);
+        for (d, to) in [
+            (&self.efforts.by_position, &mut out.by_position),
+            (&self.efforts.by_velocity, &mut out.by_velocity),
+        ] {
+            factors.solve_derivatives(&out.by_effort, &self.joints_inverse, d, to);
+        }
     }
 }
 

@@ -1,7 +1,5 @@
 //! Square matrices over all coordinates of a robot, stored by blocks.
 
-use core::ops::Neg;
-
 use nalgebra::SMatrix;
 use so3::Scalar;
 
@@ -71,19 +69,6 @@ impl<T: Scalar, const N: usize> BlockMatrix<T, N> {
 impl<T: Scalar, const N: usize> Default for BlockMatrix<T, N> {
     fn default() -> Self {
         Self::ZERO
-    }
-}
-
-impl<T: Scalar, const N: usize> Neg for BlockMatrix<T, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self {
-            base: self.base.map(|row| row.map(|x| -x)),
-            base_joints: self.base_joints.map(|row| row.map(|x| -x)),
-            joints_base: self.joints_base.map(|row| row.map(|x| -x)),
-            joints: self.joints.map(|row| row.map(|x| -x)),
-        }
     }
 }
 

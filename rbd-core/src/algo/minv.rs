@@ -28,7 +28,9 @@ pub struct MassFactors<T, const N: usize> {
     floating: bool,
     /// One more than the index of the joint before, 0 for the base; never more than the own index.
     before: [usize; N],
-    /// L below the diagonal, by rows.
+    /// Number of joints between this one and the base.
+    depth: [usize; N],
+    /// L left of the diagonal, by rows: entry d of row i belongs to the ancestor of i at depth d.
     lower: [[T; N]; N],
     /// D⁻¹.
     pivots: [T; N],
@@ -45,6 +47,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         Self {
             floating: false,
             before: [0; N],
+            depth: [0; N],
             lower: [[T::ZERO; N]; N],
             pivots: [T::ZERO; N],
             coupling: [[T::ZERO; 6]; N],
@@ -52,15 +55,14 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// The joint that joint `i` hangs from.
+    /// The ancestors of joint `i` and their depths, from its parent to the root of its branch.
     #[inline(always)]
-    fn parent(&self, i: usize) -> Option<usize> {
-        at(&self.before, i).checked_sub(1)
-    }
-
-    #[inline(always)]
-    fn l(&self, i: usize, j: usize) -> T {
-        self.lower.get(i).map_or(T::ZERO, |row| at(row, j))
+    fn ancestors(&self, i: usize) -> Ancestors<'_, N> {
+        Ancestors {
+            before: &self.before,
+            joint: i,
+            depth: at(&self.depth, i),
+        }
     }
 
     /// Factors the mass matrix of a robot in the posture it was computed for.
@@ -70,14 +72,15 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline]
     pub fn factor<M: Tree<T, N>>(&mut self, model: &M, mass: &MassMatrix<T, N>) {
         self.floating = model.base_kind() == BaseKind::Floating;
-        for (i, (slot, body)) in self.before.iter_mut().zip(model.bodies()).enumerate() {
-            // Capped, so that walking up ends whatever the table says.
-            *slot = match body.parent {
-                Link::Base => 0,
-                Link::Joint(p) => (p + 1).min(i),
+        for (i, body) in model.bodies().iter().enumerate() {
+            let (before, depth) = match body.parent {
+                Link::Base => (0, 0),
+                // Capped, so that walking up ends whatever the table says.
+                Link::Joint(p) => ((p + 1).min(i), at(&self.depth, p) + 1),
             };
+            self.before[i] = before;
+            self.depth[i] = if before == 0 { 0 } else { depth.min(i) };
         }
-        self.lower = mass.joints;
         self.factor_joints(mass);
         for (row, column) in self.coupling.iter_mut().zip(&mass.coupling) {
             *row = column.to_array();
@@ -88,30 +91,45 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     }
 
     /// H = Lᵀ D L, from the leaves inwards.
+    ///
+    /// By depths, the entries of an ancestor's row are a prefix of those of its descendants' rows, so the
+    /// inner loop runs over contiguous numbers.
     #[inline(always)]
     fn factor_joints(&mut self, mass: &MassMatrix<T, N>) {
+        let mut diagonal = [T::ZERO; N];
+        for i in 0..N {
+            let from = &mass.joints[i];
+            diagonal[i] = from[i];
+            let mut row = [T::ZERO; N];
+            for (a, d) in self.ancestors(i) {
+                put(&mut row, d, at(from, a));
+            }
+            self.lower[i] = row;
+        }
         for k in (0..N).rev() {
-            let mut row = self.lower[k];
-            let pivot = row[k];
+            let pivot = diagonal[k];
             let good = pivot > mass.joints[k][k] * T::EPSILON;
             let inverse = if good { T::ONE / pivot } else { T::ZERO };
             self.pivots[k] = inverse;
-            let mut up = self.parent(k);
-            while let Some(i) = up {
-                let x = at(&row, i);
+            let row = self.lower[k];
+            let up = Ancestors {
+                before: &self.before,
+                joint: k,
+                depth: at(&self.depth, k),
+            };
+            for (i, d) in up {
+                let x = at(&row, d);
                 let l = x * inverse;
-                // Row k left of i is still unscaled: H_ij −= L_ki H_kj.
-                let mut left = Some(i);
-                while let Some(j) = left {
-                    if let Some(slot) = self.lower.get_mut(i).and_then(|r| r.get_mut(j)) {
-                        *slot -= l * at(&row, j);
+                if let Some(to) = self.lower.get_mut(i) {
+                    for (y, &z) in to.iter_mut().zip(&row).take(d) {
+                        *y -= l * z;
                     }
-                    left = self.parent(j);
                 }
-                put(&mut row, i, l);
-                up = self.parent(i);
+                if let Some(y) = diagonal.get_mut(i) {
+                    *y -= l * x;
+                }
+                put(&mut self.lower[k], d, l);
             }
-            self.lower[k] = row;
         }
     }
 
@@ -123,7 +141,10 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         self.inward(&mut rows);
         let mut base = ArticulatedInertia::from(mass.base).to_rows();
         for (row, &pivot) in rows.iter_mut().zip(&self.pivots) {
-            let scaled = row.map(|x| x * pivot);
+            let mut scaled = *row;
+            for x in &mut scaled {
+                *x *= pivot;
+            }
             for (to, &x) in base.iter_mut().zip(row.iter()) {
                 add_scaled(to, -x, &scaled);
             }
@@ -139,13 +160,11 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline(always)]
     fn inward<const K: usize>(&self, b: &mut [[T; K]; N]) {
         for k in (0..N).rev() {
-            let row = b[k];
-            let mut up = self.parent(k);
-            while let Some(i) = up {
+            let (row, lower) = (b[k], &self.lower[k]);
+            for (i, d) in self.ancestors(k) {
                 if let Some(to) = b.get_mut(i) {
-                    add_scaled(to, -self.l(k, i), &row);
+                    add_scaled(to, -at(lower, d), &row);
                 }
-                up = self.parent(i);
             }
         }
     }
@@ -154,28 +173,14 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline(always)]
     fn outward<const K: usize>(&self, b: &mut [[T; K]; N]) {
         for k in 0..N {
-            let mut row = b[k];
-            let mut up = self.parent(k);
-            while let Some(i) = up {
+            let (mut row, lower) = (b[k], &self.lower[k]);
+            for (i, d) in self.ancestors(k) {
                 if let Some(from) = b.get(i) {
-                    add_scaled(&mut row, -self.l(k, i), from);
+                    add_scaled(&mut row, -at(lower, d), from);
                 }
-                up = self.parent(i);
             }
             b[k] = row;
         }
-    }
-
-    /// b ← H⁻¹ b for every column of b.
-    #[inline(always)]
-    fn solve_joints<const K: usize>(&self, b: &mut [[T; K]; N]) {
-        self.inward(b);
-        for (row, &pivot) in b.iter_mut().zip(&self.pivots) {
-            for x in row {
-                *x *= pivot;
-            }
-        }
-        self.outward(b);
     }
 
     /// M⁻¹ τ: the acceleration that an effort causes, velocity and gravity apart. A fixed base does
@@ -183,12 +188,19 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline]
     #[must_use]
     pub fn solve(&self, effort: &Effort<T, N>) -> Tangent<T, N> {
-        let mut joints = effort.joints.map(|x| [x]);
-        self.solve_joints(&mut joints);
-        let mut out = Tangent {
-            base: Motion::ZERO,
-            joints: joints.map(|[x]| x),
-        };
+        let mut joints = [[T::ZERO; 1]; N];
+        for ([y], &x) in joints.iter_mut().zip(&effort.joints) {
+            *y = x;
+        }
+        self.inward(&mut joints);
+        for ([x], &pivot) in joints.iter_mut().zip(&self.pivots) {
+            *x *= pivot;
+        }
+        self.outward(&mut joints);
+        let mut out = Tangent::ZERO;
+        for (y, &[x]) in out.joints.iter_mut().zip(&joints) {
+            *y = x;
+        }
         if self.floating {
             let mut rest = effort.base.to_array();
             for (row, &x) in self.coupling.iter().zip(&effort.joints) {
@@ -205,56 +217,18 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         out
     }
 
-    /// M⁻¹ B in place, all columns of B at once: effort per something becomes acceleration per
-    /// something. For a fixed base the rows of the base become zero.
-    #[inline]
-    pub fn solve_columns(&self, b: &mut BlockMatrix<T, N>) {
-        if self.floating {
-            // The base first, as it feels the joints: x_b = Ã⁻¹ (b_b − Xᵀ b_J).
-            for ((x, left), right) in self.coupling.iter().zip(&b.joints_base).zip(&b.joints) {
-                for (k, &x) in x.iter().enumerate() {
-                    add_scaled(&mut b.base[k], -x, left);
-                    add_scaled(&mut b.base_joints[k], -x, right);
-                }
-            }
-            let inverse = self.base_inverse();
-            b.base = times(&inverse, &b.base);
-            b.base_joints = times(&inverse, &b.base_joints);
-        } else {
-            b.base = [[T::ZERO; 6]; 6];
-            b.base_joints = [[T::ZERO; N]; 6];
-        }
-        self.solve_joints(&mut b.joints_base);
-        self.solve_joints(&mut b.joints);
-        if self.floating {
-            let rows = b.joints_base.iter_mut().zip(&mut b.joints);
-            for (x, (left, right)) in self.coupling.iter().zip(rows) {
-                for (k, &x) in x.iter().enumerate() {
-                    add_scaled(left, -x, &b.base[k]);
-                    add_scaled(right, -x, &b.base_joints[k]);
-                }
-            }
-        }
-    }
-
-    /// Ã⁻¹.
-    #[inline(always)]
-    fn base_inverse(&self) -> [[T; 6]; 6] {
-        let mut inverse = [[T::ZERO; 6]; 6];
-        for (k, row) in inverse.iter_mut().enumerate() {
-            let mut unit = [T::ZERO; 6];
-            put(&mut unit, k, T::ONE);
-            *row = ldl_back_substitute(&self.base, unit);
-        }
-        inverse
-    }
-
     /// M⁻¹ itself, symmetric. For a fixed base everything but the block of the joints is zero.
     ///
     /// Accuracy: M M⁻¹ = 1 to the condition number of M times the rounding unit.
     #[inline]
     pub fn inverse(&self, out: &mut BlockMatrix<T, N>) {
-        self.invert_joints(&mut out.joints);
+        self.joints_inverse(&mut out.joints);
+        self.complete_inverse(out);
+    }
+
+    /// The other blocks of M⁻¹, and the block of the joints, which holds H⁻¹.
+    #[inline(always)]
+    pub(crate) fn complete_inverse(&self, out: &mut BlockMatrix<T, N>) {
         if !self.floating {
             out.base = [[T::ZERO; 6]; 6];
             out.base_joints = [[T::ZERO; N]; 6];
@@ -262,14 +236,12 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             return;
         }
         out.base = self.base_inverse();
-        for (row, x) in out.joints_base.iter_mut().zip(&self.coupling) {
+        for (i, (row, x)) in out.joints_base.iter_mut().zip(&self.coupling).enumerate() {
             *row = [T::ZERO; 6];
             for (&x, from) in x.iter().zip(&out.base) {
                 add_scaled(row, -x, from);
             }
-        }
-        for (i, row) in out.joints_base.iter().enumerate() {
-            for (to, &x) in out.base_joints.iter_mut().zip(row) {
+            for (to, &x) in out.base_joints.iter_mut().zip(row.iter()) {
                 put(to, i, x);
             }
         }
@@ -280,48 +252,125 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// H⁻¹ = W D⁻¹ Wᵀ with W = L⁻¹.
+    /// Ã⁻¹, all columns at once.
     #[inline(always)]
-    fn invert_joints(&self, out: &mut [[T; N]; N]) {
-        // Row k of `w` is column k of W; joint j is in it if k moves j.
-        let mut w = [[T::ZERO; N]; N];
+    fn base_inverse(&self) -> [[T; 6]; 6] {
+        let mut inverse = [[T::ZERO; 6]; 6];
+        for i in 0..6 {
+            let mut row = [T::ZERO; 6];
+            row[i] = T::ONE;
+            for k in 0..i {
+                add_scaled(&mut row, -self.base[i][k], &inverse[k]);
+            }
+            inverse[i] = row;
+        }
+        for i in (0..6).rev() {
+            let pivot = self.base[i][i];
+            let scale = if pivot > T::ZERO {
+                T::ONE / pivot
+            } else {
+                T::ZERO
+            };
+            let mut row = inverse[i];
+            for x in &mut row {
+                *x *= scale;
+            }
+            for k in i + 1..6 {
+                add_scaled(&mut row, -self.base[k][i], &inverse[k]);
+            }
+            inverse[i] = row;
+        }
+        inverse
+    }
+
+    /// H⁻¹ = W D⁻¹ Wᵀ with W = L⁻¹, stored by depths as L is; zero between joints of different branches.
+    #[inline(always)]
+    pub(crate) fn joints_inverse(&self, out: &mut [[T; N]; N]) {
         *out = [[T::ZERO; N]; N];
+        let mut w = [[T::ZERO; N]; N];
         for i in 0..N {
-            w[i][i] = T::ONE;
-            let mut up = self.parent(i);
-            while let Some(k) = up {
-                // W_ik = −Σ L_ij W_jk over j from k up to the parent of i.
-                let mut sum = T::ZERO;
-                let mut between = self.parent(i);
-                while let Some(j) = between {
-                    if j < k {
-                        break;
+            // w_i = e_i − Σ L_ia w_a over the ancestors a; `scaled` is w_i D⁻¹.
+            let depth = at(&self.depth, i);
+            let mut row = [T::ZERO; N];
+            let mut scaled = [T::ZERO; N];
+            put(&mut row, depth, T::ONE);
+            put(&mut scaled, depth, self.pivots[i]);
+            for (a, d) in self.ancestors(i) {
+                let l = at(&self.lower[i], d);
+                if let Some(from) = w.get(a) {
+                    for (y, &x) in row.iter_mut().zip(from).take(d + 1) {
+                        *y -= l * x;
                     }
-                    sum -= self.l(i, j) * w.get(k).map_or(T::ZERO, |row| at(row, j));
-                    between = self.parent(j);
-                }
-                if let Some(row) = w.get_mut(k) {
-                    put(row, i, sum);
-                }
-                up = self.parent(k);
-            }
-            // Row i, left of the diagonal: joints that share an ancestor k with i stand from k on.
-            let mut up = Some(i);
-            while let Some(k) = up {
-                let Some(column) = w.get(k) else { break };
-                let x = at(column, i) * at(&self.pivots, k);
-                let left = out[i].iter_mut().zip(column).take(i + 1).skip(k);
-                for (y, &z) in left {
-                    *y += x * z;
-                }
-                up = self.parent(k);
-            }
-            let (above, row) = out.split_at_mut(i);
-            if let Some(row) = row.first() {
-                for (to, &x) in above.iter_mut().zip(row) {
-                    put(to, i, x);
                 }
             }
+            for (a, d) in self.ancestors(i) {
+                put(&mut scaled, d, at(&row, d) * at(&self.pivots, a));
+            }
+            w[i] = row;
+            // Joint j ≤ i shares with i the ancestors down to the last one that stands before or at j.
+            let mut above = i;
+            put(&mut out[i], i, dot(&row, &scaled, depth + 1));
+            for (a, d) in self.ancestors(i) {
+                for j in a..above {
+                    let x = w.get(j).map_or(T::ZERO, |row| dot(row, &scaled, d + 1));
+                    put(&mut out[i], j, x);
+                    if let Some(row) = out.get_mut(j) {
+                        put(row, i, x);
+                    }
+                }
+                above = a;
+            }
+        }
+    }
+
+    /// −M⁻¹ D for the derivatives D of inverse dynamics, which between the joints have no entries across
+    /// branches. `inverse` is M⁻¹, `joints_inverse` is H⁻¹; with S_b the rows of the base of the
+    /// result, those of the joints are −H⁻¹ D_J − X S_b.
+    #[inline(always)]
+    pub(crate) fn solve_derivatives(
+        &self,
+        inverse: &BlockMatrix<T, N>,
+        joints_inverse: &[[T; N]; N],
+        d: &BlockMatrix<T, N>,
+        out: &mut BlockMatrix<T, N>,
+    ) {
+        for c in 0..6 {
+            let (mut left, mut right) = ([T::ZERO; 6], [T::ZERO; N]);
+            for (k, &x) in inverse.base[c].iter().enumerate() {
+                add_scaled(&mut left, -x, &d.base[k]);
+                add_scaled(&mut right, -x, &d.base_joints[k]);
+            }
+            for (k, &x) in inverse.base_joints[c].iter().enumerate() {
+                add_scaled(&mut left, -x, &d.joints_base[k]);
+                add_scaled(&mut right, -x, &d.joints[k]);
+            }
+            out.base[c] = left;
+            out.base_joints[c] = right;
+        }
+        let mut first = 0;
+        while first < N {
+            // A branch is the run of joints up to the next one that hangs from the base.
+            let mut end = first + 1;
+            while end < N && self.before[end] != 0 {
+                end += 1;
+            }
+            for i in first..end {
+                let (mut left, mut right) = ([T::ZERO; 6], [T::ZERO; N]);
+                for k in first..end {
+                    let x = joints_inverse[i][k];
+                    add_scaled(&mut left, -x, &d.joints_base[k]);
+                    add_scaled(&mut right, -x, &d.joints[k]);
+                }
+                if self.floating {
+                    for (k, &x) in self.coupling[i].iter().enumerate() {
+                        add_scaled(&mut left, -x, &out.base[k]);
+                        add_scaled(&mut right, -x, &out.base_joints[k]);
+                    }
+                }
+                out.joints_base[i] = left;
+                out.joints[i] = right;
+            }
+            first = end;
         }
     }
 }
@@ -332,16 +381,33 @@ impl<T: Scalar, const N: usize> Default for MassFactors<T, N> {
     }
 }
 
-/// A B for a 6 × 6 matrix A.
-#[inline(always)]
-fn times<T: Scalar, const K: usize>(a: &[[T; 6]; 6], b: &[[T; K]; 6]) -> [[T; K]; 6] {
-    let mut out = [[T::ZERO; K]; 6];
-    for (to, row) in out.iter_mut().zip(a) {
-        for (&x, from) in row.iter().zip(b) {
-            add_scaled(to, x, from);
-        }
+/// The way from a joint to the base.
+struct Ancestors<'a, const N: usize> {
+    before: &'a [usize; N],
+    joint: usize,
+    depth: usize,
+}
+
+impl<const N: usize> Iterator for Ancestors<'_, N> {
+    /// Index and depth.
+    type Item = (usize, usize);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(usize, usize)> {
+        self.joint = at(self.before, self.joint).checked_sub(1)?;
+        self.depth = self.depth.saturating_sub(1);
+        Some((self.joint, self.depth))
     }
-    out
+}
+
+/// Dot product of the first `length` entries.
+#[inline(always)]
+fn dot<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K], length: usize) -> T {
+    let mut sum = T::ZERO;
+    for (&x, &y) in a.iter().zip(b).take(length) {
+        sum += x * y;
+    }
+    sum
 }
 
 impl<T: Scalar> ArticulatedInertia<T> {
