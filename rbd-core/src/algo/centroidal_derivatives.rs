@@ -17,10 +17,10 @@ use so3::Scalar;
 
 use super::put;
 use super::rnea_derivatives::DerivativesWorkspace;
-use super::sweep::{Axis, Composite, Sweep, Visit, sweep};
+use super::sweep::{Moves, sweep};
 use crate::spatial::{Force, Motion};
 use crate::state::{Posture, Tangent, basis};
-use crate::tree::{At, Tree};
+use crate::tree::Tree;
 
 /// One force or momentum per coordinate of the robot: a 6 × (6 + N) matrix by columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,25 +94,6 @@ impl<T: Scalar, const N: usize> CentroidalDerivatives<T, N> {
     };
 }
 
-/// Columns of the joints, still about the base's origin in base axes.
-struct Columns<'a, T: Scalar, const N: usize> {
-    out: &'a mut CentroidalDerivatives<T, N>,
-}
-
-impl<T: Scalar, const N: usize> Visit<T> for Columns<'_, T, N> {
-    #[inline(always)]
-    fn visit(&mut self, here: At<'_, T>, joint: &Axis<T>, subtree: &Composite<T>) {
-        let i = here.index;
-        let own = subtree.response(joint);
-        let by_q =
-            subtree.inertia.mul(&joint.rate) + joint.axis.cross_force(&subtree.momentum_wrench());
-        put(&mut self.out.map.joints, i, own.by_a);
-        put(&mut self.out.momentum_by_position.joints, i, by_q);
-        put(&mut self.out.rate_by_position.joints, i, own.by_q);
-        put(&mut self.out.rate_by_velocity.joints, i, own.by_v);
-    }
-}
-
 /// From the base's origin and axes to the centre of mass and world axes.
 struct Centroidal<T> {
     rotation: Matrix3<T>,
@@ -161,15 +142,22 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     ws: &mut DerivativesWorkspace<T, N>,
     out: &mut CentroidalDerivatives<T, N>,
 ) {
-    let mut fold = Sweep {
-        posture,
+    let moves = Moves {
+        base_velocity: velocity.base,
+        base_acceleration: acceleration.base,
         velocity: &velocity.joints,
         acceleration: &acceleration.joints,
         applied: None,
-        axes: &mut ws.axes,
-        visit: Columns { out },
     };
-    let whole = sweep(model, &mut fold, &velocity.base, &acceleration.base);
+    // Columns of the joints, still about the base's origin in base axes.
+    let whole = sweep(model, posture, &moves, ws, |i, joint, subtree| {
+        let momentum =
+            subtree.inertia.mul(&joint.rate) + joint.axis.cross_force(&subtree.momentum_wrench());
+        put(&mut out.map.joints, i, joint.by_a);
+        put(&mut out.momentum_by_position.joints, i, momentum);
+        put(&mut out.rate_by_position.joints, i, joint.by_q);
+        put(&mut out.rate_by_velocity.joints, i, joint.by_v);
+    });
     let mass = whole.inertia.mass;
     let to = Centroidal {
         rotation: *posture.base.rotation.matrix(),

@@ -58,11 +58,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     /// The ancestors of joint `i` and their depths, from its parent to the root of its branch.
     #[inline(always)]
     fn ancestors(&self, i: usize) -> Ancestors<'_, N> {
-        Ancestors {
-            before: &self.before,
-            joint: i,
-            depth: at(&self.depth, i),
-        }
+        Ancestors::new(&self.before, &self.depth, i)
     }
 
     /// Factors the mass matrix of a robot in the posture it was computed for.
@@ -96,39 +92,36 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     /// inner loop runs over contiguous numbers.
     #[inline(always)]
     fn factor_joints(&mut self, mass: &MassMatrix<T, N>) {
+        // Entries are written where they are read: no copies of rows that were filled number by number.
         let mut diagonal = [T::ZERO; N];
-        for i in 0..N {
-            let from = &mass.joints[i];
-            diagonal[i] = from[i];
-            let mut row = [T::ZERO; N];
-            for (a, d) in self.ancestors(i) {
-                put(&mut row, d, at(from, a));
+        for ((i, from), slot) in mass.joints.iter().enumerate().zip(&mut diagonal) {
+            *slot = at(from, i);
+            let up = Ancestors::new(&self.before, &self.depth, i);
+            if let Some(row) = self.lower.get_mut(i) {
+                for (a, d) in up {
+                    put(row, d, at(from, a));
+                }
             }
-            self.lower[i] = row;
         }
         for k in (0..N).rev() {
             let pivot = diagonal[k];
             let good = pivot > mass.joints[k][k] * T::EPSILON;
             let inverse = if good { T::ONE / pivot } else { T::ZERO };
             self.pivots[k] = inverse;
-            let row = self.lower[k];
-            let up = Ancestors {
-                before: &self.before,
-                joint: k,
-                depth: at(&self.depth, k),
-            };
-            for (i, d) in up {
-                let x = at(&row, d);
+            let (above, rest) = self.lower.split_at_mut(k);
+            let Some(row) = rest.first_mut() else { break };
+            for (i, d) in Ancestors::new(&self.before, &self.depth, k) {
+                let x = at(row, d);
                 let l = x * inverse;
-                if let Some(to) = self.lower.get_mut(i) {
-                    for (y, &z) in to.iter_mut().zip(&row).take(d) {
+                if let Some(to) = above.get_mut(i) {
+                    for (y, &z) in to.iter_mut().zip(row.iter()).take(d) {
                         *y -= l * z;
                     }
                 }
                 if let Some(y) = diagonal.get_mut(i) {
                     *y -= l * x;
                 }
-                put(&mut self.lower[k], d, l);
+                put(row, d, l);
             }
         }
     }
@@ -291,34 +284,35 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         for i in 0..N {
             // w_i = e_i − Σ L_ia w_a over the ancestors a; `scaled` is w_i D⁻¹.
             let depth = at(&self.depth, i);
-            let mut row = [T::ZERO; N];
+            let lower = &self.lower[i];
             let mut scaled = [T::ZERO; N];
-            put(&mut row, depth, T::ONE);
-            put(&mut scaled, depth, self.pivots[i]);
+            let (above, rest) = w.split_at_mut(i);
+            let Some(row) = rest.first_mut() else { break };
+            put(row, depth, T::ONE);
             for (a, d) in self.ancestors(i) {
-                let l = at(&self.lower[i], d);
-                if let Some(from) = w.get(a) {
+                let l = at(lower, d);
+                if let Some(from) = above.get(a) {
                     for (y, &x) in row.iter_mut().zip(from).take(d + 1) {
                         *y -= l * x;
                     }
                 }
             }
+            put(&mut scaled, depth, self.pivots[i]);
             for (a, d) in self.ancestors(i) {
-                put(&mut scaled, d, at(&row, d) * at(&self.pivots, a));
+                put(&mut scaled, d, at(row, d) * at(&self.pivots, a));
             }
-            w[i] = row;
             // Joint j ≤ i shares with i the ancestors down to the last one that stands before or at j.
-            let mut above = i;
-            put(&mut out[i], i, dot(&row, &scaled, depth + 1));
+            put(&mut out[i], i, dot(row, &scaled, depth + 1));
+            let mut next = i;
             for (a, d) in self.ancestors(i) {
-                for j in a..above {
-                    let x = w.get(j).map_or(T::ZERO, |row| dot(row, &scaled, d + 1));
+                for j in a..next {
+                    let x = above.get(j).map_or(T::ZERO, |row| dot(row, &scaled, d + 1));
                     put(&mut out[i], j, x);
                     if let Some(row) = out.get_mut(j) {
                         put(row, i, x);
                     }
                 }
-                above = a;
+                next = a;
             }
         }
     }
@@ -386,6 +380,17 @@ struct Ancestors<'a, const N: usize> {
     before: &'a [usize; N],
     joint: usize,
     depth: usize,
+}
+
+impl<'a, const N: usize> Ancestors<'a, N> {
+    #[inline(always)]
+    fn new(before: &'a [usize; N], depth: &[usize; N], joint: usize) -> Self {
+        Self {
+            before,
+            joint,
+            depth: at(depth, joint),
+        }
+    }
 }
 
 impl<const N: usize> Iterator for Ancestors<'_, N> {

@@ -6,12 +6,12 @@
 //! turns by −δθ × g as seen from the base.
 //!
 //! For two joints of which neither moves the other both derivatives are zero; for j an ancestor of i or
-//! i itself (S, Ṡ, S̈, F, G and the responses are those of `sweep.rs`):
+//! i itself (S, Ṡ, S̈, P, Q, F, G are those of `sweep.rs`):
 //!
 //! | | q | ν | ν̇ |
 //! |---|---|---|---|
 //! | ∂τ_i/∂(·)_j | F_i·S̈_j + G_i·Ṡ_j | 2 F_i·Ṡ_j + G_i·S_j | F_i·S_j |
-//! | ∂τ_j/∂(·)_i | S_j·∂f_i/∂q_i | S_j·∂f_i/∂q̇_i | the same |
+//! | ∂τ_j/∂(·)_i | S_j·P_i | S_j·Q_i | the same |
 //!
 //! Source: Singh, Russell, Wensing, "Efficient analytical derivatives of rigid-body dynamics using
 //! spatial vector algebra", RA-L 2022; the base as in Carpentier, Mansard,
@@ -24,10 +24,11 @@ use super::blocks::BlockMatrix;
 use super::crba::MassMatrix;
 use super::gravity::gravity;
 use super::put;
-use super::sweep::{Axis, Composite, Response, Sweep, Visit, sweep};
+pub use super::sweep::DerivativesWorkspace;
+use super::sweep::{Joint, Moves, set_column, sweep};
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent, basis};
-use crate::tree::{At, Tree};
+use crate::tree::Tree;
 
 /// Derivatives of inverse dynamics at one state.
 ///
@@ -72,121 +73,60 @@ impl<T: Scalar, const N: usize> RneaDerivatives<T, N> {
     }
 }
 
-/// Scratch of the derivatives: axes and responses of every joint.
-#[derive(Clone, Copy, Debug)]
-pub struct DerivativesWorkspace<T, const N: usize> {
-    pub(crate) axes: [Axis<T>; N],
-    pub(crate) responses: [Response<T>; N],
-}
-
-impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
-    /// All zero.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            axes: [Axis::ZERO; N],
-            responses: [Response::ZERO; N],
-        }
-    }
-}
-
-impl<T: Scalar, const N: usize> Default for DerivativesWorkspace<T, N> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-struct Pairs<'a, T: Scalar, const N: usize> {
-    responses: &'a mut [Response<T>; N],
-    out: &'a mut RneaDerivatives<T, N>,
-    base_velocity: Motion<T>,
-    gravity_b: Vector3<T>,
-}
-
-impl<T: Scalar, const N: usize> Visit<T> for Pairs<'_, T, N> {
-    #[inline(always)]
-    fn visit(&mut self, here: At<'_, T>, axis: &Axis<T>, subtree: &Composite<T>) {
-        let i = here.index;
-        let own = subtree.response(axis);
-        put(self.responses, i, own);
-        self.base_blocks(i, &own);
-
-        let twice = axis.rate * T::TWO;
-        let RneaDerivatives {
-            by_position,
-            by_velocity,
-            by_acceleration,
-        } = &mut *self.out;
-        let descendants = self.responses.iter().enumerate().take(here.end).skip(i);
-        for (j, below) in descendants {
-            // Row j, column i first: on the diagonal both are the same but for rounding.
-            let q = below.by_a_on(&axis.second) + below.coriolis.dot(&axis.rate.angular);
-            let v = below.by_a_on(&twice) + below.coriolis.dot(&axis.axis.angular);
-            set(&mut by_position.joints, j, i, q);
-            set(&mut by_velocity.joints, j, i, v);
-            let m = below.by_a_on(&axis.axis);
-            set(&mut by_acceleration.joints, j, i, m);
-            set(&mut by_acceleration.joints, i, j, m);
-            set(&mut by_position.joints, i, j, axis.axis.dot(&below.by_q));
-            set(&mut by_velocity.joints, i, j, axis.axis.dot(&below.by_v));
-        }
-        if let Some(x) = by_acceleration.joints.get_mut(i).and_then(|r| r.get_mut(i)) {
-            *x += here.body.rotor_inertia;
-        }
-    }
-}
-
-impl<T: Scalar, const N: usize> Pairs<'_, T, N> {
-    /// Row and column of joint i that belong to the base: with v and g those of the base, the base's
-    /// axes have the rates v × e and, from gravity, −g × e.
-    #[inline(always)]
-    fn base_blocks(&mut self, i: usize, own: &Response<T>) {
-        let turned = self.gravity_b.cross(&own.by_a.linear);
-        let moved = -self.base_velocity.cross_force(&own.by_a);
-        let out = &mut *self.out;
-        let z = T::ZERO;
-        put(
-            &mut out.by_position.joints_base,
-            i,
-            [z, z, z, turned.x, turned.y, turned.z],
-        );
-        put(
-            &mut out.by_velocity.joints_base,
-            i,
-            Force::new(moved.linear, moved.angular + own.coriolis).to_array(),
-        );
-        put(&mut out.by_acceleration.coupling, i, own.by_a);
-        for (row, x) in out
-            .by_position
-            .base_joints
-            .iter_mut()
-            .zip(own.by_q.to_array())
-        {
-            put(row, i, x);
-        }
-        for (row, x) in out
-            .by_velocity
-            .base_joints
-            .iter_mut()
-            .zip(own.by_v.to_array())
-        {
-            put(row, i, x);
-        }
-    }
-}
-
-impl<T: Scalar> Response<T> {
-    /// F·m.
-    #[inline(always)]
-    fn by_a_on(&self, m: &Motion<T>) -> T {
-        m.dot(&self.by_a)
-    }
-}
-
 #[inline(always)]
 fn set<T: Copy, const N: usize>(m: &mut [[T; N]; N], i: usize, j: usize, x: T) {
     if let Some(slot) = m.get_mut(i).and_then(|row| row.get_mut(j)) {
         *slot = x;
+    }
+}
+
+/// Row and column of joint i that belong to the base: with v and g those of the base, the base's axes
+/// have the rates v × e and, from gravity, −g × e.
+#[inline(always)]
+fn base_blocks<T: Scalar, const N: usize>(
+    i: usize,
+    joint: &Joint<T>,
+    base_velocity: &Motion<T>,
+    gravity_b: &Vector3<T>,
+    out: &mut RneaDerivatives<T, N>,
+) {
+    let turned = Force::new(Vector3::zeros(), gravity_b.cross(&joint.by_a.linear));
+    let moved =
+        -base_velocity.cross_force(&joint.by_a) + Force::new(Vector3::zeros(), joint.coriolis);
+    put(&mut out.by_position.joints_base, i, turned.to_array());
+    put(&mut out.by_velocity.joints_base, i, moved.to_array());
+    put(&mut out.by_acceleration.coupling, i, joint.by_a);
+    set_column(&mut out.by_position.base_joints, i, joint.by_q.to_array());
+    set_column(&mut out.by_velocity.base_joints, i, joint.by_v.to_array());
+}
+
+/// Rows and columns of the joints, pair by pair.
+#[inline(always)]
+fn joint_blocks<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    ws: &DerivativesWorkspace<T, N>,
+    out: &mut RneaDerivatives<T, N>,
+) {
+    out.by_position.joints = [[T::ZERO; N]; N];
+    out.by_velocity.joints = [[T::ZERO; N]; N];
+    out.by_acceleration.joints = [[T::ZERO; N]; N];
+    let (q, v) = (&mut out.by_position.joints, &mut out.by_velocity.joints);
+    let m = &mut out.by_acceleration.joints;
+    let count = model.joint_count();
+    for (i, body) in model.bodies().iter().enumerate().take(count) {
+        let (x, mass) = ws.pair(i, i);
+        set(q, i, i, x[0]);
+        set(v, i, i, x[1]);
+        set(m, i, i, mass + body.rotor_inertia);
+        for j in i + 1..body.subtree_end {
+            let (x, mass) = ws.pair(i, j);
+            set(q, i, j, x[0]);
+            set(v, i, j, x[1]);
+            set(q, j, i, x[2]);
+            set(v, j, i, x[3]);
+            set(m, i, j, mass);
+            set(m, j, i, mass);
+        }
     }
 }
 
@@ -205,23 +145,17 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         acceleration.base.linear - gravity_b,
         acceleration.base.angular,
     );
-    out.by_position.joints = [[T::ZERO; N]; N];
-    out.by_velocity.joints = [[T::ZERO; N]; N];
-    out.by_acceleration.joints = [[T::ZERO; N]; N];
-    let mut fold = Sweep {
-        posture,
+    let moves = Moves {
+        base_velocity: velocity.base,
+        base_acceleration: lifted,
         velocity: &velocity.joints,
         acceleration: &acceleration.joints,
         applied,
-        axes: &mut ws.axes,
-        visit: Pairs {
-            responses: &mut ws.responses,
-            out,
-            base_velocity: velocity.base,
-            gravity_b,
-        },
     };
-    let whole = sweep(model, &mut fold, &velocity.base, &lifted);
+    let whole = sweep(model, posture, &moves, ws, |i, joint, _| {
+        base_blocks(i, joint, &velocity.base, &gravity_b, out);
+    });
+    joint_blocks(model, ws, out);
 
     out.by_acceleration.base = whole.inertia;
     for (k, unit) in basis::<T>().iter().enumerate() {

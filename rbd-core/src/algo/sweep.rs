@@ -13,61 +13,120 @@
 //! rigid-body dynamics using spatial vector algebra", RA-L); only its three rotational columns are
 //! not zero. With them the force on the subtree of i changes, per unit of q_i, q̇_i and q̈_i, by
 //!
-//! - `by_q` = I S̈ + B Ṡ + S ×* f,
-//! - `by_v` = 2 I Ṡ + B S,
-//! - `by_a` = I S,
+//! - P = I S̈ + B Ṡ + S ×* f,
+//! - Q = 2 I Ṡ + B S,
+//! - F = I S,
 //!
 //! and the effort of i, when an ancestor j moves, by F·S̈_j + G·Ṡ_j, 2 F·Ṡ_j + G·S_j and F·S_j, with
-//! F = I S (`by_a`) and G = Bᵀ S (`coriolis`).
+//! G = Bᵀ S.
+//!
+//! # Layout
+//! Only the way down, which needs the joint kinds, is a fold. What follows is the same for every body, so it
+//! runs as plain loops over tables: what is done for each body by itself, over tables by *quantity*
+//! (`[[T; N]; K]`), so that neighbouring bodies share a vector instruction; what is done for each pair of
+//! joints, over tables by *body* with the four results of a pair side by side.
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
-use super::{at, place, put};
+use super::{at, place};
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{Force, Inertia, Motion};
+use crate::model::Link;
+use crate::spatial::{Force, Inertia, Motion, Symmetric3};
 use crate::state::Posture;
-use crate::tree::{At, Fold, Tree};
+use crate::tree::{At, Fold, Nothing, Tree};
 
-/// Axis of a joint and its first two rates of change; all zero for a joint that the model does not have.
+/// Numbers in a [`Moving`].
+const MOVING: usize = 40;
+/// Numbers in a [`Composite`].
+const COMPOSITE: usize = 28;
+/// Six coordinates of a motion or force, then the three of a rotation rate.
+const ROWS: usize = 9;
+
+/// Column `i` of a table by quantity.
+#[inline(always)]
+fn column<T: Scalar, const K: usize, const N: usize>(table: &[[T; N]; K], i: usize) -> [T; K] {
+    let mut out = [T::ZERO; K];
+    for (x, row) in out.iter_mut().zip(table) {
+        *x = at(row, i);
+    }
+    out
+}
+
+/// Writes column `i` of a table by quantity.
+#[inline(always)]
+pub(crate) fn set_column<T: Scalar, const K: usize, const N: usize>(
+    table: &mut [[T; N]; K],
+    i: usize,
+    values: [T; K],
+) {
+    for (row, x) in table.iter_mut().zip(values) {
+        if let Some(slot) = row.get_mut(i) {
+            *slot = x;
+        }
+    }
+}
+
+/// A body in the base's axes: where it is, how it moves, what it weighs, and the axis of its joint.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axis<T> {
+struct Moving<T> {
+    rotation: Matrix3<T>,
+    origin: Vector3<T>,
+    velocity: Motion<T>,
+    acceleration: Motion<T>,
     /// S.
-    pub(crate) axis: Motion<T>,
-    /// Ṡ.
-    pub(crate) rate: Motion<T>,
-    /// S̈.
-    pub(crate) second: Motion<T>,
+    axis: Motion<T>,
+    /// In the body's own frame.
+    inertia: Inertia<T>,
 }
 
-impl<T: Scalar> Axis<T> {
-    pub(crate) const ZERO: Self = Self {
-        axis: Motion::ZERO,
-        rate: Motion::ZERO,
-        second: Motion::ZERO,
-    };
-}
+impl<T: Scalar> Moving<T> {
+    #[inline(always)]
+    fn pack(&self) -> [T; MOVING] {
+        let (r, p, i) = (&self.rotation, &self.origin, &self.inertia);
+        let (v, w) = (&self.velocity.linear, &self.velocity.angular);
+        let (a, b) = (&self.acceleration.linear, &self.acceleration.angular);
+        let (l, z) = (&self.axis.linear, &self.axis.angular);
+        let (h, s) = (&i.first, &i.second);
+        [
+            r.m11, r.m12, r.m13, r.m21, r.m22, r.m23, r.m31, r.m32, r.m33, p.x, p.y, p.z, //
+            v.x, v.y, v.z, w.x, w.y, w.z, a.x, a.y, a.z, b.x, b.y, b.z, //
+            l.x, l.y, l.z, z.x, z.y, z.z, //
+            i.mass, h.x, h.y, h.z, s.xx, s.yy, s.zz, s.xy, s.xz, s.yz,
+        ]
+    }
 
-/// How the force on a subtree answers to its own joint, and the joint to its ancestors.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Response<T> {
-    /// ∂f/∂q of the joint, the rest at rest.
-    pub(crate) by_q: Force<T>,
-    /// ∂f/∂q̇.
-    pub(crate) by_v: Force<T>,
-    /// ∂f/∂q̈ = F.
-    pub(crate) by_a: Force<T>,
-    /// G.
-    pub(crate) coriolis: Vector3<T>,
-}
+    #[inline(always)]
+    fn unpack(x: &[T; MOVING]) -> Self {
+        let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
+        Self {
+            rotation: Matrix3::new(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8]),
+            origin: vector(9),
+            velocity: Motion::new(vector(12), vector(15)),
+            acceleration: Motion::new(vector(18), vector(21)),
+            axis: Motion::new(vector(24), vector(27)),
+            inertia: Inertia {
+                mass: x[30],
+                first: vector(31),
+                second: Symmetric3::new([x[34], x[35], x[36], x[37], x[38], x[39]]),
+            },
+        }
+    }
 
-impl<T: Scalar> Response<T> {
-    pub(crate) const ZERO: Self = Self {
-        by_q: Force::ZERO,
-        by_v: Force::ZERO,
-        by_a: Force::ZERO,
-        coriolis: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
-    };
+    /// Ṡ and S̈.
+    #[inline(always)]
+    fn rates(&self) -> (Motion<T>, Motion<T>) {
+        let rate = self.velocity.cross(&self.axis);
+        let second = self.acceleration.cross(&self.axis) + self.velocity.cross(&rate);
+        (rate, second)
+    }
+
+    /// The inertia in the base's axes about the base's origin.
+    #[inline(always)]
+    fn carried(&self) -> Inertia<T> {
+        let (r, i) = (&self.rotation, &self.inertia);
+        i.assembled(r * i.first, i.second.rotated(r), &self.origin)
+    }
 }
 
 /// A subtree moving as it does, in base axes about the base's origin.
@@ -83,34 +142,10 @@ pub(crate) struct Composite<T> {
     pub(crate) force: Force<T>,
 }
 
-impl<T: Scalar> Default for Composite<T> {
-    fn default() -> Self {
-        Self {
-            inertia: Inertia::ZERO,
-            momentum: Vector3::zeros(),
-            stir: Matrix3::zeros(),
-            force: Force::ZERO,
-        }
-    }
-}
-
-impl<T: Scalar> core::ops::Add for Composite<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        Self {
-            inertia: self.inertia + o.inertia,
-            momentum: self.momentum + o.momentum,
-            stir: self.stir + o.stir,
-            force: self.force + o.force,
-        }
-    }
-}
-
 impl<T: Scalar> Composite<T> {
     /// One rigid body with this velocity and (spatial) acceleration.
     #[inline(always)]
-    pub(crate) fn of(inertia: Inertia<T>, v: &Motion<T>, a: &Motion<T>) -> Self {
+    fn of(inertia: Inertia<T>, v: &Motion<T>, a: &Motion<T>) -> Self {
         let (h, s, w) = (&inertia.first, &inertia.second, &v.angular);
         let momentum = v.linear * inertia.mass + w.cross(h);
         // K = ∫ (v + ω × r) rᵀ dm
@@ -133,6 +168,35 @@ impl<T: Scalar> Composite<T> {
         };
         own.force += v.cross_force(&own.momentum_wrench());
         own
+    }
+
+    #[inline(always)]
+    fn pack(&self) -> [T; COMPOSITE] {
+        let (i, p, k) = (&self.inertia, &self.momentum, &self.stir);
+        let (h, s) = (&i.first, &i.second);
+        let (f, n) = (&self.force.linear, &self.force.angular);
+        [
+            i.mass, h.x, h.y, h.z, s.xx, s.yy, s.zz, s.xy, s.xz, s.yz, p.x, p.y, p.z, //
+            k.m11, k.m12, k.m13, k.m21, k.m22, k.m23, k.m31, k.m32, k.m33, //
+            f.x, f.y, f.z, n.x, n.y, n.z,
+        ]
+    }
+
+    #[inline(always)]
+    fn unpack(x: &[T; COMPOSITE]) -> Self {
+        let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
+        Self {
+            inertia: Inertia {
+                mass: x[0],
+                first: vector(1),
+                second: Symmetric3::new([x[4], x[5], x[6], x[7], x[8], x[9]]),
+            },
+            momentum: vector(10),
+            stir: Matrix3::new(
+                x[13], x[14], x[15], x[16], x[17], x[18], x[19], x[20], x[21],
+            ),
+            force: Force::new(vector(22), vector(25)),
+        }
     }
 
     /// Momentum about the base's origin; its angular part is the axial part of K: ∫ r × ṙ dm.
@@ -158,166 +222,310 @@ impl<T: Scalar> Composite<T> {
 
     /// Bᵀ m.
     #[inline(always)]
-    pub(crate) fn coriolis_transposed(&self, m: &Motion<T>) -> Vector3<T> {
+    fn coriolis_transposed(&self, m: &Motion<T>) -> Vector3<T> {
         let trace = self.stir.m11 + self.stir.m22 + self.stir.m33;
         let moment = m.angular * trace - self.stir.tr_mul(&m.angular);
         (self.momentum.cross(&m.linear) + moment) * T::TWO
     }
+}
 
-    /// What the force on this subtree does when its joint moves.
+/// How a joint moves its subtree, and what the subtree answers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint<T> {
+    /// S.
+    pub(crate) axis: Motion<T>,
+    /// Ṡ.
+    pub(crate) rate: Motion<T>,
+    /// S̈.
+    pub(crate) second: Motion<T>,
+    /// P = I S̈ + B Ṡ + S ×* f.
+    pub(crate) by_q: Force<T>,
+    /// Q = 2 I Ṡ + B S.
+    pub(crate) by_v: Force<T>,
+    /// F = I S.
+    pub(crate) by_a: Force<T>,
+    /// G = Bᵀ S.
+    pub(crate) coriolis: Vector3<T>,
+}
+
+impl<T: Scalar> Joint<T> {
     #[inline(always)]
-    pub(crate) fn response(&self, joint: &Axis<T>) -> Response<T> {
-        let twice = joint.rate * T::TWO;
-        Response {
-            by_q: self.inertia.mul(&joint.second)
-                + self.coriolis(&joint.rate.angular)
-                + joint.axis.cross_force(&self.force),
-            by_v: self.inertia.mul(&twice) + self.coriolis(&joint.axis.angular),
-            by_a: self.inertia.mul(&joint.axis),
-            coriolis: self.coriolis_transposed(&joint.axis),
+    fn new(axis: Motion<T>, rate: Motion<T>, second: Motion<T>, subtree: &Composite<T>) -> Self {
+        Self {
+            axis,
+            rate,
+            second,
+            by_q: subtree.inertia.mul(&second)
+                + subtree.coriolis(&rate.angular)
+                + axis.cross_force(&subtree.force),
+            by_v: subtree.inertia.mul(&(rate * T::TWO)) + subtree.coriolis(&axis.angular),
+            by_a: subtree.inertia.mul(&axis),
+            coriolis: subtree.coriolis_transposed(&axis),
         }
     }
 }
 
-/// Where a body is in the base's axes, and how it moves.
+/// Scratch of the derivatives: bodies, subtrees and joints, in base axes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moving<T> {
+pub struct DerivativesWorkspace<T, const N: usize> {
+    /// [`Moving`] by quantity.
+    bodies: [[T; N]; MOVING],
+    /// [`Composite`] by quantity: of each body, then of its subtree.
+    subtrees: [[T; N]; COMPOSITE],
+    /// Ṡ and S̈ by quantity.
+    rates: [[T; N]; 12],
+    /// By joint: (S, S, S̈, 2 Ṡ), then (0, 0, Ṡ, S) of the rotation.
+    causes: [[[T; 4]; ROWS]; N],
+    /// By joint: (P, Q, F, F), then (0, 0, G, G).
+    effects: [[[T; 4]; ROWS]; N],
+}
+
+impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
+    /// All zero.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            bodies: [[T::ZERO; N]; MOVING],
+            subtrees: [[T::ZERO; N]; COMPOSITE],
+            rates: [[T::ZERO; N]; 12],
+            causes: [[[T::ZERO; 4]; ROWS]; N],
+            effects: [[[T::ZERO; 4]; ROWS]; N],
+        }
+    }
+
+    /// Own composite and axis rates of every body, each for itself.
+    #[inline(never)]
+    fn compose(&mut self) {
+        for i in 0..N {
+            let body = Moving::unpack(&column(&self.bodies, i));
+            let own = Composite::of(body.carried(), &body.velocity, &body.acceleration);
+            set_column(&mut self.subtrees, i, own.pack());
+            let (rate, second) = body.rates();
+            let (a, b) = (rate.to_array(), second.to_array());
+            for k in 0..6 {
+                self.rates[k][i] = a[k];
+                self.rates[6 + k][i] = b[k];
+            }
+        }
+    }
+
+    /// Takes from the net forces what acts from outside, given in the frames of the bodies.
+    #[inline(always)]
+    fn subtract(&mut self, applied: &[Force<T>; N]) {
+        for (i, force) in applied.iter().enumerate() {
+            let body = Moving::unpack(&column(&self.bodies, i));
+            let linear = body.rotation * force.linear;
+            let angular = body.rotation * force.angular + body.origin.cross(&linear);
+            for (row, x) in self.subtrees[22..]
+                .iter_mut()
+                .zip(Force::new(linear, angular).to_array())
+            {
+                row[i] -= x;
+            }
+        }
+    }
+
+    /// The subtree of joint `i`.
+    #[inline(always)]
+    pub(crate) fn subtree(&self, i: usize) -> Composite<T> {
+        Composite::unpack(&column(&self.subtrees, i))
+    }
+
+    /// Joint `i` with the answer of its subtree.
+    #[inline(always)]
+    fn joint(&self, i: usize, subtree: &Composite<T>) -> Joint<T> {
+        let rates = column(&self.rates, i);
+        let motion = |x: &[T]| match *x {
+            [a, b, c, d, e, f] => Motion::from_array([a, b, c, d, e, f]),
+            _ => Motion::ZERO,
+        };
+        let axis = Moving::unpack(&column(&self.bodies, i)).axis;
+        Joint::new(axis, motion(&rates[..6]), motion(&rates[6..]), subtree)
+    }
+
+    /// Puts what the pairs need of a joint side by side.
+    #[inline(always)]
+    fn keep(&mut self, i: usize, joint: &Joint<T>) {
+        let (Some(cause), Some(effect)) = (self.causes.get_mut(i), self.effects.get_mut(i)) else {
+            return;
+        };
+        let z = T::ZERO;
+        let (s, r, t) = (
+            joint.axis.to_array(),
+            joint.rate.to_array(),
+            joint.second.to_array(),
+        );
+        let (p, q, f) = (
+            joint.by_q.to_array(),
+            joint.by_v.to_array(),
+            joint.by_a.to_array(),
+        );
+        for k in 0..6 {
+            cause[k] = [s[k], s[k], t[k], r[k] + r[k]];
+            effect[k] = [p[k], q[k], f[k], f[k]];
+        }
+        let g = [joint.coriolis.x, joint.coriolis.y, joint.coriolis.z];
+        for k in 0..3 {
+            cause[6 + k] = [z, z, r[3 + k], s[3 + k]];
+            effect[6 + k] = [z, z, g[k], g[k]];
+        }
+    }
+
+    /// For joint i and a joint j of its subtree: ∂τ_i/∂q_j, ∂τ_i/∂q̇_j, ∂τ_j/∂q_i, ∂τ_j/∂q̇_i, and the
+    /// entry of M.
+    #[inline(always)]
+    pub(crate) fn pair(&self, i: usize, j: usize) -> ([T; 4], T) {
+        let (Some(cause), Some(effect)) = (self.causes.get(i), self.effects.get(j)) else {
+            return ([T::ZERO; 4], T::ZERO);
+        };
+        let mut sum = [T::ZERO; 4];
+        for (c, e) in cause.iter().zip(effect) {
+            for ((s, &x), &y) in sum.iter_mut().zip(c).zip(e) {
+                *s += x * y;
+            }
+        }
+        let mut mass = T::ZERO;
+        for (c, e) in cause.iter().zip(effect).take(6) {
+            mass += c[0] * e[2];
+        }
+        (sum, mass)
+    }
+}
+
+impl<T: Scalar, const N: usize> Default for DerivativesWorkspace<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What a body hands to those it carries.
+#[derive(Clone, Copy, Debug)]
+struct Carrier<T> {
     rotation: Matrix3<T>,
     origin: Vector3<T>,
     velocity: Motion<T>,
     acceleration: Motion<T>,
 }
 
-impl<T: Scalar> Moving<T> {
-    /// The base itself, with gravity as an upward acceleration where it counts.
-    #[inline(always)]
-    pub(crate) fn base(velocity: &Motion<T>, acceleration: &Motion<T>) -> Self {
-        Self {
-            rotation: Matrix3::identity(),
-            origin: Vector3::zeros(),
-            velocity: *velocity,
-            acceleration: *acceleration,
-        }
-    }
+struct Outward<'a, T: Scalar, const N: usize> {
+    posture: &'a Posture<T, N>,
+    velocity: &'a [T; N],
+    acceleration: &'a [T; N],
+    bodies: &'a mut [[T; N]; MOVING],
+}
 
-    /// The body that a joint carries, and the joint's axis.
+impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
+    type Down = Carrier<T>;
+    type Keep = Nothing;
+    type Up = Nothing;
+
     #[inline(always)]
-    fn step<J: JointKind, const N: usize>(
-        &self,
-        here: At<'_, T>,
-        posture: &Posture<T, N>,
-        qd: T,
-        qdd: T,
-    ) -> (Self, Axis<T>) {
-        let (turn, offset) = place::<J, T, N>(here, posture);
-        let rotation = turn.after(&self.rotation);
-        let origin = self.origin + self.rotation * offset;
-        let sign = here.body.sign;
+    fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Carrier<T>) -> (Carrier<T>, Nothing) {
+        let i = here.index;
+        let (turn, offset) = place::<J, T, N>(here, self.posture);
+        let rotation = turn.after(&up.rotation);
+        let origin = up.origin + up.rotation * offset;
         let z = match J::KIND.axis() {
             0 => Vector3::new(rotation.m11, rotation.m21, rotation.m31),
             1 => Vector3::new(rotation.m12, rotation.m22, rotation.m32),
             _ => Vector3::new(rotation.m13, rotation.m23, rotation.m33),
-        } * sign;
+        } * here.body.sign;
         let axis = if J::KIND.is_revolute() {
             Motion::new(origin.cross(&z), z)
         } else {
             Motion::new(z, Vector3::zeros())
         };
-        let velocity = self.velocity + axis * qd;
-        let rate = velocity.cross(&axis);
-        let acceleration = self.acceleration + axis * qdd + rate * qd;
-        let joint = Axis {
+        let (qd, qdd) = (at(self.velocity, i), at(self.acceleration, i));
+        let velocity = up.velocity + axis * qd;
+        let acceleration = up.acceleration + axis * qdd + velocity.cross(&axis) * qd;
+        let body = Moving {
+            rotation,
+            origin,
+            velocity,
+            acceleration,
             axis,
-            rate,
-            second: acceleration.cross(&axis) + velocity.cross(&rate),
+            inertia: here.body.inertia(),
         };
-        let body = Self {
+        set_column(self.bodies, i, body.pack());
+        let carrier = Carrier {
             rotation,
             origin,
             velocity,
             acceleration,
         };
-        (body, joint)
+        (carrier, Nothing)
     }
 
-    /// An inertia given in this body's frame, in the base's.
     #[inline(always)]
-    fn carried(&self, inertia: &Inertia<T>) -> Inertia<T> {
-        let r = &self.rotation;
-        inertia.assembled(r * inertia.first, inertia.second.rotated(r), &self.origin)
-    }
-
-    /// A force given in this body's frame, in the base's.
-    #[inline(always)]
-    fn force(&self, force: &Force<T>) -> Force<T> {
-        let linear = self.rotation * force.linear;
-        Force {
-            linear,
-            angular: self.rotation * force.angular + self.origin.cross(&linear),
-        }
+    fn up<J: JointKind>(&mut self, _: At<'_, T>, _: &Nothing, _: Nothing) -> Nothing {
+        Nothing
     }
 }
 
-/// One pass over the tree: axes on the way down, composites and responses on the way up; `pair` is told
-/// of every joint when its whole subtree is known.
-pub(crate) struct Sweep<'a, T: Scalar, V: Visit<T>, const N: usize> {
-    pub(crate) posture: &'a Posture<T, N>,
+/// How a robot moves: of the base, with gravity as an upward acceleration where it counts, and of the
+/// joints.
+pub(crate) struct Moves<'a, T, const N: usize> {
+    pub(crate) base_velocity: Motion<T>,
+    pub(crate) base_acceleration: Motion<T>,
     pub(crate) velocity: &'a [T; N],
     pub(crate) acceleration: &'a [T; N],
     pub(crate) applied: Option<&'a [Force<T>; N]>,
-    pub(crate) axes: &'a mut [Axis<T>; N],
-    pub(crate) visit: V,
 }
 
-/// What to do with the subtree of a joint.
-pub(crate) trait Visit<T: Scalar> {
-    /// Joint `here`, its axis and its subtree.
-    fn visit(&mut self, here: At<'_, T>, axis: &Axis<T>, subtree: &Composite<T>);
-}
-
-impl<T: Scalar, V: Visit<T>, const N: usize> Fold<T> for Sweep<'_, T, V, N> {
-    type Down = Moving<T>;
-    type Keep = Composite<T>;
-    type Up = Composite<T>;
-
-    #[inline(always)]
-    fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Moving<T>) -> (Moving<T>, Composite<T>) {
-        let i = here.index;
-        let (qd, qdd) = (at(self.velocity, i), at(self.acceleration, i));
-        let (body, axis) = up.step::<J, N>(here, self.posture, qd, qdd);
-        put(self.axes, i, axis);
-        let inertia = body.carried(&here.body.inertia());
-        let mut own = Composite::of(inertia, &body.velocity, &body.acceleration);
-        if let Some(applied) = self.applied {
-            own.force = own.force - body.force(&at(applied, i));
-        }
-        (body, own)
-    }
-
-    #[inline(always)]
-    fn up<J: JointKind>(
-        &mut self,
-        here: At<'_, T>,
-        own: &Composite<T>,
-        children: Composite<T>,
-    ) -> Composite<T> {
-        let subtree = *own + children;
-        if let Some(axis) = self.axes.get(here.index) {
-            let axis = *axis;
-            self.visit.visit(here, &axis, &subtree);
-        }
-        subtree
-    }
-}
-
-/// Runs the sweep over a robot whose base moves so; returns the composite of the whole robot.
+/// Fills the workspace and tells `visit` of every joint, from the leaves inwards; returns the composite
+/// of the whole robot.
 #[inline(always)]
-pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, V: Visit<T>, const N: usize>(
+pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
-    fold: &mut Sweep<'_, T, V, N>,
-    velocity: &Motion<T>,
-    acceleration: &Motion<T>,
+    posture: &Posture<T, N>,
+    moves: &Moves<'_, T, N>,
+    ws: &mut DerivativesWorkspace<T, N>,
+    mut visit: impl FnMut(usize, &Joint<T>, &Composite<T>),
 ) -> Composite<T> {
-    let children = model.fold(fold, &Moving::base(velocity, acceleration));
-    Composite::of(model.base().inertia(), velocity, acceleration) + children
+    let mut fold = Outward {
+        posture,
+        velocity: moves.velocity,
+        acceleration: moves.acceleration,
+        bodies: &mut ws.bodies,
+    };
+    let base = Carrier {
+        rotation: Matrix3::identity(),
+        origin: Vector3::zeros(),
+        velocity: moves.base_velocity,
+        acceleration: moves.base_acceleration,
+    };
+    model.fold(&mut fold, &base);
+    ws.compose();
+    if let Some(applied) = moves.applied {
+        ws.subtract(applied);
+    }
+    let own = Composite::of(
+        model.base().inertia(),
+        &moves.base_velocity,
+        &moves.base_acceleration,
+    );
+    let mut whole = own.pack();
+    let count = model.joint_count();
+    for (i, body) in model.bodies().iter().enumerate().take(count).rev() {
+        let subtree = ws.subtree(i);
+        let joint = ws.joint(i, &subtree);
+        ws.keep(i, &joint);
+        visit(i, &joint, &subtree);
+        let values = subtree.pack();
+        match body.parent {
+            Link::Base => {
+                for (x, y) in whole.iter_mut().zip(values) {
+                    *x += y;
+                }
+            }
+            Link::Joint(p) => {
+                for (row, y) in ws.subtrees.iter_mut().zip(values) {
+                    if let Some(x) = row.get_mut(p) {
+                        *x += y;
+                    }
+                }
+            }
+        }
+    }
+    Composite::unpack(&whole)
 }
