@@ -149,15 +149,7 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         acceleration: &acceleration.joints,
         applied: None,
     };
-    // Columns of the joints, still about the base's origin in base axes.
-    let whole = sweep(model, posture, &moves, ws, |i, joint, subtree| {
-        let momentum =
-            subtree.inertia.mul(&joint.rate) + joint.axis.cross_force(&subtree.momentum_wrench());
-        put(&mut out.map.joints, i, joint.by_a);
-        put(&mut out.momentum_by_position.joints, i, momentum);
-        put(&mut out.rate_by_position.joints, i, joint.by_q);
-        put(&mut out.rate_by_velocity.joints, i, joint.by_v);
-    });
+    let whole = sweep(model, posture, &moves, ws);
     let mass = whole.inertia.mass;
     let to = Centroidal {
         rotation: *posture.base.rotation.matrix(),
@@ -170,24 +162,14 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     };
 
     let (momentum, rate) = (whole.momentum_wrench(), whole.force);
-    let CentroidalDerivatives {
-        map,
-        momentum_by_position,
-        rate_by_position,
-        rate_by_velocity,
-        ..
-    } = &mut *out;
-    let joints = map.joints.iter_mut().zip(&mut rate_by_velocity.joints).zip(
-        momentum_by_position
-            .joints
-            .iter_mut()
-            .zip(&mut rate_by_position.joints),
-    );
-    for ((map, rate_v), (momentum_q, rate_q)) in joints {
-        *momentum_q = to.moving_column(momentum_q, map, &momentum);
-        *rate_q = to.moving_column(rate_q, map, &rate);
-        *rate_v = to.column(rate_v);
-        *map = to.column(map);
+    for i in 0..N {
+        let (joint, subtree) = (ws.joint(i), ws.subtree(i));
+        let by_q =
+            subtree.inertia.mul(&joint.rate) + joint.axis.cross_force(&subtree.momentum_wrench());
+        out.momentum_by_position.joints[i] = to.moving_column(&by_q, &joint.by_a, &momentum);
+        out.rate_by_position.joints[i] = to.moving_column(&joint.by_q, &joint.by_a, &rate);
+        out.rate_by_velocity.joints[i] = to.column(&joint.by_v);
+        out.map.joints[i] = to.column(&joint.by_a);
     }
     let (momentum, rate) = (to.about(&momentum), to.about(&rate));
     for (k, unit) in basis::<T>().iter().enumerate() {
@@ -197,19 +179,19 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
             // A shift of the base carries no momentum about the centre of mass.
             column.angular = Vector3::zeros();
         }
-        put(&mut map.base, k, column);
+        put(&mut out.map.base, k, column);
         put(
-            &mut momentum_by_position.base,
+            &mut out.momentum_by_position.base,
             k,
             to.turned(&turn.cross_force(&momentum)),
         );
         put(
-            &mut rate_by_position.base,
+            &mut out.rate_by_position.base,
             k,
             to.turned(&turn.cross_force(&rate)),
         );
         let by_v = whole.inertia.mul(&velocity.base.cross(unit)) + whole.coriolis(&unit.angular);
-        put(&mut rate_by_velocity.base, k, to.column(&by_v));
+        put(&mut out.rate_by_velocity.base, k, to.column(&by_v));
     }
     out.momentum = to.turned(&momentum);
     out.rate = to.turned(&rate);

@@ -234,9 +234,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             for (&x, from) in x.iter().zip(&out.base) {
                 add_scaled(row, -x, from);
             }
-            for (to, &x) in out.base_joints.iter_mut().zip(row.iter()) {
-                put(to, i, x);
-            }
+            set_column(&mut out.base_joints, i, row);
         }
         for (x, row) in self.coupling.iter().zip(&mut out.joints) {
             for (&x, from) in x.iter().zip(&out.base_joints) {
@@ -402,6 +400,15 @@ impl<const N: usize> Iterator for Ancestors<'_, N> {
         self.joint = at(self.before, self.joint).checked_sub(1)?;
         self.depth = self.depth.saturating_sub(1);
         Some((self.joint, self.depth))
+    }
+}
+
+/// Writes a column of six. Out of line: around it, compilers would turn the loop over `i` into gathers and
+/// scatters, which are slower.
+#[inline(never)]
+fn set_column<T: Scalar, const N: usize>(table: &mut [[T; N]; 6], i: usize, column: &[T; 6]) {
+    for (row, &x) in table.iter_mut().zip(column) {
+        put(row, i, x);
     }
 }
 

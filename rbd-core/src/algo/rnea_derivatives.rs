@@ -25,7 +25,8 @@ use super::crba::MassMatrix;
 use super::gravity::gravity;
 use super::put;
 pub use super::sweep::DerivativesWorkspace;
-use super::sweep::{Joint, Moves, set_column, sweep};
+use super::sweep::{LANES, Moves, sweep};
+use crate::model::Body;
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent, basis};
 use crate::tree::Tree;
@@ -80,30 +81,34 @@ fn set<T: Copy, const N: usize>(m: &mut [[T; N]; N], i: usize, j: usize, x: T) {
     }
 }
 
-/// Row and column of joint i that belong to the base: with v and g those of the base, the base's axes
-/// have the rates v × e and, from gravity, −g × e.
-#[inline(always)]
+/// Rows and columns between base and joints: with v and g those of the base, the base's axes have the rates
+/// v × e and, from gravity, −g × e.
+#[inline(never)]
 fn base_blocks<T: Scalar, const N: usize>(
-    i: usize,
-    joint: &Joint<T>,
+    ws: &DerivativesWorkspace<T, N>,
     base_velocity: &Motion<T>,
     gravity_b: &Vector3<T>,
     out: &mut RneaDerivatives<T, N>,
 ) {
-    let turned = Force::new(Vector3::zeros(), gravity_b.cross(&joint.by_a.linear));
-    let moved =
-        -base_velocity.cross_force(&joint.by_a) + Force::new(Vector3::zeros(), joint.coriolis);
-    put(&mut out.by_position.joints_base, i, turned.to_array());
-    put(&mut out.by_velocity.joints_base, i, moved.to_array());
-    put(&mut out.by_acceleration.coupling, i, joint.by_a);
-    set_column(&mut out.by_position.base_joints, i, joint.by_q.to_array());
-    set_column(&mut out.by_velocity.base_joints, i, joint.by_v.to_array());
+    let [a, b, c, d, e, f, g, h, i, j, k, l, ..] = ws.answers;
+    out.by_position.base_joints = [a, b, c, d, e, f];
+    out.by_velocity.base_joints = [g, h, i, j, k, l];
+    for i in 0..N {
+        let joint = ws.joint(i);
+        let turned = Force::new(Vector3::zeros(), gravity_b.cross(&joint.by_a.linear));
+        let moved =
+            Force::new(Vector3::zeros(), joint.coriolis) - base_velocity.cross_force(&joint.by_a);
+        out.by_position.joints_base[i] = turned.to_array();
+        out.by_velocity.joints_base[i] = moved.to_array();
+        out.by_acceleration.coupling[i] = joint.by_a;
+    }
 }
 
-/// Rows and columns of the joints, pair by pair.
-#[inline(always)]
-fn joint_blocks<T: Scalar, M: Tree<T, N>, const N: usize>(
-    model: &M,
+/// Rows and columns of the joints, a joint against its branch.
+#[inline(never)]
+fn joint_blocks<T: Scalar, const N: usize>(
+    bodies: &[Body<T>; N],
+    count: usize,
     ws: &DerivativesWorkspace<T, N>,
     out: &mut RneaDerivatives<T, N>,
 ) {
@@ -112,20 +117,27 @@ fn joint_blocks<T: Scalar, M: Tree<T, N>, const N: usize>(
     out.by_acceleration.joints = [[T::ZERO; N]; N];
     let (q, v) = (&mut out.by_position.joints, &mut out.by_velocity.joints);
     let m = &mut out.by_acceleration.joints;
-    let count = model.joint_count();
-    for (i, body) in model.bodies().iter().enumerate().take(count) {
-        let (x, mass) = ws.pair(i, i);
-        set(q, i, i, x[0]);
-        set(v, i, i, x[1]);
-        set(m, i, i, mass + body.rotor_inertia);
-        for j in i + 1..body.subtree_end {
-            let (x, mass) = ws.pair(i, j);
-            set(q, i, j, x[0]);
-            set(v, i, j, x[1]);
-            set(q, j, i, x[2]);
-            set(v, j, i, x[3]);
-            set(m, i, j, mass);
-            set(m, j, i, mass);
+    for (i, body) in bodies.iter().enumerate().take(count) {
+        let mut from = i;
+        while from < body.subtree_end {
+            // The last lanes of the table are taken together with some that are not meant.
+            let first = from.min(N.saturating_sub(LANES));
+            let pairs = ws.pairs(i, first);
+            for l in 0..LANES {
+                let j = first + l;
+                if j >= from && j < body.subtree_end {
+                    set(q, j, i, pairs.below_q[l]);
+                    set(v, j, i, pairs.below_v[l]);
+                    set(m, j, i, pairs.mass[l]);
+                    set(q, i, j, pairs.above_q[l]);
+                    set(v, i, j, pairs.above_v[l]);
+                    set(m, i, j, pairs.mass[l]);
+                }
+            }
+            from = first + LANES;
+        }
+        if let Some(x) = m.get_mut(i).and_then(|row| row.get_mut(i)) {
+            *x += body.rotor_inertia;
         }
     }
 }
@@ -152,10 +164,9 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         acceleration: &acceleration.joints,
         applied,
     };
-    let whole = sweep(model, posture, &moves, ws, |i, joint, _| {
-        base_blocks(i, joint, &velocity.base, &gravity_b, out);
-    });
-    joint_blocks(model, ws, out);
+    let whole = sweep(model, posture, &moves, ws);
+    base_blocks(ws, &velocity.base, &gravity_b, out);
+    joint_blocks(model.bodies(), model.joint_count(), ws, out);
 
     out.by_acceleration.base = whole.inertia;
     for (k, unit) in basis::<T>().iter().enumerate() {

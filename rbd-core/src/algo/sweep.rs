@@ -22,9 +22,8 @@
 //!
 //! # Layout
 //! Only the way down, which needs the joint kinds, is a fold. What follows is the same for every body, so it
-//! runs as plain loops over tables: what is done for each body by itself, over tables by *quantity*
-//! (`[[T; N]; K]`), so that neighbouring bodies share a vector instruction; what is done for each pair of
-//! joints, over tables by *body* with the four results of a pair side by side.
+//! runs as plain loops over tables by *quantity* (`[[T; N]; K]`): neighbouring bodies, and neighbouring
+//! joints of one branch, share a vector instruction.
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
@@ -40,8 +39,8 @@ use crate::tree::{At, Fold, Nothing, Tree};
 const MOVING: usize = 40;
 /// Numbers in a [`Composite`].
 const COMPOSITE: usize = 28;
-/// Six coordinates of a motion or force, then the three of a rotation rate.
-const ROWS: usize = 9;
+/// Numbers in the answer of a subtree: P, Q, F, G.
+const ANSWER: usize = 21;
 
 /// Column `i` of a table by quantity.
 #[inline(always)]
@@ -55,7 +54,7 @@ fn column<T: Scalar, const K: usize, const N: usize>(table: &[[T; N]; K], i: usi
 
 /// Writes column `i` of a table by quantity.
 #[inline(always)]
-pub(crate) fn set_column<T: Scalar, const K: usize, const N: usize>(
+fn set_column<T: Scalar, const K: usize, const N: usize>(
     table: &mut [[T; N]; K],
     i: usize,
     values: [T; K],
@@ -236,8 +235,6 @@ pub(crate) struct Joint<T> {
     pub(crate) axis: Motion<T>,
     /// Ṡ.
     pub(crate) rate: Motion<T>,
-    /// S̈.
-    pub(crate) second: Motion<T>,
     /// P = I S̈ + B Ṡ + S ×* f.
     pub(crate) by_q: Force<T>,
     /// Q = 2 I Ṡ + B S.
@@ -248,36 +245,17 @@ pub(crate) struct Joint<T> {
     pub(crate) coriolis: Vector3<T>,
 }
 
-impl<T: Scalar> Joint<T> {
-    #[inline(always)]
-    fn new(axis: Motion<T>, rate: Motion<T>, second: Motion<T>, subtree: &Composite<T>) -> Self {
-        Self {
-            axis,
-            rate,
-            second,
-            by_q: subtree.inertia.mul(&second)
-                + subtree.coriolis(&rate.angular)
-                + axis.cross_force(&subtree.force),
-            by_v: subtree.inertia.mul(&(rate * T::TWO)) + subtree.coriolis(&axis.angular),
-            by_a: subtree.inertia.mul(&axis),
-            coriolis: subtree.coriolis_transposed(&axis),
-        }
-    }
-}
-
-/// Scratch of the derivatives: bodies, subtrees and joints, in base axes.
+/// Scratch of the derivatives: bodies, subtrees and joints, in base axes, by quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct DerivativesWorkspace<T, const N: usize> {
-    /// [`Moving`] by quantity.
+    /// [`Moving`].
     bodies: [[T; N]; MOVING],
-    /// [`Composite`] by quantity: of each body, then of its subtree.
+    /// [`Composite`]: of each body, then of its subtree.
     subtrees: [[T; N]; COMPOSITE],
-    /// Ṡ and S̈ by quantity.
-    rates: [[T; N]; 12],
-    /// By joint: (S, S, S̈, 2 Ṡ), then (0, 0, Ṡ, S) of the rotation.
-    causes: [[[T; 4]; ROWS]; N],
-    /// By joint: (P, Q, F, F), then (0, 0, G, G).
-    effects: [[[T; 4]; ROWS]; N],
+    /// S, Ṡ, S̈.
+    pub(crate) axes: [[T; N]; 18],
+    /// P, Q, F, G.
+    pub(crate) answers: [[T; N]; ANSWER],
 }
 
 impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
@@ -287,9 +265,8 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
         Self {
             bodies: [[T::ZERO; N]; MOVING],
             subtrees: [[T::ZERO; N]; COMPOSITE],
-            rates: [[T::ZERO; N]; 12],
-            causes: [[[T::ZERO; 4]; ROWS]; N],
-            effects: [[[T::ZERO; 4]; ROWS]; N],
+            axes: [[T::ZERO; N]; 18],
+            answers: [[T::ZERO; N]; ANSWER],
         }
     }
 
@@ -301,27 +278,49 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
             let own = Composite::of(body.carried(), &body.velocity, &body.acceleration);
             set_column(&mut self.subtrees, i, own.pack());
             let (rate, second) = body.rates();
-            let (a, b) = (rate.to_array(), second.to_array());
-            for k in 0..6 {
-                self.rates[k][i] = a[k];
-                self.rates[6 + k][i] = b[k];
-            }
+            let [a, b, c, d, e, f] = body.axis.to_array();
+            let [g, h, j, k, l, m] = rate.to_array();
+            let [n, o, p, q, r, s] = second.to_array();
+            let values = [a, b, c, d, e, f, g, h, j, k, l, m, n, o, p, q, r, s];
+            set_column(&mut self.axes, i, values);
+        }
+    }
+
+    /// What each subtree answers to its joint, each for itself.
+    #[inline(never)]
+    fn answer(&mut self) {
+        for i in 0..N {
+            let subtree = Composite::unpack(&column(&self.subtrees, i));
+            let [a, b, c, d, e, f, g, h, j, k, l, m, n, o, p, q, r, s] = column(&self.axes, i);
+            let axis = Motion::from_array([a, b, c, d, e, f]);
+            let rate = Motion::from_array([g, h, j, k, l, m]);
+            let second = Motion::from_array([n, o, p, q, r, s]);
+            let by_q = subtree.inertia.mul(&second)
+                + subtree.coriolis(&rate.angular)
+                + axis.cross_force(&subtree.force);
+            let by_v = subtree.inertia.mul(&(rate * T::TWO)) + subtree.coriolis(&axis.angular);
+            let by_a = subtree.inertia.mul(&axis);
+            let [a, b, c, d, e, f] = by_q.to_array();
+            let [g, h, j, k, l, m] = by_v.to_array();
+            let [n, o, p, q, r, s] = by_a.to_array();
+            let t = subtree.coriolis_transposed(&axis);
+            let values = [
+                a, b, c, d, e, f, g, h, j, k, l, m, n, o, p, q, r, s, t.x, t.y, t.z,
+            ];
+            set_column(&mut self.answers, i, values);
         }
     }
 
     /// Takes from the net forces what acts from outside, given in the frames of the bodies.
-    #[inline(always)]
+    #[inline(never)]
     fn subtract(&mut self, applied: &[Force<T>; N]) {
         for (i, force) in applied.iter().enumerate() {
             let body = Moving::unpack(&column(&self.bodies, i));
+            let mut own = Composite::unpack(&column(&self.subtrees, i));
             let linear = body.rotation * force.linear;
             let angular = body.rotation * force.angular + body.origin.cross(&linear);
-            for (row, x) in self.subtrees[22..]
-                .iter_mut()
-                .zip(Force::new(linear, angular).to_array())
-            {
-                row[i] -= x;
-            }
+            own.force = own.force - Force::new(linear, angular);
+            set_column(&mut self.subtrees, i, own.pack());
         }
     }
 
@@ -333,62 +332,75 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
 
     /// Joint `i` with the answer of its subtree.
     #[inline(always)]
-    fn joint(&self, i: usize, subtree: &Composite<T>) -> Joint<T> {
-        let rates = column(&self.rates, i);
-        let motion = |x: &[T]| match *x {
-            [a, b, c, d, e, f] => Motion::from_array([a, b, c, d, e, f]),
-            _ => Motion::ZERO,
-        };
-        let axis = Moving::unpack(&column(&self.bodies, i)).axis;
-        Joint::new(axis, motion(&rates[..6]), motion(&rates[6..]), subtree)
+    pub(crate) fn joint(&self, i: usize) -> Joint<T> {
+        let [a, b, c, d, e, f, g, h, j, k, l, m, ..] = column(&self.axes, i);
+        let (axis, rate) = ([a, b, c, d, e, f], [g, h, j, k, l, m]);
+        let [
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            g,
+            h,
+            j,
+            k,
+            l,
+            m,
+            n,
+            o,
+            p,
+            q,
+            r,
+            s,
+            x,
+            y,
+            z,
+        ] = column(&self.answers, i);
+        Joint {
+            axis: Motion::from_array(axis),
+            rate: Motion::from_array(rate),
+            by_q: Force::from_array([a, b, c, d, e, f]),
+            by_v: Force::from_array([g, h, j, k, l, m]),
+            by_a: Force::from_array([n, o, p, q, r, s]),
+            coriolis: Vector3::new(x, y, z),
+        }
     }
 
-    /// Puts what the pairs need of a joint side by side.
+    /// Joint i against [`LANES`] joints from j on, those of its subtree being meant.
     #[inline(always)]
-    fn keep(&mut self, i: usize, joint: &Joint<T>) {
-        let (Some(cause), Some(effect)) = (self.causes.get_mut(i), self.effects.get_mut(i)) else {
-            return;
-        };
-        let z = T::ZERO;
-        let (s, r, t) = (
-            joint.axis.to_array(),
-            joint.rate.to_array(),
-            joint.second.to_array(),
-        );
-        let (p, q, f) = (
-            joint.by_q.to_array(),
-            joint.by_v.to_array(),
-            joint.by_a.to_array(),
-        );
+    pub(crate) fn pairs(&self, i: usize, j: usize) -> Pairs<T> {
+        let mut pairs = Pairs::ZERO;
         for k in 0..6 {
-            cause[k] = [s[k], s[k], t[k], r[k] + r[k]];
-            effect[k] = [p[k], q[k], f[k], f[k]];
-        }
-        let g = [joint.coriolis.x, joint.coriolis.y, joint.coriolis.z];
-        for k in 0..3 {
-            cause[6 + k] = [z, z, r[3 + k], s[3 + k]];
-            effect[6 + k] = [z, z, g[k], g[k]];
-        }
-    }
-
-    /// For joint i and a joint j of its subtree: ∂τ_i/∂q_j, ∂τ_i/∂q̇_j, ∂τ_j/∂q_i, ∂τ_j/∂q̇_i, and the
-    /// entry of M.
-    #[inline(always)]
-    pub(crate) fn pair(&self, i: usize, j: usize) -> ([T; 4], T) {
-        let (Some(cause), Some(effect)) = (self.causes.get(i), self.effects.get(j)) else {
-            return ([T::ZERO; 4], T::ZERO);
-        };
-        let mut sum = [T::ZERO; 4];
-        for (c, e) in cause.iter().zip(effect) {
-            for ((s, &x), &y) in sum.iter_mut().zip(c).zip(e) {
-                *s += x * y;
+            let (s, r, t) = (
+                at(&self.axes[k], i),
+                at(&self.axes[6 + k], i),
+                at(&self.axes[12 + k], i),
+            );
+            let (p, q, f) = (
+                lanes(&self.answers[k], j),
+                lanes(&self.answers[6 + k], j),
+                lanes(&self.answers[12 + k], j),
+            );
+            let r = r + r;
+            for l in 0..LANES {
+                pairs.above_q[l] += s * p[l];
+                pairs.above_v[l] += s * q[l];
+                pairs.below_q[l] += t * f[l];
+                pairs.below_v[l] += r * f[l];
+                pairs.mass[l] += s * f[l];
             }
         }
-        let mut mass = T::ZERO;
-        for (c, e) in cause.iter().zip(effect).take(6) {
-            mass += c[0] * e[2];
+        for k in 0..3 {
+            let (s, r) = (at(&self.axes[3 + k], i), at(&self.axes[9 + k], i));
+            let g = lanes(&self.answers[18 + k], j);
+            for l in 0..LANES {
+                pairs.below_q[l] += r * g[l];
+                pairs.below_v[l] += s * g[l];
+            }
         }
-        (sum, mass)
+        pairs
     }
 }
 
@@ -396,6 +408,43 @@ impl<T: Scalar, const N: usize> Default for DerivativesWorkspace<T, N> {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Joints of a branch taken together.
+pub(crate) const LANES: usize = 4;
+
+/// `LANES` entries from j on; zero beyond the end.
+#[inline(always)]
+fn lanes<T: Scalar, const N: usize>(row: &[T; N], j: usize) -> [T; LANES] {
+    match row.get(j..) {
+        Some(&[a, b, c, d, ..]) => [a, b, c, d],
+        _ => [at(row, j), at(row, j + 1), at(row, j + 2), at(row, j + 3)],
+    }
+}
+
+/// What a joint i and joints j of its subtree do to each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pairs<T> {
+    /// ∂τ_i/∂q_j.
+    pub(crate) above_q: [T; LANES],
+    /// ∂τ_i/∂q̇_j.
+    pub(crate) above_v: [T; LANES],
+    /// ∂τ_j/∂q_i.
+    pub(crate) below_q: [T; LANES],
+    /// ∂τ_j/∂q̇_i.
+    pub(crate) below_v: [T; LANES],
+    /// M_ij.
+    pub(crate) mass: [T; LANES],
+}
+
+impl<T: Scalar> Pairs<T> {
+    const ZERO: Self = Self {
+        above_q: [T::ZERO; LANES],
+        above_v: [T::ZERO; LANES],
+        below_q: [T::ZERO; LANES],
+        below_v: [T::ZERO; LANES],
+        mass: [T::ZERO; LANES],
+    };
 }
 
 /// What a body hands to those it carries.
@@ -472,15 +521,13 @@ pub(crate) struct Moves<'a, T, const N: usize> {
     pub(crate) applied: Option<&'a [Force<T>; N]>,
 }
 
-/// Fills the workspace and tells `visit` of every joint, from the leaves inwards; returns the composite
-/// of the whole robot.
+/// Fills the workspace; returns the composite of the whole robot.
 #[inline(always)]
 pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
     posture: &Posture<T, N>,
     moves: &Moves<'_, T, N>,
     ws: &mut DerivativesWorkspace<T, N>,
-    mut visit: impl FnMut(usize, &Joint<T>, &Composite<T>),
 ) -> Composite<T> {
     let mut fold = Outward {
         posture,
@@ -507,11 +554,7 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
     let mut whole = own.pack();
     let count = model.joint_count();
     for (i, body) in model.bodies().iter().enumerate().take(count).rev() {
-        let subtree = ws.subtree(i);
-        let joint = ws.joint(i, &subtree);
-        ws.keep(i, &joint);
-        visit(i, &joint, &subtree);
-        let values = subtree.pack();
+        let values = column(&ws.subtrees, i);
         match body.parent {
             Link::Base => {
                 for (x, y) in whole.iter_mut().zip(values) {
@@ -527,5 +570,6 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
             }
         }
     }
+    ws.answer();
     Composite::unpack(&whole)
 }
