@@ -237,9 +237,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             set_column(&mut out.base_joints, i, row);
         }
         for (x, row) in self.coupling.iter().zip(&mut out.joints) {
-            for (&x, from) in x.iter().zip(&out.base_joints) {
-                add_scaled(row, -x, from);
-            }
+            subtract_rows(row, x, &out.base_joints);
         }
     }
 
@@ -400,6 +398,16 @@ impl<const N: usize> Iterator for Ancestors<'_, N> {
         self.joint = at(self.before, self.joint).checked_sub(1)?;
         self.depth = self.depth.saturating_sub(1);
         Some((self.joint, self.depth))
+    }
+}
+
+/// y ← y − Σ x_k row_k. Out of line for the reason of [`set_column`].
+#[inline(never)]
+fn subtract_rows<T: Scalar, const N: usize>(y: &mut [T; N], x: &[T; 6], rows: &[[T; N]; 6]) {
+    let [a, b, c, d, e, f] = rows;
+    let [p, q, r, s, t, u] = *x;
+    for i in 0..N {
+        y[i] -= (p * a[i] + q * b[i] + r * c[i]) + (s * d[i] + t * e[i] + u * f[i]);
     }
 }
 
