@@ -2,17 +2,21 @@
 //!
 //! From τ(q, ν, ν̇(q, ν, τ)) = τ: ∂ν̇/∂q = −M⁻¹ ∂τ/∂q and ∂ν̇/∂ν = −M⁻¹ ∂τ/∂ν, the derivatives of
 //! inverse dynamics at the acceleration that forward dynamics gives (Carpentier, Mansard, "Analytical
-//! derivatives of rigid body dynamics algorithms", RSS 2018). M comes with those derivatives and is
-//! factored along the branches of the tree, see [`minv`](super::minv).
+//! derivatives of rigid body dynamics algorithms", RSS 2018).
+//!
+//! One sweep at zero acceleration gives M and the bias forces; M is factored along the branches of the tree
+//! (see [`minv`](super::minv)) and gives ν̇; what the acceleration adds to the sweep is linear in it and cheap.
 
+use nalgebra::Vector3;
 use so3::Scalar;
 
-use super::aba::{AbaWorkspace, aba, aba_with_forces};
 use super::blocks::BlockMatrix;
+use super::gravity::gravity;
 use super::minv::MassFactors;
 use super::rnea_derivatives::{
-    DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
+    BaseState, DerivativesWorkspace, RneaDerivatives, gradient_blocks, mass_blocks,
 };
+use super::sweep::{Moves, sweep};
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::Tree;
@@ -70,11 +74,9 @@ impl<T: Scalar, const N: usize> AbaDerivatives<T, N> {
     }
 }
 
-/// Scratch of [`aba_derivatives`]: that of forward dynamics, of the derivatives of inverse dynamics, and
-/// their results; [`AbaDerivativesWorkspace::factors`] can solve with M afterwards.
+/// Scratch of [`aba_derivatives`]: the derivatives of inverse dynamics and the factors of M; [`AbaDerivativesWorkspace::factors`] can solve with M afterwards.
 #[derive(Clone, Copy, Debug)]
 pub struct AbaDerivativesWorkspace<T, const N: usize> {
-    aba: AbaWorkspace<T, N>,
     inverse_dynamics: DerivativesWorkspace<T, N>,
     efforts: RneaDerivatives<T, N>,
     factors: MassFactors<T, N>,
@@ -86,7 +88,6 @@ impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            aba: AbaWorkspace::new(),
             inverse_dynamics: DerivativesWorkspace::new(),
             efforts: RneaDerivatives::ZERO,
             factors: MassFactors::new(),
@@ -105,22 +106,6 @@ impl<T: Scalar, const N: usize> AbaDerivativesWorkspace<T, N> {
     pub const fn inverse_dynamics(&self) -> &RneaDerivatives<T, N> {
         &self.efforts
     }
-
-    /// From the derivatives of inverse dynamics to those of forward dynamics.
-    #[inline(always)]
-    fn finish<M: Tree<T, N>>(&mut self, model: &M, out: &mut AbaDerivatives<T, N>) {
-        let factors = &mut self.factors;
-        factors.factor(model, &self.efforts.by_acceleration);
-        factors.joints_inverse(&mut self.joints_inverse);
-        out.by_effort.joints = self.joints_inverse;
-        factors.complete_inverse(&mut out.by_effort);
-        for (d, to) in [
-            (&self.efforts.by_position, &mut out.by_position),
-            (&self.efforts.by_velocity, &mut out.by_velocity),
-        ] {
-            factors.solve_derivatives(&out.by_effort, &self.joints_inverse, d, to);
-        }
-    }
 }
 
 impl<T: Scalar, const N: usize> Default for AbaDerivativesWorkspace<T, N> {
@@ -129,7 +114,62 @@ impl<T: Scalar, const N: usize> Default for AbaDerivativesWorkspace<T, N> {
     }
 }
 
-/// Derivatives of [`aba`] with respect to configuration, velocity and effort, and its value.
+#[inline(always)]
+fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    effort: &Effort<T, N>,
+    applied: Option<&[Force<T>; N]>,
+    ws: &mut AbaDerivativesWorkspace<T, N>,
+    out: &mut AbaDerivatives<T, N>,
+) {
+    let AbaDerivativesWorkspace {
+        inverse_dynamics: id,
+        efforts,
+        factors,
+        joints_inverse,
+    } = ws;
+    let gravity_b = posture.base.rotation.matrix().tr_mul(&gravity());
+    let base = BaseState {
+        velocity: velocity.base,
+        gravity_b,
+    };
+    let still = [T::ZERO; N];
+    let moves = Moves {
+        base_velocity: velocity.base,
+        base_acceleration: Motion::new(-gravity_b, Vector3::zeros()),
+        velocity: &velocity.joints,
+        acceleration: &still,
+        applied,
+    };
+    let whole = sweep(model, posture, &moves, id);
+    mass_blocks(model, id, &whole, efforts);
+    factors.factor(model, &efforts.by_acceleration);
+
+    let mut drive = Effort {
+        base: effort.base - whole.force,
+        joints: effort.joints,
+    };
+    for (x, y) in drive.joints.iter_mut().zip(id.efforts()) {
+        *x -= y;
+    }
+    out.acceleration = factors.solve(&drive);
+    id.accelerate(model, &out.acceleration.base, &out.acceleration.joints);
+    gradient_blocks(model, id, &base, &whole, efforts);
+
+    factors.joints_inverse(joints_inverse);
+    out.by_effort.joints = *joints_inverse;
+    factors.complete_inverse(&mut out.by_effort);
+    for (d, to) in [
+        (&efforts.by_position, &mut out.by_position),
+        (&efforts.by_velocity, &mut out.by_velocity),
+    ] {
+        factors.solve_derivatives(&out.by_effort, joints_inverse, d, to);
+    }
+}
+
+/// Derivatives of [`aba`](crate::aba) with respect to configuration, velocity and effort, and its value.
 ///
 /// For a fixed base the rows of the base are zero, and the base columns of ∂ν̇/∂q tell what happens
 /// when its mount is tilted.
@@ -142,20 +182,11 @@ pub fn aba_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     ws: &mut AbaDerivativesWorkspace<T, N>,
     out: &mut AbaDerivatives<T, N>,
 ) {
-    out.acceleration = aba(model, posture, velocity, effort, &mut ws.aba);
-    rnea_derivatives(
-        model,
-        posture,
-        velocity,
-        &out.acceleration,
-        &mut ws.inverse_dynamics,
-        &mut ws.efforts,
-    );
-    ws.finish(model, out);
+    derivatives(model, posture, velocity, effort, None, ws, out);
 }
 
-/// Derivatives of [`aba_with_forces`], the forces held constant in the axes of the bodies on which they
-/// act (see [`rnea_derivatives_with_forces`]).
+/// Derivatives of [`aba_with_forces`](crate::aba_with_forces), the forces held constant in the axes of the
+/// bodies on which they act (see [`rnea_derivatives_with_forces`](crate::rnea_derivatives_with_forces)).
 #[inline]
 pub fn aba_derivatives_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
@@ -166,15 +197,5 @@ pub fn aba_derivatives_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
     ws: &mut AbaDerivativesWorkspace<T, N>,
     out: &mut AbaDerivatives<T, N>,
 ) {
-    out.acceleration = aba_with_forces(model, posture, velocity, effort, forces, &mut ws.aba);
-    rnea_derivatives_with_forces(
-        model,
-        posture,
-        velocity,
-        &out.acceleration,
-        forces,
-        &mut ws.inverse_dynamics,
-        &mut ws.efforts,
-    );
-    ws.finish(model, out);
+    derivatives(model, posture, velocity, effort, Some(forces), ws, out);
 }

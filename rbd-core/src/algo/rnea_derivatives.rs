@@ -25,7 +25,7 @@ use super::crba::MassMatrix;
 use super::gravity::gravity;
 use super::put;
 pub use super::sweep::DerivativesWorkspace;
-use super::sweep::{LANES, Moves, sweep};
+use super::sweep::{Composite, LANES, Moves, sweep};
 use crate::model::Body;
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent, basis};
@@ -81,40 +81,107 @@ fn set<T: Copy, const N: usize>(m: &mut [[T; N]; N], i: usize, j: usize, x: T) {
     }
 }
 
-/// Rows and columns between base and joints: with v and g those of the base, the base's axes have the rates
-/// v × e and, from gravity, −g × e.
-#[inline(never)]
-fn base_blocks<T: Scalar, const N: usize>(
+/// The base that the derivatives are taken at.
+#[derive(Clone, Copy)]
+pub(crate) struct BaseState<T> {
+    /// Velocity.
+    pub(crate) velocity: Motion<T>,
+    /// Gravity in base axes.
+    pub(crate) gravity_b: Vector3<T>,
+}
+
+/// Blocks of M from the workspace.
+pub(crate) fn mass_blocks<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
     ws: &DerivativesWorkspace<T, N>,
-    base_velocity: &Motion<T>,
-    gravity_b: &Vector3<T>,
+    whole: &Composite<T>,
     out: &mut RneaDerivatives<T, N>,
 ) {
-    let [a, b, c, d, e, f, g, h, i, j, k, l, ..] = ws.answers;
-    out.by_position.base_joints = [a, b, c, d, e, f];
-    out.by_velocity.base_joints = [g, h, i, j, k, l];
-    for i in 0..N {
-        let joint = ws.joint(i);
-        let turned = Force::new(Vector3::zeros(), gravity_b.cross(&joint.by_a.linear));
-        let moved =
-            Force::new(Vector3::zeros(), joint.coriolis) - base_velocity.cross_force(&joint.by_a);
-        out.by_position.joints_base[i] = turned.to_array();
-        out.by_velocity.joints_base[i] = moved.to_array();
-        out.by_acceleration.coupling[i] = joint.by_a;
+    coupling_block(ws, &mut out.by_acceleration.coupling);
+    joint_blocks::<T, true, false, N>(model.bodies(), model.joint_count(), ws, out);
+    out.by_acceleration.base = whole.inertia;
+}
+
+/// Blocks of ∂τ/∂q and ∂τ/∂ν from the workspace.
+pub(crate) fn gradient_blocks<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    ws: &DerivativesWorkspace<T, N>,
+    base: &BaseState<T>,
+    whole: &Composite<T>,
+    out: &mut RneaDerivatives<T, N>,
+) {
+    border_blocks(ws, base, out);
+    joint_blocks::<T, false, true, N>(model.bodies(), model.joint_count(), ws, out);
+    base_block(base, whole, out);
+}
+
+/// Column of the coupling for each joint.
+#[inline(always)]
+fn coupling_block<T: Scalar, const N: usize>(
+    ws: &DerivativesWorkspace<T, N>,
+    coupling: &mut [Force<T>; N],
+) {
+    for (i, column) in coupling.iter_mut().enumerate() {
+        *column = ws.joint(i).by_a;
     }
 }
 
-/// Rows and columns of the joints, a joint against its branch.
+/// Rows and columns between base and joints: with v and g those of the base, the base's axes have the rates
+/// v × e and, from gravity, −g × e.
 #[inline(never)]
-fn joint_blocks<T: Scalar, const N: usize>(
+fn border_blocks<T: Scalar, const N: usize>(
+    ws: &DerivativesWorkspace<T, N>,
+    base: &BaseState<T>,
+    out: &mut RneaDerivatives<T, N>,
+) {
+    let [a, b, c, d, e, f, g, h, i, j, k, l, ..] = &ws.answers;
+    out.by_position.base_joints = [*a, *b, *c, *d, *e, *f];
+    out.by_velocity.base_joints = [*g, *h, *i, *j, *k, *l];
+    for i in 0..N {
+        let joint = ws.joint(i);
+        let turned = Force::new(Vector3::zeros(), base.gravity_b.cross(&joint.by_a.linear));
+        let moved =
+            Force::new(Vector3::zeros(), joint.coriolis) - base.velocity.cross_force(&joint.by_a);
+        out.by_position.joints_base[i] = turned.to_array();
+        out.by_velocity.joints_base[i] = moved.to_array();
+    }
+}
+
+/// Rows and columns of the base itself.
+#[inline(never)]
+fn base_block<T: Scalar, const N: usize>(
+    base: &BaseState<T>,
+    whole: &Composite<T>,
+    out: &mut RneaDerivatives<T, N>,
+) {
+    for (k, unit) in basis::<T>().iter().enumerate() {
+        let turned = Motion::new(-base.gravity_b.cross(&unit.angular), Vector3::zeros());
+        let by_q = whole.inertia.mul(&turned);
+        let by_v = whole.inertia.mul(&base.velocity.cross(unit)) + whole.coriolis(&unit.angular);
+        for (row, x) in out.by_position.base.iter_mut().zip(by_q.to_array()) {
+            put(row, k, x);
+        }
+        for (row, x) in out.by_velocity.base.iter_mut().zip(by_v.to_array()) {
+            put(row, k, x);
+        }
+    }
+}
+
+/// Rows and columns of the joints, a joint against its branch: of M, of the derivatives, or of both.
+#[inline(never)]
+fn joint_blocks<T: Scalar, const MASS: bool, const GRADIENT: bool, const N: usize>(
     bodies: &[Body<T>; N],
     count: usize,
     ws: &DerivativesWorkspace<T, N>,
     out: &mut RneaDerivatives<T, N>,
 ) {
-    out.by_position.joints = [[T::ZERO; N]; N];
-    out.by_velocity.joints = [[T::ZERO; N]; N];
-    out.by_acceleration.joints = [[T::ZERO; N]; N];
+    if GRADIENT {
+        out.by_position.joints = [[T::ZERO; N]; N];
+        out.by_velocity.joints = [[T::ZERO; N]; N];
+    }
+    if MASS {
+        out.by_acceleration.joints = [[T::ZERO; N]; N];
+    }
     let (q, v) = (&mut out.by_position.joints, &mut out.by_velocity.joints);
     let m = &mut out.by_acceleration.joints;
     for (i, body) in bodies.iter().enumerate().take(count) {
@@ -122,21 +189,26 @@ fn joint_blocks<T: Scalar, const N: usize>(
         while from < body.subtree_end {
             // The last lanes of the table are taken together with some that are not meant.
             let first = from.min(N.saturating_sub(LANES));
-            let pairs = ws.pairs(i, first);
+            let pairs = ws.pairs::<MASS, GRADIENT>(i, first);
             for l in 0..LANES {
                 let j = first + l;
-                if j >= from && j < body.subtree_end {
+                if j < from || j >= body.subtree_end {
+                    continue;
+                }
+                if GRADIENT {
                     set(q, j, i, pairs.below_q[l]);
                     set(v, j, i, pairs.below_v[l]);
-                    set(m, j, i, pairs.mass[l]);
                     set(q, i, j, pairs.above_q[l]);
                     set(v, i, j, pairs.above_v[l]);
+                }
+                if MASS {
+                    set(m, j, i, pairs.mass[l]);
                     set(m, i, j, pairs.mass[l]);
                 }
             }
             from = first + LANES;
         }
-        if let Some(x) = m.get_mut(i).and_then(|row| row.get_mut(i)) {
+        if MASS && let Some(x) = m.get_mut(i).and_then(|row| row.get_mut(i)) {
             *x += body.rotor_inertia;
         }
     }
@@ -153,33 +225,26 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     out: &mut RneaDerivatives<T, N>,
 ) {
     let gravity_b = posture.base.rotation.matrix().tr_mul(&gravity());
-    let lifted = Motion::new(
-        acceleration.base.linear - gravity_b,
-        acceleration.base.angular,
-    );
+    let base = BaseState {
+        velocity: velocity.base,
+        gravity_b,
+    };
     let moves = Moves {
         base_velocity: velocity.base,
-        base_acceleration: lifted,
+        base_acceleration: Motion::new(
+            acceleration.base.linear - gravity_b,
+            acceleration.base.angular,
+        ),
         velocity: &velocity.joints,
         acceleration: &acceleration.joints,
         applied,
     };
     let whole = sweep(model, posture, &moves, ws);
-    base_blocks(ws, &velocity.base, &gravity_b, out);
-    joint_blocks(model.bodies(), model.joint_count(), ws, out);
-
+    border_blocks(ws, &base, out);
+    coupling_block(ws, &mut out.by_acceleration.coupling);
+    joint_blocks::<T, true, true, N>(model.bodies(), model.joint_count(), ws, out);
+    base_block(&base, &whole, out);
     out.by_acceleration.base = whole.inertia;
-    for (k, unit) in basis::<T>().iter().enumerate() {
-        let turned = Motion::new(-gravity_b.cross(&unit.angular), Vector3::zeros());
-        let by_q = whole.inertia.mul(&turned);
-        let by_v = whole.inertia.mul(&velocity.base.cross(unit)) + whole.coriolis(&unit.angular);
-        for (row, x) in out.by_position.base.iter_mut().zip(by_q.to_array()) {
-            put(row, k, x);
-        }
-        for (row, x) in out.by_velocity.base.iter_mut().zip(by_v.to_array()) {
-            put(row, k, x);
-        }
-    }
 }
 
 /// Derivatives of [`rnea`](crate::rnea) with respect to configuration, velocity and acceleration.

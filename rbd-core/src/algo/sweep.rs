@@ -324,6 +324,77 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
         }
     }
 
+    /// Effort of the joints, S·f.
+    #[inline(always)]
+    pub(crate) fn efforts(&self) -> [T; N] {
+        let mut out = [T::ZERO; N];
+        for k in 0..6 {
+            let (s, f) = (&self.axes[k], &self.subtrees[22 + k]);
+            for i in 0..N {
+                out[i] += s[i] * f[i];
+            }
+        }
+        out
+    }
+
+    /// From the state of the last [`sweep`] to one with more acceleration, everything else the same.
+    ///
+    /// With Δa_i = Δa_parent + S_i Δq̈_i, the axes gain ΔS̈ = Δa × S and the net forces
+    /// Δf_i = I_i Δa_i + Σ F_j Δq̈_j over the joints j behind i.
+    pub(crate) fn accelerate<M: Tree<T, N>>(
+        &mut self,
+        model: &M,
+        base: &Motion<T>,
+        joints: &[T; N],
+    ) {
+        let (mut motions, mut forces) = ([[T::ZERO; N]; 6], [[T::ZERO; N]; 6]);
+        let base = base.to_array();
+        let count = model.joint_count();
+        for (i, body) in model.bodies().iter().enumerate().take(count) {
+            let x = at(joints, i);
+            for k in 0..6 {
+                let carried = match body.parent {
+                    Link::Base => base[k],
+                    Link::Joint(p) => at(&motions[k], p),
+                };
+                motions[k][i] = carried + self.axes[k][i] * x;
+            }
+        }
+        for (i, body) in model.bodies().iter().enumerate().take(count).rev() {
+            if let Link::Joint(p) = body.parent {
+                let x = at(joints, i);
+                for k in 0..6 {
+                    let force = forces[k][i] + self.answers[12 + k][i] * x;
+                    if let Some(slot) = forces[k].get_mut(p) {
+                        *slot += force;
+                    }
+                }
+            }
+        }
+        self.push(&motions, &forces);
+        self.answer();
+    }
+
+    /// Adds motions to every body and, besides, forces to every subtree, each for itself.
+    #[inline(never)]
+    fn push(&mut self, motions: &[[T; N]; 6], forces: &[[T; N]; 6]) {
+        for i in 0..N {
+            let motion = Motion::from_array(column(motions, i));
+            let mut subtree = Composite::unpack(&column(&self.subtrees, i));
+            subtree.force += subtree.inertia.mul(&motion) + Force::from_array(column(forces, i));
+            set_column(&mut self.subtrees, i, subtree.pack());
+            let mut axes = column(&self.axes, i);
+            let [a, b, c, d, e, f, ..] = axes;
+            let gain = motion
+                .cross(&Motion::from_array([a, b, c, d, e, f]))
+                .to_array();
+            for (x, y) in axes[12..].iter_mut().zip(gain) {
+                *x += y;
+            }
+            set_column(&mut self.axes, i, axes);
+        }
+    }
+
     /// The subtree of joint `i`.
     #[inline(always)]
     pub(crate) fn subtree(&self, i: usize) -> Composite<T> {
@@ -368,36 +439,43 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
         }
     }
 
-    /// Joint i against [`LANES`] joints from j on, those of its subtree being meant.
+    /// Joint i against [`LANES`] joints from j on, those of its subtree being meant: the entries of M, the
+    /// derivatives, or both.
     #[inline(always)]
-    pub(crate) fn pairs(&self, i: usize, j: usize) -> Pairs<T> {
+    pub(crate) fn pairs<const MASS: bool, const GRADIENT: bool>(
+        &self,
+        i: usize,
+        j: usize,
+    ) -> Pairs<T> {
         let mut pairs = Pairs::ZERO;
         for k in 0..6 {
-            let (s, r, t) = (
-                at(&self.axes[k], i),
-                at(&self.axes[6 + k], i),
-                at(&self.axes[12 + k], i),
-            );
-            let (p, q, f) = (
-                lanes(&self.answers[k], j),
-                lanes(&self.answers[6 + k], j),
-                lanes(&self.answers[12 + k], j),
-            );
-            let r = r + r;
-            for l in 0..LANES {
-                pairs.above_q[l] += s * p[l];
-                pairs.above_v[l] += s * q[l];
-                pairs.below_q[l] += t * f[l];
-                pairs.below_v[l] += r * f[l];
-                pairs.mass[l] += s * f[l];
+            let s = at(&self.axes[k], i);
+            let f = lanes(&self.answers[12 + k], j);
+            if MASS {
+                for l in 0..LANES {
+                    pairs.mass[l] += s * f[l];
+                }
+            }
+            if GRADIENT {
+                let (r, t) = (at(&self.axes[6 + k], i), at(&self.axes[12 + k], i));
+                let (p, q) = (lanes(&self.answers[k], j), lanes(&self.answers[6 + k], j));
+                let r = r + r;
+                for l in 0..LANES {
+                    pairs.above_q[l] += s * p[l];
+                    pairs.above_v[l] += s * q[l];
+                    pairs.below_q[l] += t * f[l];
+                    pairs.below_v[l] += r * f[l];
+                }
             }
         }
-        for k in 0..3 {
-            let (s, r) = (at(&self.axes[3 + k], i), at(&self.axes[9 + k], i));
-            let g = lanes(&self.answers[18 + k], j);
-            for l in 0..LANES {
-                pairs.below_q[l] += r * g[l];
-                pairs.below_v[l] += s * g[l];
+        if GRADIENT {
+            for k in 0..3 {
+                let (s, r) = (at(&self.axes[3 + k], i), at(&self.axes[9 + k], i));
+                let g = lanes(&self.answers[18 + k], j);
+                for l in 0..LANES {
+                    pairs.below_q[l] += r * g[l];
+                    pairs.below_v[l] += s * g[l];
+                }
             }
         }
         pairs
