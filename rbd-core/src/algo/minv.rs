@@ -9,12 +9,16 @@
 //!
 //! A joint or a base direction without any inertia has an infinitely stiff pivot: it does not answer.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "one index walks several tables, and what lies before it is written too"
+)]
+
 use so3::Scalar;
 
 use super::blocks::{BlockMatrix, add_scaled};
 use super::crba::MassMatrix;
 use super::{at, put};
-use crate::linear::{ldl_back_substitute, ldl_factor};
 use crate::model::{BaseKind, Link};
 use crate::spatial::{ArticulatedInertia, Motion};
 use crate::state::{Effort, Tangent};
@@ -36,7 +40,7 @@ pub struct MassFactors<T, const N: usize> {
     pivots: [T; N],
     /// X, by rows.
     coupling: [[T; 6]; N],
-    /// Ã = L D Lᵀ as `ldl_factor` leaves it.
+    /// Ã⁻¹.
     base: [[T; 6]; 6],
 }
 
@@ -126,7 +130,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// X and the factors of Ã.
+    /// X and Ã⁻¹.
     #[inline(always)]
     fn factor_base(&mut self, mass: &MassMatrix<T, N>) {
         // Y = L⁻ᵀ Cᵀ, Ã = A − Yᵀ D⁻¹ Y, X = L⁻¹ D⁻¹ Y.
@@ -145,8 +149,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
         self.outward(&mut rows);
         self.coupling = rows;
-        ldl_factor(&mut base);
-        self.base = base;
+        self.base = inverted(base);
     }
 
     /// b ← L⁻ᵀ b for every column of b, rows of length K.
@@ -199,7 +202,10 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             for (row, &x) in self.coupling.iter().zip(&effort.joints) {
                 add_scaled(&mut rest, -x, row);
             }
-            let base = ldl_back_substitute(&self.base, rest);
+            let mut base = [T::ZERO; 6];
+            for (&x, row) in rest.iter().zip(&self.base) {
+                add_scaled(&mut base, x, row);
+            }
             for (y, row) in out.joints.iter_mut().zip(&self.coupling) {
                 for (&x, &a) in row.iter().zip(&base) {
                     *y -= x * a;
@@ -228,7 +234,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             out.joints_base = [[T::ZERO; 6]; N];
             return;
         }
-        out.base = self.base_inverse();
+        out.base = self.base;
         for (i, (row, x)) in out.joints_base.iter_mut().zip(&self.coupling).enumerate() {
             *row = [T::ZERO; 6];
             for (&x, from) in x.iter().zip(&out.base) {
@@ -239,37 +245,6 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         for (x, row) in self.coupling.iter().zip(&mut out.joints) {
             subtract_rows(row, x, &out.base_joints);
         }
-    }
-
-    /// Ã⁻¹, all columns at once.
-    #[inline(always)]
-    fn base_inverse(&self) -> [[T; 6]; 6] {
-        let mut inverse = [[T::ZERO; 6]; 6];
-        for i in 0..6 {
-            let mut row = [T::ZERO; 6];
-            row[i] = T::ONE;
-            for k in 0..i {
-                add_scaled(&mut row, -self.base[i][k], &inverse[k]);
-            }
-            inverse[i] = row;
-        }
-        for i in (0..6).rev() {
-            let pivot = self.base[i][i];
-            let scale = if pivot > T::ZERO {
-                T::ONE / pivot
-            } else {
-                T::ZERO
-            };
-            let mut row = inverse[i];
-            for x in &mut row {
-                *x *= scale;
-            }
-            for k in i + 1..6 {
-                add_scaled(&mut row, -self.base[k][i], &inverse[k]);
-            }
-            inverse[i] = row;
-        }
-        inverse
     }
 
     /// H⁻¹ = W D⁻¹ Wᵀ with W = L⁻¹, stored by depths as L is; zero between joints of different branches.
@@ -344,21 +319,25 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             while end < N && self.before[end] != 0 {
                 end += 1;
             }
-            for i in first..end {
+            let branch = d.joints_base.iter().zip(&d.joints).take(end).skip(first);
+            let rows = out.joints_base.iter_mut().zip(&mut out.joints);
+            let rows = rows.zip(joints_inverse.iter().zip(&self.coupling));
+            for ((to_left, to_right), (inverse, coupling)) in rows.take(end).skip(first) {
                 let (mut left, mut right) = ([T::ZERO; 6], [T::ZERO; N]);
-                for k in first..end {
-                    let x = joints_inverse[i][k];
-                    add_scaled(&mut left, -x, &d.joints_base[k]);
-                    add_scaled(&mut right, -x, &d.joints[k]);
+                for ((from_left, from_right), &x) in
+                    branch.clone().zip(inverse.iter().take(end).skip(first))
+                {
+                    add_scaled(&mut left, -x, from_left);
+                    add_scaled(&mut right, -x, from_right);
                 }
                 if self.floating {
-                    for (k, &x) in self.coupling[i].iter().enumerate() {
+                    for (k, &x) in coupling.iter().enumerate() {
                         add_scaled(&mut left, -x, &out.base[k]);
                         add_scaled(&mut right, -x, &out.base_joints[k]);
                     }
                 }
-                out.joints_base[i] = left;
-                out.joints[i] = right;
+                *to_left = left;
+                *to_right = right;
             }
             first = end;
         }
@@ -399,6 +378,32 @@ impl<const N: usize> Iterator for Ancestors<'_, N> {
         self.depth = self.depth.saturating_sub(1);
         Some((self.joint, self.depth))
     }
+}
+
+/// Inverse of a symmetric positive definite matrix by elimination without pivoting. A pivot that is lost to
+/// rounding leaves a zero row and column.
+#[inline(always)]
+fn inverted<T: Scalar>(mut m: [[T; 6]; 6]) -> [[T; 6]; 6] {
+    let original = m;
+    for k in 0..6 {
+        let pivot = m[k][k];
+        let good = pivot > original[k][k] * T::EPSILON;
+        let inverse = if good { T::ONE / pivot } else { T::ZERO };
+        let mut row = m[k];
+        row[k] = T::ONE;
+        for x in &mut row {
+            *x *= inverse;
+        }
+        for i in 0..6 {
+            let factor = if i == k { T::ZERO } else { m[i][k] };
+            m[i][k] = if i == k { m[i][k] } else { T::ZERO };
+            for j in 0..6 {
+                m[i][j] -= factor * row[j];
+            }
+        }
+        m[k] = row;
+    }
+    m
 }
 
 /// y ← y − Σ x_k row_k. Out of line for the reason of [`set_column`].

@@ -25,10 +25,12 @@
 //! runs as plain loops over tables by *quantity* (`[[T; N]; K]`): neighbouring bodies, and neighbouring
 //! joints of one branch, share a vector instruction.
 
+#![allow(clippy::needless_range_loop, reason = "one index walks several tables")]
+
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
-use super::{at, place};
+use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Link;
 use crate::spatial::{Force, Inertia, Motion, Symmetric3};
@@ -357,14 +359,14 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
                     Link::Base => base[k],
                     Link::Joint(p) => at(&motions[k], p),
                 };
-                motions[k][i] = carried + self.axes[k][i] * x;
+                put(&mut motions[k], i, carried + at(&self.axes[k], i) * x);
             }
         }
         for (i, body) in model.bodies().iter().enumerate().take(count).rev() {
             if let Link::Joint(p) = body.parent {
                 let x = at(joints, i);
                 for k in 0..6 {
-                    let force = forces[k][i] + self.answers[12 + k][i] * x;
+                    let force = at(&forces[k], i) + at(&self.answers[12 + k], i) * x;
                     if let Some(slot) = forces[k].get_mut(p) {
                         *slot += force;
                     }
