@@ -25,7 +25,9 @@ pub use algo::centroidal::{
 pub use algo::centroidal_derivatives::{
     CentroidalDerivatives, ForceColumns, centroidal_derivatives,
 };
-pub use algo::com::{CenterOfMass, ComJacobian, center_of_mass, com_jacobian};
+pub use algo::com::{
+    CenterOfMass, ComJacobian, ComMotion, center_of_mass, com_jacobian, com_motion,
+};
 pub use algo::contact::{ContactRow, ContactSolution, ContactWorkspace, contact_dynamics, impact};
 pub use algo::crba::{MassMatrix, crba};
 pub use algo::frame_derivatives::{AccelerationKind, FrameDerivatives, frame_derivatives};

@@ -14,8 +14,8 @@ use rbd_core::{
     AbaWorkspace, Axes, BaseBody, BaseKind, Body, BodyMotions, CentroidalMap, ComJacobian,
     Configuration, Effort, Force, Frame, FrameJacobian, Kinematics, Link, MassMatrix, Motion,
     Posture, Tangent, aba, bias_accelerations, centroidal_bias, centroidal_map,
-    centroidal_momentum_rate, centroidal_state, com_jacobian, crba, forward_accelerations,
-    forward_kinematics, frame_jacobian, rnea,
+    centroidal_momentum_rate, centroidal_state, com_jacobian, com_motion, crba,
+    forward_accelerations, forward_kinematics, frame_jacobian, rnea,
 };
 
 proptest! {
@@ -121,6 +121,12 @@ proptest! {
             prop_assert!(close(x, y, size(&tau)), "rate {x} {y}");
         }
         prop_assert!(close(rate.linear.z, force_w.z - weight, size(&tau)));
+        let com = com_motion(&model, &posture, &v, &a);
+        prop_assert!((com.position_w - state.com_w).norm() < 1e-12);
+        prop_assert!((com.velocity_w - state.com_velocity_w).norm() < 1e-10);
+        let acceleration = rate.linear / map.mass;
+        let near = 1e-10 * acceleration.norm().max(1e3);
+        prop_assert!((com.acceleration_w - acceleration).norm() < near, "{}", com.acceleration_w);
         prop_assert!(close(rate.linear.x, force_w.x, size(&tau)));
     }
 }

@@ -4,7 +4,7 @@
 //! eq. (2): the rows of A_G are its J_M^l and J_M^ω, and H_ω is `momentum.angular`. Column j is the
 //! momentum of the subtree of joint j per unit joint velocity, I_c S_j, moved to c.
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, Rotation3, SMatrix, Vector3};
 use so3::Scalar;
 
 use super::com::com_in_base;
@@ -16,9 +16,9 @@ use super::rnea::sweep;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform};
 use crate::state::{Posture, Tangent};
-use crate::tree::{At, Fold, Nothing, Tree};
+use crate::tree::{At, Fold, Tree};
 
 /// Centroidal momentum map A_G, 6 × (6 + N), and the locked robot, in world axes about the centre of
 /// mass.
@@ -81,40 +81,41 @@ impl<T: Scalar, const N: usize> CentroidalMap<T, N> {
 
 struct Map<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
-    /// I_c S_j on its way to the base.
+    /// Columns in world axes, about the base's origin.
     columns: &'a mut [Force<T>; N],
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Map<'_, T, N> {
-    type Down = Nothing;
-    type Keep = Nothing;
+    /// Rotation of the body in the world, and its origin relative to the base's, world axes.
+    type Down = (Matrix3<T>, Vector3<T>);
+    type Keep = Transform<T>;
     type Up = Inertia<T>;
 
     #[inline(always)]
-    fn down<J: JointKind>(&mut self, _: At<'_, T>, _: &Nothing) -> (Nothing, Nothing) {
-        (Nothing, Nothing)
+    fn down<J: JointKind>(
+        &mut self,
+        here: At<'_, T>,
+        up: &Self::Down,
+    ) -> (Self::Down, Transform<T>) {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let (rot, pos) = (rotation.after(&up.0), up.1 + up.0 * offset);
+        (
+            (rot, pos),
+            Transform::new(Rotation3::from_matrix_unchecked(rot), pos),
+        )
     }
 
     #[inline(always)]
     fn up<J: JointKind>(
         &mut self,
         here: At<'_, T>,
-        _: &Nothing,
+        pose: &Transform<T>,
         children: Inertia<T>,
     ) -> Inertia<T> {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
         let composite = here.body.inertia() + children;
-        put(
-            self.columns,
-            here.index,
-            unit_force::<J, T>(&composite) * here.body.sign,
-        );
-        for j in here.index..here.end {
-            let force = at(self.columns, j);
-            let linear = rotation.up(&force.linear);
-            let angular = rotation.up(&force.angular) + offset.cross(&linear);
-            put(self.columns, j, Force { linear, angular });
-        }
+        let column = unit_force::<J, T>(&composite) * here.body.sign;
+        put(self.columns, here.index, pose.force(&column));
         composite.assembled_up(&rotation, &offset)
     }
 }
@@ -126,22 +127,21 @@ pub fn centroidal_map<T: Scalar, M: Tree<T, N>, const N: usize>(
     posture: &Posture<T, N>,
     out: &mut CentroidalMap<T, N>,
 ) {
-    let children = model.fold(
-        &mut Map {
-            posture,
-            columns: &mut out.joints,
-        },
-        &Nothing,
-    );
+    let r = posture.base.rotation.matrix();
+    let mut fold = Map {
+        posture,
+        columns: &mut out.joints,
+    };
+    let children = model.fold(&mut fold, &(*r, Vector3::zeros()));
     let whole = model.base().inertia() + children;
     let com_b = whole.com();
-    let r = posture.base.rotation.matrix();
+    let arm_w = r * com_b;
 
     out.mass = whole.mass;
-    out.com_w = posture.base.point(&com_b);
+    out.com_w = posture.base.translation + arm_w;
     out.locked_inertia_w = whole.rotational_com().rotated(r);
     for column in &mut out.joints {
-        *column = about_com(posture, &com_b, column);
+        column.angular -= arm_w.cross(&column.linear);
     }
     out.base = base_columns(&whole, &com_b, &out.locked_inertia_w, r);
 }

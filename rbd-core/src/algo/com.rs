@@ -1,10 +1,10 @@
-//! Centre of mass: position and Jacobian. Its velocity and acceleration are the linear centroidal
-//! momentum and its rate over the mass.
+//! Centre of mass: position, Jacobian, velocity and acceleration.
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
 use super::crba::unit_force;
+use super::rnea::Field;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Body;
@@ -208,6 +208,154 @@ fn collect<T: Scalar, M: Tree<T, N>, const N: usize>(
             Vector3::zeros()
         },
     )
+}
+
+/// Centre of mass with its velocity and acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ComMotion<T: Scalar> {
+    /// Mass, kg.
+    pub mass: T,
+    /// Position in the world, m.
+    pub position_w: Vector3<T>,
+    /// Velocity in the world, m/s.
+    pub velocity_w: Vector3<T>,
+    /// Acceleration in the world, m/s², gravity not included.
+    pub acceleration_w: Vector3<T>,
+}
+
+/// Moments, momentum and its rate of a subtree, linear parts only, in its parent's axes.
+#[derive(Clone, Copy, Debug)]
+struct Linear<T> {
+    moments: Moments<T>,
+    momentum: Vector3<T>,
+    rate: Vector3<T>,
+}
+
+impl<T: Scalar> Default for Linear<T> {
+    fn default() -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            moments: Moments::default(),
+            momentum: zero,
+            rate: zero,
+        }
+    }
+}
+
+impl<T: Scalar> core::ops::Add for Linear<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            moments: self.moments + o.moments,
+            momentum: self.momentum + o.momentum,
+            rate: self.rate + o.rate,
+        }
+    }
+}
+
+impl<T: Scalar> Linear<T> {
+    /// Of one body: m v + ω × h and m a + U h.
+    #[inline(always)]
+    fn of(moments: Moments<T>, velocity: &Vector3<T>, field: &Field<T>) -> Self {
+        Self {
+            moments,
+            momentum: velocity * moments.mass + field.omega.cross(&moments.first),
+            rate: field.acceleration * moments.mass + field.gradient * moments.first,
+        }
+    }
+}
+
+struct Moving<'a, T: Scalar, const N: usize> {
+    posture: &'a Posture<T, N>,
+    velocity: &'a [T; N],
+    acceleration: &'a [T; N],
+}
+
+impl<T: Scalar, const N: usize> Fold<T> for Moving<'_, T, N> {
+    /// Velocity of the origin, and the acceleration field, body axes.
+    type Down = (Vector3<T>, Field<T>);
+    /// What the body itself adds.
+    type Keep = Linear<T>;
+    type Up = Linear<T>;
+
+    #[inline(always)]
+    fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Self::Down) -> (Self::Down, Linear<T>) {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let sign = here.body.sign;
+        let qd = at(self.velocity, here.index) * sign;
+        let qdd = at(self.acceleration, here.index) * sign;
+        let field = up.1.child::<J>(&rotation, &offset, qd, qdd);
+        let carried = rotation.down(&(up.0 + up.1.omega.cross(&offset)));
+        let velocity = if J::KIND.is_revolute() {
+            carried
+        } else {
+            J::along_axis(carried, qd)
+        };
+        (
+            (velocity, field),
+            Linear::of(Moments::of(here.body), &velocity, &field),
+        )
+    }
+
+    #[inline(always)]
+    fn up<J: JointKind>(
+        &mut self,
+        here: At<'_, T>,
+        own: &Linear<T>,
+        children: Linear<T>,
+    ) -> Linear<T> {
+        let (rotation, offset) = place::<J, T, N>(here, self.posture);
+        let Linear {
+            moments,
+            momentum,
+            rate,
+        } = *own + children;
+        let first = rotation.up(&moments.first) + offset * moments.mass;
+        Linear {
+            moments: Moments { first, ..moments },
+            momentum: rotation.up(&momentum),
+            rate: rotation.up(&rate),
+        }
+    }
+}
+
+/// Position, velocity and acceleration of the centre of mass, in one pass.
+#[inline]
+#[must_use]
+pub fn com_motion<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    acceleration: &Tangent<T, N>,
+) -> ComMotion<T> {
+    let still = Vector3::zeros();
+    let field = Field::base(posture, &velocity.base, &acceleration.base, &still);
+    let mut fold = Moving {
+        posture,
+        velocity: &velocity.joints,
+        acceleration: &acceleration.joints,
+    };
+    let children = model.fold(&mut fold, &(velocity.base.linear, field));
+    let base = model.base();
+    let moments = Moments {
+        mass: base.mass,
+        first: Vector3::from(base.first),
+    };
+    let all = Linear::of(moments, &velocity.base.linear, &field) + children;
+    let mass = all.moments.mass;
+    let per_mass = if mass > T::ZERO {
+        T::ONE / mass
+    } else {
+        T::ZERO
+    };
+    let r = posture.base.rotation.matrix() * per_mass;
+    ComMotion {
+        mass,
+        position_w: posture.base.translation + r * all.moments.first,
+        velocity_w: r * all.momentum,
+        acceleration_w: r * all.rate,
+    }
 }
 
 /// Centre of mass in base axes.

@@ -25,11 +25,11 @@ use crate::tree::{At, Fold, Tree};
 /// How a body moves, as its children need it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<T> {
-    omega: Vector3<T>,
-    alpha: Vector3<T>,
-    acceleration: Vector3<T>,
+    pub(crate) omega: Vector3<T>,
+    pub(crate) alpha: Vector3<T>,
+    pub(crate) acceleration: Vector3<T>,
     /// U = hat(ω̇) + hat(ω)².
-    gradient: Matrix3<T>,
+    pub(crate) gradient: Matrix3<T>,
 }
 
 impl<T: Scalar> Field<T> {
