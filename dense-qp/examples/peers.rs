@@ -5,6 +5,7 @@
 //! `… --example peers -- FILE FAMILY K REPEAT` solves problem K of one family REPEAT times (for callgrind).
 #![allow(
     clippy::unwrap_used,
+    clippy::disallowed_methods,
     clippy::needless_range_loop,
     reason = "a measuring program"
 )]
@@ -142,7 +143,7 @@ fn humanoid(count: usize) -> Vec<Qp<35, 98>> {
         }
         for i in 0..98 {
             let base = (30 + i) * 35;
-            let sparse = i >= 18 && i < 58;
+            let sparse = (18..58).contains(&i);
             for j in 0..35 {
                 let keep = !sparse || (j >= 23 && (j - 23) / 6 == (i - 18) / 20);
                 q.a[i][j] = if keep { at(base + j) } else { 0.0 };
@@ -178,7 +179,7 @@ fn pendulum(count: usize) -> Vec<Qp<16, 16>> {
                 let m = (i - j) as f64;
                 row[j] = (1.0 + 3.0 * m + 3.0 * m * m) * dt * dt * dt / 6.0 - dt * height;
             }
-            let foot = if ((t + n) / 0.8) as usize % 2 == 0 {
+            let foot = if (((t + n) / 0.8) as usize).is_multiple_of(2) {
                 0.08
             } else {
                 -0.08

@@ -5,8 +5,8 @@
 //! lengths d. This is the LDLᵀ factor of A_W H⁻¹ A_Wᵀ with the orthogonal part kept, so that a new
 //! row's distance from the span of the others is computed without squaring the condition number.
 
-use crate::kernels::weighted_dot;
-use crate::kernels::{at, ceil4, copy, dot, head, head_mut, put, row, span_mut, sub_scaled};
+use crate::kernels::{at, ceil4, copy, dot_in, head, put, row, span_mut};
+use crate::kernels::{sub_scaled_in, weighted_dot};
 use crate::settings::dependence_tolerance;
 use so3::Scalar;
 
@@ -89,15 +89,14 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             for ((s, q), w) in self.work.iter_mut().zip(&c.q).zip(weight).take(end) {
                 *s = *q * *w;
             }
-            let scaled = head(&self.work, end);
             for (j, (q, di)) in self.q.iter().zip(&self.d_inverse).take(len).enumerate() {
-                let f = dot(head(q, end), scaled) * *di;
+                let f = dot_in(q, &self.work, 0, end) * *di;
                 let before = if pass == 0 { T::ZERO } else { at(&c.l, j) };
                 put(&mut c.l, j, before + f);
                 put(&mut self.rot_row, j, f);
             }
             for (q, f) in self.q.iter().zip(&self.rot_row).take(len) {
-                sub_scaled(&mut c.q, *f, head(q, end));
+                sub_scaled_in(&mut c.q, *f, q, 0, end);
             }
             c.d = weighted_dot(head(weight, n), &c.q, &c.q);
         }
@@ -180,7 +179,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         if c.d == T::ZERO {
             c.q.fill(T::ZERO);
         }
-        sub_scaled(&mut c.q, -a, head(&self.work, end));
+        sub_scaled_in(&mut c.q, -a, &self.work, 0, end);
         c.d += a * a * carry_d;
         self.len -= 1;
         c.settle(self.len >= n);
@@ -191,7 +190,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         for (i, l) in self.l.iter().take(self.len).enumerate().rev() {
             let f = at(v.as_slice(), i);
             let end = ceil4(i, N);
-            sub_scaled(head_mut(v, end), f, head(l, end));
+            sub_scaled_in(v, f, l, 0, end);
         }
     }
 
@@ -199,7 +198,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     pub(crate) fn solve_scaled(&self, v: &mut [T; N]) {
         for (i, l) in self.l.iter().take(self.len).enumerate() {
             let end = ceil4(i, N);
-            let s = dot(head(l, end), head(v.as_slice(), end));
+            let s = dot_in(l, v, 0, end);
             if let Some(e) = v.get_mut(i) {
                 *e -= s;
             }
@@ -214,7 +213,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let end = ceil4(self.dim, N);
         out.fill(T::ZERO);
         for (q, c) in self.q.iter().zip(c).take(self.len) {
-            sub_scaled(out, -*c, head(q, end));
+            sub_scaled_in(out, -*c, q, 0, end);
         }
     }
 }

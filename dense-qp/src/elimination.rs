@@ -10,7 +10,7 @@
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
 use crate::kernels::{at, ceil4, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
-use crate::kernels::{copy, sub_scaled};
+use crate::kernels::{copy, sub_scaled, sub_scaled_pair};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
@@ -330,14 +330,17 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             let w = span(w, rank, N);
             for (i, o) in out.iter_mut().take(free).enumerate() {
                 let (wi, ci) = (at(w, i), at(scratch.as_slice(), i));
-                if wi != T::ZERO {
-                    sub_scaled(span_mut(o, i, free), wi, span(scratch, i, free));
+                if wi != T::ZERO || ci != T::ZERO {
+                    sub_scaled_pair(
+                        span_mut(o, i, free),
+                        wi,
+                        span(scratch, i, free),
+                        ci,
+                        span(w, i, free),
+                    );
                     if let Some(m) = magnitude.get_mut(i) {
                         *m += math::abs(wi * ci);
                     }
-                }
-                if ci != T::ZERO {
-                    sub_scaled(span_mut(o, i, free), ci, span(w, i, free));
                 }
             }
         }

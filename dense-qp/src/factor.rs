@@ -1,7 +1,7 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
 use crate::Error;
-use crate::kernels::{at, ceil4, dot, floor4, put, span, span_mut, sub_scaled};
+use crate::kernels::{at, ceil4, dot_in, floor4, put, span_mut, sub_scaled_in};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use so3::Scalar;
 
@@ -74,7 +74,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
                 let f = at(pivot_row.as_slice(), k + 1 + i) * inverse;
                 if f != T::ZERO {
                     let from = floor4(k + 1 + i);
-                    sub_scaled(span_mut(r, from, end), f, span(pivot_row, from, end));
+                    sub_scaled_in(r, f, pivot_row, from, end);
                 }
             }
             for v in span_mut(pivot_row, k + 1, n) {
@@ -88,14 +88,11 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     /// v ← U⁻ᵀ v. Leading zeros of v cost nothing.
     #[inline]
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let n = self.dim;
-        for (k, r) in self.u.iter().take(n).enumerate() {
-            let Some((solved, rest)) = v.split_at_mut_checked(k + 1) else {
-                break;
-            };
-            let f = solved.last().copied().unwrap_or(T::ZERO);
+        let end = ceil4(self.dim, N);
+        for (k, r) in self.u.iter().take(self.dim).enumerate() {
+            let f = at(v.as_slice(), k);
             if f != T::ZERO {
-                sub_scaled(rest, f, span(r, k + 1, n));
+                sub_scaled_in(v, f, r, floor4(k + 1), end);
             }
         }
     }
@@ -106,7 +103,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         let end = ceil4(self.dim, N);
         for (k, r) in self.u.iter().take(self.dim).enumerate().rev() {
             let from = floor4(k + 1);
-            let s = dot(span(r, from, end), span(v.as_slice(), from, end));
+            let s = dot_in(r, v, from, end);
             if let Some(e) = v.get_mut(k) {
                 *e -= s;
             }

@@ -1,7 +1,8 @@
 //! Loops over slices that can neither panic nor allocate: the arithmetic of the crate.
 //!
 //! Every access is by iterator or by `get`; out-of-range reads give nothing, out-of-range writes do
-//! nothing. Callers keep indices in range, so the fall-backs never run; they exist so that no panic
+//! nothing. The loops that write are calls: only across a call does the compiler know that the two
+//! slices do not overlap, and without that it spends more on checking than on computing. Callers keep indices in range, so the fall-backs never run; they exist so that no panic
 //! path is linked.
 
 use so3::Scalar;
@@ -29,17 +30,19 @@ pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
 }
 
 /// y ← y − f·x.
-#[inline(always)]
+#[inline(never)]
 pub(crate) fn sub_scaled<T: Scalar>(y: &mut [T], f: T, x: &[T]) {
     let n = y.len().min(x.len());
     let (y, x) = (head_mut(y, n), head(x, n));
     let (y4, y1) = y.as_chunks_mut::<4>();
     let (x4, x1) = x.as_chunks::<4>();
     for (y, x) in y4.iter_mut().zip(x4) {
-        y[0] -= f * x[0];
-        y[1] -= f * x[1];
-        y[2] -= f * x[2];
-        y[3] -= f * x[3];
+        *y = [
+            y[0] - f * x[0],
+            y[1] - f * x[1],
+            y[2] - f * x[2],
+            y[3] - f * x[3],
+        ];
     }
     for (y, x) in y1.iter_mut().zip(x1) {
         *y -= f * *x;
@@ -60,6 +63,85 @@ pub(crate) const fn ceil4(i: usize, limit: usize) -> usize {
     if up < limit { up } else { limit }
 }
 
+/// [`sub_scaled`] on columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
+#[inline(never)]
+pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
+    y: &mut [T; N],
+    f: T,
+    x: &[T; N],
+    from: usize,
+    to: usize,
+) {
+    let (y4, y1) = y.as_chunks_mut::<4>();
+    let (x4, x1) = x.as_chunks::<4>();
+    let blocks = from / 4..to / 4;
+    if let (Some(y4), Some(x4)) = (y4.get_mut(blocks.clone()), x4.get(blocks)) {
+        for (y, x) in y4.iter_mut().zip(x4) {
+            *y = [
+                y[0] - f * x[0],
+                y[1] - f * x[1],
+                y[2] - f * x[2],
+                y[3] - f * x[3],
+            ];
+        }
+    }
+    if to == N {
+        for (y, x) in y1.iter_mut().zip(x1) {
+            *y -= f * *x;
+        }
+    }
+}
+
+/// [`dot`] over columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
+#[inline(always)]
+pub(crate) fn dot_in<T: Scalar, const N: usize>(
+    a: &[T; N],
+    b: &[T; N],
+    from: usize,
+    to: usize,
+) -> T {
+    let (a4, a1) = a.as_chunks::<4>();
+    let (b4, b1) = b.as_chunks::<4>();
+    let blocks = from / 4..to / 4;
+    let mut s = [T::ZERO; 4];
+    if let (Some(a4), Some(b4)) = (a4.get(blocks.clone()), b4.get(blocks)) {
+        for (p, q) in a4.iter().zip(b4) {
+            s[0] += p[0] * q[0];
+            s[1] += p[1] * q[1];
+            s[2] += p[2] * q[2];
+            s[3] += p[3] * q[3];
+        }
+    }
+    let mut rest = T::ZERO;
+    if to == N {
+        for (p, q) in a1.iter().zip(b1) {
+            rest += *p * *q;
+        }
+    }
+    ((s[0] + s[2]) + (s[1] + s[3])) + rest
+}
+
+/// y ← y − f·a − g·b.
+#[inline(never)]
+pub(crate) fn sub_scaled_pair<T: Scalar>(y: &mut [T], f: T, a: &[T], g: T, b: &[T]) {
+    let n = y.len().min(a.len()).min(b.len());
+    let (y, a, b) = (head_mut(y, n), head(a, n), head(b, n));
+    let (y4, y1) = y.as_chunks_mut::<4>();
+    let (a4, a1) = a.as_chunks::<4>();
+    let (b4, b1) = b.as_chunks::<4>();
+    for ((y, a), b) in y4.iter_mut().zip(a4).zip(b4) {
+        *y = [
+            y[0] - (f * a[0] + g * b[0]),
+            y[1] - (f * a[1] + g * b[1]),
+            y[2] - (f * a[2] + g * b[2]),
+            y[3] - (f * a[3] + g * b[3]),
+        ];
+    }
+    for ((y, a), b) in y1.iter_mut().zip(a1).zip(b1) {
+        *y -= f * *a + g * *b;
+    }
+}
+
 /// Σ wᵢ aᵢ bᵢ.
 #[inline(always)]
 pub(crate) fn weighted_dot<T: Scalar>(w: &[T], a: &[T], b: &[T]) -> T {
@@ -73,14 +155,16 @@ pub(crate) fn weighted_dot<T: Scalar>(w: &[T], a: &[T], b: &[T]) -> T {
 /// max |aᵢ| (NaN entries are skipped).
 #[inline(always)]
 pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {
-    let mut m = T::ZERO;
+    let (mut high, mut low) = (T::ZERO, T::ZERO);
     for v in a {
-        let v = so3::math::abs(*v);
-        if v > m {
-            m = v;
+        if *v > high {
+            high = *v;
+        }
+        if *v < low {
+            low = *v;
         }
     }
-    m
+    if high > -low { high } else { -low }
 }
 
 /// Whether every entry is neither NaN nor infinite.

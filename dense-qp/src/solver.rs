@@ -43,7 +43,6 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
         w: workspace,
         iterations: 0,
         tolerance: T::ZERO,
-        drift: T::ZERO,
         primal: T::ZERO,
     };
     // A solved problem has passed through finite arithmetic entry by entry. Only otherwise is it
@@ -68,9 +67,7 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     iterations: u32,
     /// Distance outside a row that counts as violated, at the present x.
     tolerance: T,
-    /// Largest distance of x from the limit of an active row, at the last look.
-    drift: T,
-    /// Largest violation of any row in its own units, at the last look.
+    /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
 
@@ -147,7 +144,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
             let (l, u) = self.p.limits(id);
             let limit = if side > 0 { u } else { l };
-            if self.w.state(id) != 0 || !limit.is_finite_number() {
+            if self.w.state(id) != 0 || !(is_range(l, u) && limit.is_finite_number()) {
                 continue;
             }
             self.prepare(id, side);
@@ -173,13 +170,13 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             }
             let scale = self.evaluate_gradient();
             let residual = self.reduced_residual();
-            let drift = self.drift;
+            let drift = self.drift();
             let (dual, primal) = (self.s.optimality * scale, self.s.feasibility);
             let merit = math::max(residual * primal, drift * dual);
             let progress = merit < last * T::HALF;
             // Well inside the tolerances, or inside and no longer improving.
             let margin = T::of(0.01);
-            if !scale.is_finite_number() {
+            if !(scale.is_finite_number() && drift.is_finite_number()) {
                 return Ok(Status::Numerical);
             }
             if (residual <= margin * dual && drift <= margin * primal)
@@ -311,10 +308,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             w.elimination.reduce_unit(id - M, q);
         }
         // What is left of a row that depends on the equalities is round-off, not a row.
-        if w.elimination.rank > 0 {
-            if max_abs(q) * scale <= row_tolerance::<T>() {
-                q.fill(T::ZERO);
-            }
+        if w.elimination.rank > 0 && max_abs(q) * scale <= row_tolerance::<T>() {
+            q.fill(T::ZERO);
         }
         if side < 0 {
             for v in q.iter_mut() {
@@ -376,8 +371,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
     }
 
-    /// Looks at every row and bound: collects the most violated inactive ones (relative to their
-    /// scale) in the pool, and measures how far x is from the active ones and from all.
+    /// Looks at every inactive row and bound and collects the most violated ones, relative to their
+    /// scale, in the pool.
     fn look(&mut self) -> Look {
         let mut length = T::ZERO;
         for v in &self.w.x {
@@ -388,32 +383,38 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             math::max(self.s.feasibility, round_off),
             T::of(1000.0) * self.s.feasibility,
         );
-        self.drift = T::ZERO;
         self.primal = T::ZERO;
         self.w.pool_len = 0;
         let mut sound = length.is_finite_number();
         let mut excess = [T::ZERO; POOL];
+        // An infinite entry may satisfy a row that has no limit on that side.
+        let mut sum = T::ZERO;
         let limits = self.p.row_lower.iter().zip(self.p.row_upper);
         for (i, (a, (l, u))) in self.p.rows.iter().zip(limits).enumerate() {
-            let v = dot(a, &self.w.x);
-            let state = at(&self.w.row_state, i);
-            // False for a NaN anywhere.
-            if v <= *u && v >= *l && state == 0 {
+            if at(&self.w.row_state, i) != 0 {
                 continue;
             }
-            sound &= self.judge(i, v, state, *l, *u, &mut excess);
+            let v = dot(a, &self.w.x);
+            sum += v;
+            // False for a NaN anywhere.
+            if v <= *u && v >= *l {
+                continue;
+            }
+            sound &= self.judge(i, v, *l, *u, &mut excess);
         }
         if self.p.lower.is_some() || self.p.upper.is_some() {
             for i in 0..N {
-                let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
-                let state = at(&self.w.bound_state, i);
-                if v <= u && v >= l && state == 0 {
+                if at(&self.w.bound_state, i) != 0 {
                     continue;
                 }
-                sound &= self.judge(M + i, v, state, l, u, &mut excess);
+                let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
+                if v <= u && v >= l {
+                    continue;
+                }
+                sound &= self.judge(M + i, v, l, u, &mut excess);
             }
         }
-        if !sound {
+        if !(sound && sum.is_finite_number()) {
             return Look::Unsound;
         }
         if self.w.pool_len > 0 {
@@ -423,10 +424,9 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
     }
 
-    /// A row that is not simply satisfied: an active one, a violated one, or one with bad numbers
-    /// (then the answer is false).
-    fn judge(&mut self, i: usize, v: T, state: i8, l: T, u: T, excess: &mut [T; POOL]) -> bool {
-        if !(v.is_finite_number() && l <= u && l < T::INFINITY && u > -T::INFINITY) {
+    /// A row that is violated, or has bad numbers (then the answer is false).
+    fn judge(&mut self, i: usize, v: T, l: T, u: T, excess: &mut [T; POOL]) -> bool {
+        if !(v.is_finite_number() && is_range(l, u)) {
             return false;
         }
         let (e, side) = if v - u > l - v {
@@ -435,23 +435,34 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             (l - v, -1)
         };
         self.primal = math::max(self.primal, e);
-        let w = &mut *self.w;
-        let scaled = e * scale_inverse::<T, N, M>(self.p, w, i);
-        if state == 0 {
-            if scaled > self.tolerance {
-                pool_insert(w, excess, scaled, (i, side));
-            }
-        } else {
-            // On its limit a row is off by as much on either side.
-            let off = match state {
-                EQUALITY => e,
-                s if s > 0 => math::abs(v - u),
-                _ => math::abs(l - v),
-            };
-            let off = off * scale_inverse::<T, N, M>(self.p, w, i);
-            self.drift = math::max(self.drift, off);
+        let scaled = e * scale_inverse::<T, N, M>(self.p, self.w, i);
+        if scaled > self.tolerance {
+            pool_insert(self.w, excess, scaled, (i, side));
         }
         true
+    }
+
+    /// How far x is from the limits of the active rows and the equalities, relative to their scale;
+    /// NaN if a number is bad. Completes `primal`.
+    fn drift(&mut self) -> T {
+        let mut drift = T::ZERO;
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let e = self.excess(id, side);
+            self.primal = worse(self.primal, e);
+            drift = worse(
+                drift,
+                math::abs(e) * scale_inverse::<T, N, M>(self.p, self.w, id),
+            );
+        }
+        for i in 0..M {
+            if at(&self.w.row_state, i) == EQUALITY {
+                let e = math::abs(self.excess(i, 1));
+                self.primal = worse(self.primal, e);
+                drift = worse(drift, e * scale_inverse::<T, N, M>(self.p, self.w, i));
+            }
+        }
+        drift
     }
 
     /// The row to enter next: the most violated one of the pool, or of all rows when the pool is
@@ -734,6 +745,11 @@ fn set_multiplier<T: Scalar, const N: usize, const M: usize>(
     } else {
         put(&mut w.bound_multipliers, id - M, y);
     }
+}
+
+/// Whether l ≤ x ≤ u is a range that numbers can satisfy; false for a NaN.
+fn is_range<T: Scalar>(l: T, u: T) -> bool {
+    l <= u && l < T::INFINITY && u > -T::INFINITY
 }
 
 /// y at an upper limit, −y at a lower one.

@@ -1,0 +1,370 @@
+//! Attempts to make a status lie: bad data, extreme scales, thin and empty feasible sets, f32.
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    clippy::needless_range_loop,
+    reason = "tests"
+)]
+
+mod common;
+use common::{Qp, Rng};
+use dense_qp::{
+    Constraint, Error, Problem, Settings, Side, Status, Workspace, infeasibility, kkt_residual,
+    solve, solve_warm,
+};
+
+const INF: f64 = f64::INFINITY;
+
+/// Every number of a solvable problem replaced in turn by NaN and ±∞: an error that names it or an
+/// honest status, never a hang, and the workspace works afterwards.
+#[test]
+fn bad_numbers_are_named() {
+    const N: usize = 6;
+    const M: usize = 7;
+    let mut r = Rng(5);
+    let mut q = Qp::<N, M>::zero();
+    q.set_hessian(&mut r, N, 0.5);
+    q.set_rows(&mut r, 2, false);
+    for i in 0..N {
+        (q.lb[i], q.ub[i]) = (-9.0, 9.0);
+    }
+    let settings = Settings::default();
+    let mut w = Box::new(Workspace::<f64, N, M>::new());
+    let good = *solve(&q.problem(), &settings, &mut w).unwrap().x;
+    for bad in [f64::NAN, INF, -INF] {
+        for i in 0..N {
+            for j in 0..N {
+                let mut b = q.clone();
+                b.h[i][j] = bad;
+                let e = solve_warm(&b.problem(), &settings, &mut w).unwrap_err();
+                assert_eq!(e, Error::HessianNotFinite(i), "h[{i}][{j}] = {bad}");
+            }
+            let mut b = q.clone();
+            b.g[i] = bad;
+            let e = solve_warm(&b.problem(), &settings, &mut w).unwrap_err();
+            assert_eq!(e, Error::GradientNotFinite(i));
+            for upper in [false, true] {
+                let mut b = q.clone();
+                if upper {
+                    b.ub[i] = bad;
+                } else {
+                    b.lb[i] = bad;
+                }
+                let free = if upper { INF } else { -INF };
+                match solve_warm(&b.problem(), &settings, &mut w) {
+                    Ok(s) => assert!(bad == free && s.status == Status::Solved),
+                    Err(e) => assert_eq!(e, Error::Bounds(i)),
+                }
+            }
+        }
+        for i in 0..M {
+            for j in 0..N {
+                let mut b = q.clone();
+                b.a[i][j] = bad;
+                let e = solve_warm(&b.problem(), &settings, &mut w).unwrap_err();
+                assert_eq!(e, Error::RowNotFinite(i), "a[{i}][{j}] = {bad}");
+            }
+            for upper in [false, true] {
+                let mut b = q.clone();
+                if upper {
+                    b.u[i] = bad;
+                } else {
+                    b.l[i] = bad;
+                }
+                let free = if upper { INF } else { -INF };
+                match solve_warm(&b.problem(), &settings, &mut w) {
+                    Ok(s) => assert!(bad == free && s.status == Status::Solved),
+                    Err(e) => assert_eq!(e, Error::RowLimits(i), "{upper} {bad}"),
+                }
+            }
+        }
+    }
+    let s = solve_warm(&q.problem(), &settings, &mut w).unwrap();
+    assert_eq!(s.status, Status::Solved);
+    for i in 0..N {
+        assert!((s.x[i] - good[i]).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn inverted_limits_and_concave_costs_are_errors() {
+    let mut w = Workspace::<f64, 2, 1>::new();
+    let h = [[1.0, 0.0], [0.0, 1.0]];
+    let p = Problem::new(&h, &[0.0; 2], &[[1.0, 1.0]], &[1.0], &[0.5]);
+    let e = solve(&p, &Settings::default(), &mut w).unwrap_err();
+    assert_eq!(e, Error::RowLimits(0));
+    let h = [[1.0, 0.0], [0.0, -1e-3]];
+    let p = Problem::new(&h, &[0.0; 2], &[[1.0, 1.0]], &[-1.0], &[0.5]);
+    let e = solve(&p, &Settings::default(), &mut w).unwrap_err();
+    assert_eq!(e, Error::HessianNotConvex(1));
+    // Concave only where the equality does not let x go: fine.
+    let p = Problem::new(&h, &[0.0; 2], &[[0.0, 1.0]], &[0.5], &[0.5]);
+    assert_eq!(
+        solve(&p, &Settings::default(), &mut w).unwrap().status,
+        Status::Solved
+    );
+    let h = [[1.0, 0.5], [0.0, 1.0]];
+    let p = Problem::new(&h, &[1.0; 2], &[[1.0, 1.0]], &[-1.0], &[0.5]);
+    assert!(matches!(
+        solve(&p, &Settings::default(), &mut w),
+        Err(Error::HessianNotSymmetric(_)) | Ok(_)
+    ));
+}
+
+/// Rows and costs scaled by 1e-8 to 1e8: the same minimiser and an honest residual.
+#[test]
+fn scaling() {
+    const N: usize = 10;
+    const M: usize = 16;
+    let mut w = Box::new(Workspace::<f64, N, M>::new());
+    for seed in 0..60 {
+        let mut r = Rng(seed);
+        let mut q = Qp::<N, M>::zero();
+        q.set_hessian(&mut r, N, 0.2);
+        q.set_rows(&mut r, 3, seed % 2 == 0);
+        let s = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
+        assert_eq!(s.status, Status::Solved);
+        let x = *s.x;
+        let f = 10f64.powf(8.0 * r.sym());
+        for i in 0..N {
+            q.g[i] *= f;
+            for j in 0..N {
+                q.h[i][j] *= f;
+            }
+        }
+        for i in 0..M {
+            let f = 10f64.powf(8.0 * r.sym());
+            for a in &mut q.a[i] {
+                *a *= f;
+            }
+            let equal = q.l[i] == q.u[i];
+            q.l[i] *= f;
+            q.u[i] = if equal { q.l[i] } else { q.u[i] * f };
+        }
+        let s = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
+        assert_eq!(s.status, Status::Solved, "seed {seed}");
+        for i in 0..N {
+            assert!(
+                (s.x[i] - x[i]).abs() < 1e-7,
+                "seed {seed}: {} {}",
+                s.x[i],
+                x[i]
+            );
+        }
+    }
+}
+
+/// Two rows that miss each other by a margin: infeasible above the tolerance, solved below it.
+#[test]
+fn margins() {
+    let mut w = Workspace::<f64, 3, 2>::new();
+    let h = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for (margin, expected) in [
+        (1e-3, Status::Infeasible),
+        (1e-6, Status::Infeasible),
+        (1e-8, Status::Infeasible),
+        (1e-10, Status::Solved),
+        (0.0, Status::Solved),
+        (-1e-9, Status::Solved),
+    ] {
+        let a = [[1.0, 2.0, -1.0], [-1.0, -2.0, 1.0]];
+        let u = [1.0, -1.0 - 4.0 * margin];
+        let p = Problem::new(&h, &[1.0; 3], &a, &[-INF; 2], &u);
+        let s = solve(&p, &Settings::default(), &mut w).unwrap();
+        assert_eq!(s.status, expected, "margin {margin}");
+        if expected == Status::Infeasible {
+            let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+            assert!(proof.combination < 1e-12 && proof.support < 0.0);
+            let names: Vec<_> = s.conflict().collect();
+            let rows = [
+                (Constraint::Row(0), Side::Upper),
+                (Constraint::Row(1), Side::Upper),
+            ];
+            assert_eq!(names, rows);
+        }
+    }
+}
+
+/// Nearly parallel rows meet far away; whatever the status, it is true.
+#[test]
+fn nearly_dependent_rows() {
+    let mut w = Workspace::<f64, 4, 6>::new();
+    let (mut solved, mut proved, mut gave_up) = (0, 0, 0);
+    for seed in 0..400 {
+        let mut r = Rng(seed);
+        let mut q = Qp::<4, 6>::zero();
+        q.set_hessian(&mut r, 4, 0.1);
+        q.set_rows(&mut r, (seed % 3) as usize, false);
+        for i in 1..6 {
+            if r.chance(0.6) {
+                let angle = 10f64.powf(-4.0 - 10.0 * r.unit());
+                let from = r.below(i);
+                for j in 0..4 {
+                    q.a[i][j] = q.a[from][j] + angle * r.sym();
+                }
+                if q.u[i] == q.l[i] && r.chance(0.5) {
+                    (q.l[i], q.u[i]) = (q.l[from].max(-9.0), q.l[from].max(-9.0));
+                }
+            }
+        }
+        let p = q.problem();
+        let s = solve(&p, &Settings::default(), &mut w).unwrap();
+        let again = kkt_residual(&p, s.x, s.row_multipliers, s.bound_multipliers);
+        match s.status {
+            Status::Solved => {
+                solved += 1;
+                let length: f64 = s.x.iter().map(|v| v.abs()).sum();
+                let largest = s
+                    .row_multipliers
+                    .iter()
+                    .fold(1.0, |m: f64, v| m.max(v.abs()));
+                assert!(
+                    again.primal <= 1e-9 + 1e-14 * length,
+                    "seed {seed}: {again:?}"
+                );
+                assert!(
+                    again.stationarity <= 1e-8 * largest,
+                    "seed {seed}: {again:?}"
+                );
+            }
+            Status::Infeasible => {
+                proved += 1;
+                let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+                assert!(proof.support < 0.0, "seed {seed}: {proof:?}");
+                assert!(
+                    proof.combination * 10.0 <= -proof.support,
+                    "seed {seed}: {proof:?}"
+                );
+            }
+            Status::Numerical | Status::Limit => gave_up += 1,
+            Status::Unbounded => unreachable!("seed {seed}: H is definite"),
+        }
+    }
+    assert!(
+        solved > 100 && proved > 100 && gave_up < 20,
+        "solved {solved}, proved {proved}, gave up {gave_up}"
+    );
+}
+
+#[test]
+fn unbounded_and_huge_bounds() {
+    let mut w = Workspace::<f64, 3, 1>::new();
+    let h = [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]];
+    let g = [1.0, -1.0, 0.0];
+    let a = [[1.0, 0.0, 1.0]];
+    let p = Problem::new(&h, &g, &a, &[-1.0], &[1.0]);
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Unbounded);
+    assert!((s.ray().unwrap()[1] - 1.0).abs() < 1e-9);
+    for bound in [1e3, 1e6, 1e10] {
+        let (lb, ub) = ([-bound; 3], [bound; 3]);
+        let p = Problem::new(&h, &g, &a, &[-1.0], &[1.0]).with_bounds(&lb, &ub);
+        let s = solve(&p, &Settings::default(), &mut w).unwrap();
+        assert_eq!(s.status, Status::Solved, "bound {bound}: {:?}", s.residual);
+        assert!((s.x[1] / bound - 1.0).abs() < 1e-9);
+    }
+}
+
+/// All variables fixed by equalities, more equalities than variables, contradictory ones.
+#[test]
+fn overdetermined() {
+    let mut w = Workspace::<f64, 2, 4>::new();
+    let h = [[1.0, 0.0], [0.0, 1.0]];
+    let a = [[1.0, 1.0], [1.0, -1.0], [2.0, 0.0], [1.0, 0.0]];
+    let b = [3.0, 1.0, 4.0, 2.0];
+    let p = Problem::new(&h, &[1.0, 1.0], &a, &b, &b);
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Solved);
+    assert!((s.x[0] - 2.0).abs() < 1e-12 && (s.x[1] - 1.0).abs() < 1e-12);
+    assert!(s.residual.max() < 1e-12);
+    let b = [3.0, 1.0, 4.0, 2.1];
+    let p = Problem::new(&h, &[1.0, 1.0], &a, &b, &b);
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Infeasible);
+    let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+    assert!(
+        proof.combination < 1e-12 && proof.support < -1e-3,
+        "{proof:?}"
+    );
+    let (b, u) = ([3.0, 1.0, 4.0, -INF], [3.0, 1.0, 4.0, 1.9]);
+    let p = Problem::new(&h, &[1.0, 1.0], &a, &b, &u);
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Infeasible);
+    let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+    assert!(
+        proof.combination < 1e-12 && proof.support < -1e-3,
+        "{proof:?}"
+    );
+}
+
+/// The cap is kept, and the status says so.
+#[test]
+fn cap() {
+    let mut r = Rng(9);
+    let mut q = Qp::<20, 40>::zero();
+    q.set_hessian(&mut r, 20, 0.1);
+    q.set_rows(&mut r, 4, false);
+    let mut w = Box::new(Workspace::<f64, 20, 40>::new());
+    let free = solve(&q.problem(), &Settings::default(), &mut w)
+        .unwrap()
+        .iterations;
+    assert!(free > 6);
+    for max_iterations in 0..free {
+        let settings = Settings {
+            max_iterations,
+            ..Settings::default()
+        };
+        let s = solve(&q.problem(), &settings, &mut w).unwrap();
+        assert!(s.iterations <= max_iterations);
+        assert!(s.status == Status::Limit || s.residual.max() < 1e-8);
+        assert!(s.x.iter().all(|v| v.is_finite()));
+    }
+}
+
+/// f32 against f64 on the same problems, scaled residual.
+#[test]
+fn single_precision() {
+    fn check<const N: usize, const M: usize>(seeds: u64) {
+        let mut w = Box::new(Workspace::<f64, N, M>::new());
+        let mut v = Box::new(Workspace::<f32, N, M>::new());
+        for seed in 0..seeds {
+            let mut r = Rng(seed);
+            let mut q = Qp::<N, M>::zero();
+            q.set_hessian(&mut r, N, 0.1);
+            q.set_rows(&mut r, N / 4, seed % 2 == 0);
+            let h = q.h.map(|h| h.map(|x| x as f32));
+            let a = q.a.map(|a| a.map(|x| x as f32));
+            let (g, l, u) = (
+                q.g.map(|x| x as f32),
+                q.l.map(|x| x as f32),
+                q.u.map(|x| x as f32),
+            );
+            let (lb, ub) = (q.lb.map(|x| x as f32), q.ub.map(|x| x as f32));
+            let p = Problem::new(&h, &g, &a, &l, &u).with_bounds(&lb, &ub);
+            let s = solve(&p, &Settings::default(), &mut v).unwrap();
+            let truth = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
+            assert_eq!(truth.status, Status::Solved);
+            assert_eq!(
+                s.status,
+                Status::Solved,
+                "N {N} seed {seed}: {:?}",
+                s.residual
+            );
+            let scale = truth
+                .row_multipliers
+                .iter()
+                .chain(truth.bound_multipliers)
+                .chain(&q.g)
+                .fold(1.0, |m: f64, v| m.max(v.abs()));
+            let residual = kkt_residual(&p, s.x, s.row_multipliers, s.bound_multipliers);
+            assert!(
+                f64::from(residual.max()) <= 1e-3 * scale,
+                "N {N} seed {seed}: {residual:?}"
+            );
+        }
+    }
+    check::<5, 4>(60);
+    check::<12, 20>(60);
+    check::<35, 60>(20);
+    check::<60, 80>(8);
+}
