@@ -71,6 +71,22 @@ fn distance(a: &Dense, b: &Dense) -> f64 {
     (a - b).amax() / a.amax().max(b.amax()).max(1.0)
 }
 
+fn blocks(m: &Dense) -> BlockMatrix<f64, CAP> {
+    let mut out = BlockMatrix::ZERO;
+    for i in 0..V {
+        for j in 0..V {
+            let slot = match (i.checked_sub(6), j.checked_sub(6)) {
+                (None, None) => &mut out.base[i][j],
+                (None, Some(j)) => &mut out.base_joints[i][j],
+                (Some(i), None) => &mut out.joints_base[i][j],
+                (Some(i), Some(j)) => &mut out.joints[i][j],
+            };
+            *slot = m[(i, j)];
+        }
+    }
+    out
+}
+
 fn forces() -> impl Strategy<Value = [Force<f64>; CAP]> {
     prop::collection::vec(
         motion(5.0).prop_map(|m| Force::new(m.linear, m.angular)),
@@ -170,6 +186,12 @@ proptest! {
         let off = (product - identity).amax();
         prop_assert!(off < 1e-13 * condition.max(10.0), "{off} at condition {condition}");
         prop_assert!((w - w.transpose()).amax() <= 1e-13 * w.amax() * condition);
+
+        // M⁻¹ M, column by column.
+        let mut columns = blocks(&m);
+        factors.solve_columns(&mut columns);
+        let off = (identity * columns.to_dense::<V>() * identity - identity).amax();
+        prop_assert!(off < 1e-13 * condition.max(10.0), "{off} at condition {condition}");
 
         // solve(x) is the product with the inverse.
         let x = masked(&model, x);

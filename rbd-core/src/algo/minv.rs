@@ -19,6 +19,7 @@ use so3::Scalar;
 use super::blocks::{BlockMatrix, add_scaled};
 use super::crba::MassMatrix;
 use super::{at, put};
+use crate::linear::ldl_factor;
 use crate::model::{BaseKind, Link};
 use crate::spatial::{ArticulatedInertia, Motion};
 use crate::state::{Effort, Tangent};
@@ -188,11 +189,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         for ([y], &x) in joints.iter_mut().zip(&effort.joints) {
             *y = x;
         }
-        self.inward(&mut joints);
-        for ([x], &pivot) in joints.iter_mut().zip(&self.pivots) {
-            *x *= pivot;
-        }
-        self.outward(&mut joints);
+        self.solve_joints(&mut joints);
         let mut out = Tangent::ZERO;
         for (y, &[x]) in out.joints.iter_mut().zip(&joints) {
             *y = x;
@@ -214,6 +211,54 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             out.base = Motion::from_array(base);
         }
         out
+    }
+
+    /// M⁻¹ B in place, all columns of B at once: effort per something becomes acceleration per
+    /// something. For a fixed base the rows of the base become zero.
+    #[inline]
+    pub fn solve_columns(&self, b: &mut BlockMatrix<T, N>) {
+        // The base as it feels the joints: x_b = Ã⁻¹ (b_b − Xᵀ b_J); then x_J = H⁻¹ b_J − X x_b.
+        let (mut left, mut right) = ([[T::ZERO; 6]; 6], [[T::ZERO; N]; 6]);
+        if self.floating {
+            for ((x, from_left), from_right) in
+                self.coupling.iter().zip(&b.joints_base).zip(&b.joints)
+            {
+                for (k, &x) in x.iter().enumerate() {
+                    add_scaled(&mut b.base[k], -x, from_left);
+                    add_scaled(&mut b.base_joints[k], -x, from_right);
+                }
+            }
+            for (c, row) in self.base.iter().enumerate() {
+                for (k, &x) in row.iter().enumerate() {
+                    add_scaled(&mut left[c], x, &b.base[k]);
+                    add_scaled(&mut right[c], x, &b.base_joints[k]);
+                }
+            }
+        }
+        b.base = left;
+        b.base_joints = right;
+        self.solve_joints(&mut b.joints_base);
+        self.solve_joints(&mut b.joints);
+        if self.floating {
+            for (row, x) in b.joints_base.iter_mut().zip(&self.coupling) {
+                subtract_rows(row, x, &b.base);
+            }
+            for (row, x) in b.joints.iter_mut().zip(&self.coupling) {
+                subtract_rows(row, x, &b.base_joints);
+            }
+        }
+    }
+
+    /// b ← H⁻¹ b for every column of b.
+    #[inline(always)]
+    fn solve_joints<const K: usize>(&self, b: &mut [[T; K]; N]) {
+        self.inward(b);
+        for (row, &pivot) in b.iter_mut().zip(&self.pivots) {
+            for x in row {
+                *x *= pivot;
+            }
+        }
+        self.outward(b);
     }
 
     /// M⁻¹ itself, symmetric. For a fixed base everything but the block of the joints is zero.
@@ -380,30 +425,37 @@ impl<const N: usize> Iterator for Ancestors<'_, N> {
     }
 }
 
-/// Inverse of a symmetric positive definite matrix by elimination without pivoting. A pivot that is lost to
-/// rounding leaves a zero row and column.
+/// Inverse of a symmetric positive definite matrix by L D Lᵀ, all columns at once. A pivot that is lost to
+/// rounding counts as infinitely stiff.
 #[inline(always)]
 fn inverted<T: Scalar>(mut m: [[T; 6]; 6]) -> [[T; 6]; 6] {
-    let original = m;
-    for k in 0..6 {
-        let pivot = m[k][k];
-        let good = pivot > original[k][k] * T::EPSILON;
-        let inverse = if good { T::ONE / pivot } else { T::ZERO };
-        let mut row = m[k];
-        row[k] = T::ONE;
-        for x in &mut row {
-            *x *= inverse;
+    ldl_factor(&mut m);
+    let mut inverse = [[T::ZERO; 6]; 6];
+    for i in 0..6 {
+        let mut row = [T::ZERO; 6];
+        row[i] = T::ONE;
+        for k in 0..i {
+            add_scaled(&mut row, -m[i][k], &inverse[k]);
         }
-        for i in 0..6 {
-            let factor = if i == k { T::ZERO } else { m[i][k] };
-            m[i][k] = if i == k { m[i][k] } else { T::ZERO };
-            for j in 0..6 {
-                m[i][j] -= factor * row[j];
-            }
-        }
-        m[k] = row;
+        inverse[i] = row;
     }
-    m
+    for i in (0..6).rev() {
+        let pivot = m[i][i];
+        let scale = if pivot > T::ZERO {
+            T::ONE / pivot
+        } else {
+            T::ZERO
+        };
+        let mut row = inverse[i];
+        for x in &mut row {
+            *x *= scale;
+        }
+        for k in i + 1..6 {
+            add_scaled(&mut row, -m[k][i], &inverse[k]);
+        }
+        inverse[i] = row;
+    }
+    inverse
 }
 
 /// y ← y − Σ x_k row_k. Out of line for the reason of [`set_column`].
