@@ -56,12 +56,6 @@ fn followers(
         if at[i].is_some() || joint.kind == JointType::Fixed {
             continue;
         }
-        let Some(leader) = urdf.joints.iter().position(|j| j.name == mimic.leader) else {
-            return Err(ImportError::UnknownLeader {
-                element: joint.element.clone(),
-                leader: mimic.leader.clone(),
-            });
-        };
         let (name, above) = (joint.name.clone(), mimic.leader.clone());
         match policy {
             MimicPolicy::Refuse => {
@@ -76,6 +70,11 @@ fn followers(
                 leader: above,
             }),
             MimicPolicy::Lock => {
+                let leader = urdf.joints.iter().position(|j| j.name == mimic.leader);
+                let leader = leader.ok_or_else(|| ImportError::UnknownLeader {
+                    element: joint.element.clone(),
+                    leader: above.clone(),
+                })?;
                 let value = mimic.multiplier * at[leader].unwrap_or(0.0) + mimic.offset;
                 at[i] = Some(value);
                 warnings.push(Warning::MimicLocked {

@@ -26,6 +26,7 @@ impl LinkTree {
             .collect();
         let mut joints_below = vec![Vec::new(); urdf.links.len()];
         let mut above: Vec<Option<usize>> = vec![None; urdf.links.len()];
+        let mut parents = vec![0; urdf.links.len()];
         let mut child = Vec::with_capacity(urdf.joints.len());
         for (j, joint) in urdf.joints.iter().enumerate() {
             let find = |link: &String| {
@@ -46,6 +47,7 @@ impl LinkTree {
                 });
             }
             above[below] = Some(j);
+            parents[below] = parent;
             joints_below[parent].push(j);
             child.push(below);
         }
@@ -54,8 +56,7 @@ impl LinkTree {
         }
         let mut roots = (0..urdf.links.len()).filter(|&l| above[l].is_none());
         let Some(root) = roots.next() else {
-            let link = urdf.links[0].name.clone();
-            return Err(ImportError::Loop { link });
+            return Err(ring_above(urdf, &parents, 0));
         };
         if let Some(other) = roots.next() {
             return Err(ImportError::SeveralRoots {
@@ -68,23 +69,28 @@ impl LinkTree {
             joints_below,
             child,
         };
-        tree.check_reach(urdf)?;
-        Ok(tree)
+        match tree.first_unreached(urdf.links.len()) {
+            None => Ok(tree),
+            Some(link) => Err(ring_above(urdf, &parents, link)),
+        }
     }
 
-    /// Every link hangs on the root; those that do not form rings.
-    fn check_reach(&self, urdf: &Urdf) -> Result<(), ImportError> {
-        let mut reached = vec![false; urdf.links.len()];
+    /// A link that does not hang on the root, if there is one: it is part of a ring or hangs on one.
+    fn first_unreached(&self, links: usize) -> Option<usize> {
+        let mut reached = vec![false; links];
         let mut stack = vec![self.root];
         while let Some(link) = stack.pop() {
             reached[link] = true;
             stack.extend(self.joints_below[link].iter().map(|&j| self.child[j]));
         }
-        match reached.iter().position(|&r| !r) {
-            None => Ok(()),
-            Some(l) => Err(ImportError::Loop {
-                link: urdf.links[l].name.clone(),
-            }),
-        }
+        reached.iter().position(|&r| !r)
+    }
+}
+
+/// Names a link of the ring that `link` hangs on: going up once per link of the file ends inside it.
+fn ring_above(urdf: &Urdf, parents: &[usize], link: usize) -> ImportError {
+    let inside = parents.iter().fold(link, |at, _| parents[at]);
+    ImportError::Loop {
+        link: urdf.links[inside].name.clone(),
     }
 }

@@ -2,6 +2,7 @@
 #![no_std]
 
 pub mod algo;
+pub mod convert;
 pub mod hardware;
 pub mod joint;
 pub mod linear;

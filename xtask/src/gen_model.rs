@@ -26,7 +26,7 @@ struct Generated {
 }
 
 /// The neck and the wrists: paper B moves 23 of iCub's joints.
-const ICUB_LOCKS: &[&str] = &[
+pub(crate) const ICUB_LOCKS: &[&str] = &[
     "neck_pitch",
     "neck_roll",
     "neck_yaw",

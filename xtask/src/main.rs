@@ -8,6 +8,7 @@ mod cross;
 mod gen_model;
 mod icount;
 mod image;
+mod import_check;
 mod panics;
 mod probe;
 mod qemu;
@@ -43,6 +44,8 @@ enum Command {
     Bench(bench::Args),
     /// Count the instructions of every algorithm and compare with the golden file.
     Icount(icount::Args),
+    /// Import many robots, compile what comes out, and compare it with Pinocchio.
+    ImportCheck(import_check::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
     GenModel(gen_model::Args),
 }
@@ -55,6 +58,7 @@ fn main() -> ExitCode {
         Command::Qemu(args) => qemu::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
+        Command::ImportCheck(args) => import_check::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };
     match result {

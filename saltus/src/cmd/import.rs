@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use model_import::emit::{Crate, Dependency, Provenance, write_crate};
+use model_import::emit::{Crate, Dependency, Provenance, type_name, write_crate};
 use model_import::limbs::{expression, structure};
 use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, parse_lock};
 use rbd_core::BaseKind;
@@ -148,6 +148,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         let warnings: Vec<String> = robot.warnings.iter().map(ToString::to_string).collect();
         let object = json!({
             "robot": robot.name,
+            "type": type_name(&robot.name),
             "base": args.base,
             "joints": robot.joints.iter().map(|j| &j.name).collect::<Vec<_>>(),
             "frames": robot.frames.len(),
