@@ -46,7 +46,8 @@ fn writes_a_crate_once() {
     assert_eq!(said["locked"]["RR_hip_joint"], -0.1);
     assert_eq!(
         said["limbs"],
-        "1 * [RevoluteY, RevoluteY], 2 * [RevoluteX, RevoluteY, RevoluteY], 1 * [RevoluteY, RevoluteY]"
+        "1 * [RevoluteTilted, RevoluteZ], 2 * [RevoluteX, RevoluteY, RevoluteY], 1 * [RevoluteTilted, RevoluteZ]",
+        "a hip locked at an angle inclines the thigh's axis"
     );
     let manifest = fs::read_to_string(out.join("Cargo.toml")).unwrap();
     assert!(manifest.contains("name = \"a1-model\"") && manifest.contains("BSD-3-Clause"));

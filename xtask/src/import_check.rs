@@ -219,7 +219,7 @@ fn write_workspace(root: &Path, folder: &Path, imported: &[Imported]) -> Result<
          nalgebra = {{ version = \"0.35\", default-features = false, features = [\"libm-force\"] }}\n",
     );
     let mut main = format!(
-        "#[path = {:?}]\nmod agree;\n#[path = {:?}]\nmod golden;\n\n{CHECK}\nfn main() {{\n    heading();\n    let mut good = true;\n",
+        "#![allow(dead_code, reason = \"shared files\")]\n\n#[path = {:?}]\nmod agree;\n#[path = {:?}]\nmod golden;\n\n{CHECK}\nfn main() {{\n    heading();\n    let mut good = true;\n",
         root.join("tests/src/agree.rs"),
         root.join("tests/src/golden.rs"),
     );

@@ -18,7 +18,7 @@ pub(crate) struct Args {
     /// The URDF.
     urdf: PathBuf,
     /// Lock joints at a position, rad or m.
-    #[arg(long, num_args = 1.., value_name = "JOINT=VALUE", allow_hyphen_values = true)]
+    #[arg(long, num_args = 1.., value_name = "JOINT=VALUE")]
     lock: Vec<String>,
     /// Whether the base moves.
     #[arg(long, default_value = "floating", value_parser = ["floating", "fixed"])]
