@@ -1,7 +1,7 @@
 //! Reads the dynamic content of a URDF: links with inertias, joints with axes and limits.
 //!
 //! Meshes, collisions, transmissions and simulator tags are skipped. Every element is checked by itself
-//! here; what they form together is checked in [`crate::tree`].
+//! here; what they form together is checked in the module `tree`.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rbd_core::model::JointLimits;
