@@ -205,6 +205,22 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         (primal, dual)
     }
 
+    /// The slack `s` of row `i`, moved toward the row's value where that takes it away from both bounds.
+    ///
+    /// Such a move lowers the violation and the barrier at once; without it a slack that was pushed
+    /// against a bound by a bad step stays there and stops the iteration.
+    fn relaxed(&self, i: usize, s: T) -> T {
+        let (l, h, c) = (self.bounds.0[i], self.bounds.1[i], self.values.rows[i]);
+        let centre = (l + h) * T::HALF;
+        if c > s && (h == T::INFINITY || s < centre) {
+            if h == T::INFINITY { c } else { min(c, centre) }
+        } else if c < s && (l == -T::INFINITY || s > centre) {
+            if l == -T::INFINITY { c } else { max(c, centre) }
+        } else {
+            s
+        }
+    }
+
     /// Moves slacks by `primal` and bound multipliers by `dual` of their steps.
     pub(crate) fn accept_rows(&mut self, primal: T, dual: T, rho: T, mu: T) {
         for i in 0..self.row_count() {
@@ -213,7 +229,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 self.row_multiplier[i] += primal * rho * ds;
                 continue;
             }
-            let s = self.slack[i] + primal * ds;
+            let s = self.relaxed(i, self.slack[i] + primal * ds);
             self.slack[i] = s;
             for (side, bound, sign) in [
                 (&mut self.lower, self.bounds.0[i], T::ONE),
