@@ -96,9 +96,10 @@ pub(crate) fn transpose<T: Scalar, const R: usize, const C: usize>(
 /// Copies the lower triangle onto the upper one.
 #[inline(always)]
 pub(crate) fn mirror_lower<T: Scalar, const N: usize>(matrix: &mut [[T; N]; N]) {
-    for i in 1..N {
-        for j in 0..i {
-            matrix[i][j] = matrix[j][i];
+    let transposed = transpose(matrix);
+    for (i, (column, other)) in matrix.iter_mut().zip(&transposed).enumerate() {
+        for (upper, lower) in column.iter_mut().zip(other).take(i) {
+            *upper = *lower;
         }
     }
 }

@@ -138,6 +138,11 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
+    /// Puts the guess of the last solve back, for another solve from the same start.
+    pub fn restore_guess(&mut self) {
+        (self.state, self.control) = self.guess;
+    }
+
     /// Feedback gain of the last recursion: entry `[i][j]` is the change of control `i` that the optimum
     /// asks for per unit of tangent deviation `j` of this node's state.
     #[must_use]

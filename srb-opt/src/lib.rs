@@ -4,6 +4,7 @@
 mod dynamics;
 mod error;
 mod guess;
+mod plan;
 mod problem;
 mod rotation;
 mod rows;

@@ -2,7 +2,7 @@
 
 use crate::reference::{FEET, File, SHIPPED};
 use core::ops::ControlFlow;
-use ocp_solver::{Barrier, Settings, Solution, Solver, Stage, Status};
+use ocp_solver::{Barrier, Settings, Solution, Stage, Status};
 use serde_json::{Value, json};
 use srb_opt::{Problem, State};
 use std::path::PathBuf;
@@ -79,14 +79,13 @@ fn solve<const PHASES: usize, const NX: usize>(
         "monotone" => Barrier::Monotone,
         _ => Barrier::Portfolio,
     };
-    let solver = Solver::new(settings);
     let mut times = Vec::new();
     let mut outcome: Option<Solution<f64>> = None;
     for _ in 0..args.repeat.max(1) {
         let mut noise = Noise::new(args.seed, args.guess_noise);
         let start = Instant::now();
         problem.write_guess(&mut stages, || noise.sample());
-        let solved = solver.solve(&problem, &mut stages, |progress| {
+        let solved = problem.plan(&settings, &mut stages, |progress| {
             if args.trace {
                 let r = &progress.residual;
                 eprintln!(

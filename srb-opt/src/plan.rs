@@ -1,0 +1,74 @@
+//! One call from a guess to a plan.
+
+use crate::error::Error;
+use crate::problem::Problem;
+use crate::rows::row_capacity;
+use crate::state::{State, TIMES};
+use core::ops::ControlFlow;
+use ocp_solver::{Barrier, Progress, Settings, Solution, Solver, Stage, Status};
+use so3::Scalar;
+
+impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
+    /// Plans from the guess in the stages ([`Problem::write_guess`]) and leaves the plan there.
+    ///
+    /// Problem (2) has poor local optima in which a contact phase shrinks to its shortest duration.
+    /// Where a solve ends in one, the guess is solved again from a four times smaller barrier
+    /// parameter, and the better plan is kept; `iterations` and `factorisations` count everything.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for unusable data, [`Error::Capacity`] for const sizes that are too small,
+    /// [`Error::Solver`] for what the solver refuses.
+    pub fn plan<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        settings: &Settings<T>,
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI>],
+        mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
+    ) -> Result<Solution<T>, Error> {
+        self.check()?;
+        let fits = NX >= TIMES.saturating_add(PHASES)
+            && NU >= FEET.saturating_mul(3)
+            && NI >= row_capacity(FEET, PHASES);
+        if !fits {
+            return Err(Error::Capacity);
+        }
+        let first = Solver::new(*settings).solve(self, stages, &mut observer)?;
+        if first.status != Status::Solved || !self.has_collapsed_phase(stages) {
+            return Ok(first);
+        }
+        let mut smaller = *settings;
+        smaller.barrier = Barrier::Monotone;
+        smaller.initial_mu = settings.initial_mu * T::of(0.25);
+        stages.iter_mut().for_each(Stage::restore_guess);
+        let mut last = Solver::new(smaller).solve(self, stages, &mut observer)?;
+        let mut iterations = first.iterations.saturating_add(last.iterations);
+        let mut factorisations = first.factorisations.saturating_add(last.factorisations);
+        if last.status != Status::Solved || last.cost >= first.cost {
+            // Solving is deterministic: finding the first plan again costs less than memory to keep it.
+            stages.iter_mut().for_each(Stage::restore_guess);
+            last = Solver::new(*settings).solve(self, stages, &mut observer)?;
+            iterations = iterations.saturating_add(last.iterations);
+            factorisations = factorisations.saturating_add(last.factorisations);
+        }
+        (last.iterations, last.factorisations) = (iterations, factorisations);
+        last.restarts = last.restarts.saturating_add(1);
+        Ok(last)
+    }
+
+    /// Whether a contact phase ended at its shortest duration although it may be longer.
+    fn has_collapsed_phase<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        stages: &[Stage<T, State<T, PHASES>, NX, NU, NI>],
+    ) -> bool {
+        let Some(first) = stages.first() else {
+            return false;
+        };
+        self.used_phases()
+            .iter()
+            .zip(&first.state.durations)
+            .any(|(phase, duration)| {
+                let width = phase.max_duration - phase.min_duration;
+                phase.contacts.contains(&true)
+                    && *duration < phase.min_duration + T::of(1e-3) * width
+            })
+    }
+}
