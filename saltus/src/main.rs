@@ -1,6 +1,8 @@
 //! Plans jumps of legged robots.
 
 mod cmd;
+mod jump;
+mod noise;
 mod reference;
 
 use clap::{Parser, Subcommand};
@@ -19,12 +21,15 @@ enum Command {
     Plan(cmd::plan::Args),
     /// Turn a URDF into a model crate.
     Import(cmd::import::Args),
+    /// Plan a jump, execute it in simulation, and report.
+    Run(cmd::run::Args),
 }
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Plan(args) => cmd::plan::run(&args),
         Command::Import(args) => Ok(cmd::import::run(&args)),
+        Command::Run(args) => cmd::run::run(&args),
     };
     match outcome {
         Ok(code) => code,

@@ -2,3 +2,4 @@
 
 pub(crate) mod import;
 pub(crate) mod plan;
+pub(crate) mod run;

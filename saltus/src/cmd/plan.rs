@@ -1,5 +1,6 @@
 //! `saltus plan`: solve a reference problem.
 
+use crate::noise::Noise;
 use crate::reference::{FEET, File, SHIPPED};
 use core::ops::ControlFlow;
 use ocp_solver::{Barrier, Settings, Solution, Stage, Status};
@@ -162,35 +163,4 @@ fn layout<const PHASES: usize, const NX: usize>(
             .map(|s| s.forces_w.iter().flat_map(|f| f.as_slice().to_vec()).collect())
             .collect::<Vec<Vec<f64>>>(),
     })
-}
-
-/// Normally distributed numbers from a seed (SplitMix64 and Box–Muller).
-struct Noise {
-    state: u64,
-    deviation: f64,
-}
-
-impl Noise {
-    fn new(seed: u64, deviation: f64) -> Self {
-        Self {
-            state: seed,
-            deviation,
-        }
-    }
-
-    fn uniform(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn sample(&mut self) -> f64 {
-        if self.deviation == 0.0 {
-            return 0.0;
-        }
-        let radius = so3::math::sqrt(-2.0 * so3::math::log(1.0 - self.uniform()));
-        self.deviation * radius * so3::math::cos(2.0 * core::f64::consts::PI * self.uniform())
-    }
 }

@@ -1,0 +1,185 @@
+//! `saltus run`: plan a jump, execute it in simulation, report.
+
+use crate::jump::judge::Verdict;
+use crate::jump::task::{SrbPlan, Task};
+use crate::jump::{execute, log, reference, report};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Options of `saltus run`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Task, such as a1/lateral.
+    task: String,
+    /// Simulator.
+    #[arg(long, default_value = "native", value_parser = ["native"])]
+    sim: String,
+    /// Seed of the disturbances: 0 is the nominal run, others draw ground friction and encoder noise.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    json: bool,
+    /// New folder for report, log and result; by default out/TASK, or out/TASK-2 and so on if that exists.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    let task = Task::load(&args.task)?;
+    let folder = new_folder(args.out.as_deref(), &task.name)?;
+    let bar = if args.json {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(1000)
+    };
+    let style =
+        ProgressStyle::with_template("{msg:28} [{bar:40}] {elapsed}").map_err(|e| e.to_string())?;
+    bar.set_style(style.progress_chars("=> "));
+    bar.set_message("planning the body's motion");
+    let plan = task.solve()?;
+    bar.set_message("planning the legs");
+    bar.set_position(50);
+    let reference = reference::build(&task, &plan)?;
+    let clock = Instant::now();
+    let end = execute::HOLD + reference.touchdown + execute::SETTLE;
+    let run = execute::run(&task, &reference, args.seed, |t, phase| {
+        bar.set_message(format!("simulating: {phase:?}"));
+        bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
+    })?;
+    let wall = clock.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let verdict = Verdict::of(&task, &run);
+    let json = verdict.json(&task, &plan, &reference, &run, args.seed);
+    write(&folder, "log.csv", &log::csv(&run.samples))?;
+    write(&folder, "result.json", &format!("{json:#}\n"))?;
+    write(
+        &folder,
+        "report.html",
+        &report::html(&task, &reference, &run, &verdict, &json)?,
+    )?;
+    if args.json {
+        println!("{json}");
+    } else {
+        print_table(&task, &plan, &reference, &run, &verdict, wall);
+        println!("report: {}", folder.join("report.html").display());
+    }
+    Ok(if verdict.on_target() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    })
+}
+
+fn print_table(
+    task: &Task,
+    plan: &SrbPlan,
+    reference: &reference::Reference,
+    run: &execute::Run,
+    verdict: &Verdict,
+    wall: f64,
+) {
+    let yes = |b: bool| if b { "yes" } else { "NO" };
+    let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
+    let span = run.samples.len() as f64 * 1e-3;
+    let simulated = format!("{span:.1} s in {wall:.1} s, native simulator, 10 kHz");
+    let rows = [
+        ("task", task.name.clone()),
+        (
+            "plan",
+            format!(
+                "{:?} in {:.0} ms, {} iterations, phases {:.3?} s",
+                ocp_solver::Status::Solved,
+                plan.wall_ms,
+                plan.iterations,
+                reference.durations
+            ),
+        ),
+        (
+            "reference",
+            format!(
+                "single rigid body + leg kinematics (not a whole-body optimum); {:.1} of 33.5 N m, friction {:.2} of 0.60",
+                reference.peak_torque, reference.peak_friction
+            ),
+        ),
+        ("simulated", simulated),
+        ("landed", yes(verdict.landed).to_owned()),
+        ("upright after 2 s", yes(verdict.upright).to_owned()),
+        ("first contact", seconds(run.first_contact)),
+        ("position error", format!("{:.3} m", verdict.position_error)),
+        (
+            "orientation error",
+            format!("{:.1} deg", verdict.orientation_error),
+        ),
+        ("apex of the CoM", format!("{:.3} m", verdict.apex)),
+        ("peak torque", format!("{:.1} N m", run.peak_torque)),
+        (
+            "torque saturation",
+            format!(
+                "{:.1} ms in the push-off, {:.1} ms in the landing",
+                run.push_off_saturation * 1e3,
+                run.landing_saturation * 1e3
+            ),
+        ),
+        ("peak foot force", format!("{:.0} N", run.peak_foot_force)),
+        (
+            "trunk touched",
+            if run.trunk_contact { "YES" } else { "no" }.to_owned(),
+        ),
+        (
+            "landing QP",
+            format!(
+                "{} solves, {} failures, at most {} iterations",
+                run.qp_solves, run.qp_failures, run.qp_max_iterations
+            ),
+        ),
+    ];
+    for (name, value) in rows {
+        println!("{name:18} {value}");
+    }
+}
+
+/// A folder that did not exist before.
+fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
+    let create = |path: &Path| {
+        let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
+        parent
+            .map_or(Ok(()), std::fs::create_dir_all)
+            .and_then(|()| std::fs::create_dir(path))
+    };
+    let describe = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+    if let Some(path) = wanted {
+        create(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::AlreadyExists => {
+                format!(
+                    "{} exists already: choose another --out, nothing is overwritten",
+                    path.display()
+                )
+            }
+            _ => describe(path, error),
+        })?;
+        return Ok(path.to_owned());
+    }
+    let name = task.replace('/', "-");
+    for i in 1..10_000 {
+        let path = Path::new("out").join(if i == 1 {
+            name.clone()
+        } else {
+            format!("{name}-{i}")
+        });
+        match create(&path) {
+            Ok(()) => return Ok(path),
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(describe(&path, error)),
+        }
+    }
+    Err("out/ holds ten thousand runs of this task: clean it up".into())
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<(), String> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
+}

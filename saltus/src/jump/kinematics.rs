@@ -1,0 +1,146 @@
+//! Legs by inverse kinematics, at the level of positions and of velocities.
+
+use super::{FOOT_COUNT, JOINTS, ROBOT, State, Velocity, feet};
+use a1_model::FOOT_RADIUS;
+use nalgebra::{Matrix3, Vector3};
+use rbd_core::{
+    Axes, CentroidalMap, Frame, FrameJacobian, Kinematics, Motion, Posture, center_of_mass,
+    centroidal_map, centroidal_state, forward_kinematics, frame_jacobian,
+};
+
+/// Poses of all links.
+pub(crate) fn poses(q: &State) -> Kinematics<f64, JOINTS> {
+    let mut kinematics = Kinematics::IDENTITY;
+    forward_kinematics(&ROBOT, &Posture::new(&ROBOT, q), &mut kinematics);
+    kinematics
+}
+
+/// Centre of mass in the world.
+pub(crate) fn com(q: &State) -> Vector3<f64> {
+    center_of_mass(&ROBOT, &Posture::new(&ROBOT, q)).position_w
+}
+
+/// Jacobian of a frame, linear part in world axes.
+pub(crate) fn jacobian(
+    kinematics: &Kinematics<f64, JOINTS>,
+    frame: &Frame<f64>,
+) -> FrameJacobian<f64, JOINTS> {
+    let mut j = FrameJacobian::ZERO;
+    frame_jacobian(&ROBOT, kinematics, frame, Axes::LocalWorldAligned, &mut j);
+    j
+}
+
+/// The three columns of a leg.
+fn leg_columns(j: &FrameJacobian<f64, JOINTS>, leg: usize) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| j.joints[3 * leg + column].linear[row])
+}
+
+/// Where a foot's ball touches level ground, as a frame of its link.
+pub(crate) fn contact_frame(kinematics: &Kinematics<f64, JOINTS>, leg: usize) -> Frame<f64> {
+    let mut frame = feet()[leg];
+    let rot_wl = kinematics.link(frame.link).rotation;
+    let down = rot_wl.inverse() * Vector3::new(0.0, 0.0, -FOOT_RADIUS);
+    frame.offset = (Vector3::from(frame.offset) + down).into();
+    frame
+}
+
+/// Joints that put the balls of the feet at `targets_w`, by damped Newton steps from `q`; the base stays.
+pub(crate) fn place_feet(
+    mut q: State,
+    targets_w: &[Vector3<f64>; FOOT_COUNT],
+) -> Result<State, String> {
+    let mut worst = f64::INFINITY;
+    for _ in 0..60 {
+        let kinematics = poses(&q);
+        worst = 0.0;
+        for (leg, frame) in feet().iter().enumerate() {
+            let error = targets_w[leg] - kinematics.frame(frame).translation;
+            worst = f64::max(worst, error.norm());
+            let j = leg_columns(&jacobian(&kinematics, frame), leg);
+            let damped = j * j.transpose() + Matrix3::identity() * 1e-6;
+            let step = damped.try_inverse().ok_or("singular leg")? * error;
+            let step = j.transpose() * step;
+            let scale = 0.3 / f64::max(0.3, step.amax());
+            for (q, d) in q.joints[3 * leg..3 * leg + 3].iter_mut().zip(step.iter()) {
+                *q += scale * d;
+            }
+        }
+        if worst < 1e-10 {
+            return Ok(q);
+        }
+    }
+    Err(format!(
+        "the legs miss their places by {:.1} mm: out of reach",
+        worst * 1e3
+    ))
+}
+
+/// A standing robot with its centre of mass at `com_w` and its balls over `points_w`, base level.
+pub(crate) fn stand(
+    com_w: &Vector3<f64>,
+    points_w: &[Vector3<f64>; FOOT_COUNT],
+) -> Result<State, String> {
+    let mut q = State::NEUTRAL;
+    q.joints = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
+    q.base.translation = *com_w;
+    let targets = points_w.map(|p| p + Vector3::new(0.0, 0.0, FOOT_RADIUS));
+    for _ in 0..40 {
+        q = place_feet(q, &targets)?;
+        let error = com_w - com(&q);
+        if error.norm() < 1e-9 {
+            return Ok(q);
+        }
+        q.base.translation += error;
+    }
+    Err("no standing posture with this centre of mass".into())
+}
+
+/// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and whose angular momentum about it
+/// is `momentum_w`, while the balls of the feet in `stance` roll without slip and the other joints move with `swing`.
+///
+/// Found by fixed-point steps on the base's velocity: the legs are lighter than the rest.
+pub(crate) fn rolling_velocity(
+    q: &State,
+    stance: &[bool; FOOT_COUNT],
+    com_velocity_w: &Vector3<f64>,
+    momentum_w: &Vector3<f64>,
+    swing: &[f64; JOINTS],
+) -> Result<Velocity, String> {
+    let kinematics = poses(q);
+    let posture = Posture::new(&ROBOT, q);
+    let to_base = q.base.rotation.inverse();
+    let legs: Vec<_> = (0..FOOT_COUNT)
+        .map(|leg| {
+            let j = jacobian(&kinematics, &contact_frame(&kinematics, leg));
+            (j, leg_columns(&j, leg).try_inverse())
+        })
+        .collect();
+    let mut map = CentroidalMap::ZERO;
+    centroidal_map(&ROBOT, &posture, &mut map);
+    let mut velocity = Velocity {
+        base: Motion::new(to_base * com_velocity_w, Vector3::zeros()),
+        joints: *swing,
+    };
+    for _ in 0..200 {
+        for (leg, (j, inverse)) in legs.iter().enumerate().filter(|(leg, _)| stance[*leg]) {
+            let base_only = Velocity {
+                base: velocity.base,
+                joints: [0.0; JOINTS],
+            };
+            let inverse = inverse.ok_or("a stance leg is stretched out")?;
+            let qd = -(inverse * j.mul(&base_only).linear);
+            velocity.joints[3 * leg..3 * leg + 3].copy_from_slice(qd.as_slice());
+        }
+        let now = centroidal_state(&ROBOT, &posture, &velocity);
+        let missing = momentum_w - now.momentum_w.angular;
+        let turn =
+            to_base * map.locked_angular_velocity(&rbd_core::Force::new(Vector3::zeros(), missing));
+        let shift = to_base * (com_velocity_w - now.com_velocity_w);
+        if shift.norm() < 1e-9 && turn.norm() < 1e-9 {
+            return Ok(velocity);
+        }
+        velocity.base.linear += shift;
+        velocity.base.angular += turn;
+    }
+    Err("no whole-body velocity for this motion of the centre of mass".into())
+}

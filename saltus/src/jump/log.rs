@@ -1,0 +1,75 @@
+//! What is kept of a run: one sample per millisecond.
+
+use super::{FOOT_COUNT, JOINTS, SPHERES};
+use jump_control::Phase;
+use nalgebra::{UnitQuaternion, Vector3};
+use rbd_core::Model;
+use std::fmt::Write;
+
+/// One sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Sample {
+    pub(crate) time: f64,
+    pub(crate) phase: Phase,
+    pub(crate) position: Vector3<f64>,
+    pub(crate) orientation: UnitQuaternion<f64>,
+    pub(crate) velocity_w: Vector3<f64>,
+    pub(crate) omega_b: Vector3<f64>,
+    pub(crate) com: Vector3<f64>,
+    pub(crate) joints: [f64; JOINTS],
+    pub(crate) joint_velocities: [f64; JOINTS],
+    pub(crate) torques: [f64; JOINTS],
+    pub(crate) forces_w: [Vector3<f64>; SPHERES],
+    pub(crate) planned_position: Vector3<f64>,
+    pub(crate) planned_joints: [f64; JOINTS],
+    pub(crate) planned_forces_w: [Vector3<f64>; FOOT_COUNT],
+}
+
+/// Short names of the feet.
+pub(crate) const FEET_NAMES: [&str; FOOT_COUNT] = ["FL", "FR", "RL", "RR"];
+
+/// Short joint names: `FL_hip` and so on.
+pub(crate) fn joint_names() -> [String; JOINTS] {
+    Model::<f64, JOINTS>::joint_names(&super::ROBOT).map(|name| name.replace("_joint", ""))
+}
+
+/// The samples as CSV.
+pub(crate) fn csv(samples: &[Sample]) -> String {
+    let mut out = String::from("time,phase,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,com_x,com_y,com_z");
+    let joints = joint_names();
+    for kind in ["q", "qd", "tau", "q_plan"] {
+        for name in &joints {
+            let _ = write!(out, ",{kind}_{name}");
+        }
+    }
+    for kind in ["f", "f_plan"] {
+        for (foot, axis) in FEET_NAMES
+            .iter()
+            .flat_map(|f| ["x", "y", "z"].map(|a| (f, a)))
+        {
+            let _ = write!(out, ",{kind}_{foot}_{axis}");
+        }
+    }
+    out.push('\n');
+    for s in samples {
+        let _ = write!(out, "{:.4},{:?}", s.time, s.phase);
+        let numbers = s
+            .position
+            .iter()
+            .chain(s.orientation.coords.iter())
+            .chain(s.velocity_w.iter())
+            .chain(s.omega_b.iter())
+            .chain(s.com.iter())
+            .chain(&s.joints)
+            .chain(&s.joint_velocities)
+            .chain(&s.torques)
+            .chain(&s.planned_joints)
+            .chain(s.forces_w.iter().take(FOOT_COUNT).flat_map(|f| f.iter()))
+            .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()));
+        for x in numbers {
+            let _ = write!(out, ",{x:.6}");
+        }
+        out.push('\n');
+    }
+    out
+}
