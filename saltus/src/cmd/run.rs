@@ -56,15 +56,18 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let json = verdict.json(&task, &plan, &reference, &run, args.seed);
     write(&folder, "log.csv", &log::csv(&run.samples))?;
     write(&folder, "result.json", &format!("{json:#}\n"))?;
+    let table = table(&task, &plan, &reference, &run, &verdict, wall);
     write(
         &folder,
         "report.html",
-        &report::html(&task, &reference, &run, &verdict, &json)?,
+        &report::html(&task, &reference, &run, &table),
     )?;
     if args.json {
         println!("{json}");
     } else {
-        print_table(&task, &plan, &reference, &run, &verdict, wall);
+        for (name, value, _) in &table {
+            println!("{name:18} {value}");
+        }
         println!("report: {}", folder.join("report.html").display());
     }
     Ok(if verdict.on_target() {
@@ -74,49 +77,64 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     })
 }
 
-fn print_table(
+/// A line of the result: name, value, and whether it is good where that can be said.
+type Line = (&'static str, String, Option<bool>);
+
+/// The result for people.
+fn table(
     task: &Task,
     plan: &SrbPlan,
     reference: &reference::Reference,
     run: &execute::Run,
     verdict: &Verdict,
     wall: f64,
-) {
-    let yes = |b: bool| if b { "yes" } else { "NO" };
+) -> Vec<Line> {
+    let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
     let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
     let span = run.samples.len() as f64 * 1e-3;
-    let simulated = format!("{span:.1} s in {wall:.1} s, native simulator, 10 kHz");
-    let rows = [
-        ("task", task.name.clone()),
-        (
+    let plain = |name, value| (name, value, None);
+    vec![
+        plain("task", task.name.clone()),
+        plain(
             "plan",
             format!(
-                "{:?} in {:.0} ms, {} iterations, phases {:.3?} s",
-                ocp_solver::Status::Solved,
-                plan.wall_ms,
-                plan.iterations,
-                reference.durations
+                "solved in {:.0} ms, {} iterations, phases {:.3?} s",
+                plan.wall_ms, plan.iterations, reference.durations
             ),
         ),
-        (
+        plain(
             "reference",
             format!(
-                "single rigid body + leg kinematics (not a whole-body optimum); {:.1} of 33.5 N m, friction {:.2} of 0.60",
-                reference.peak_torque, reference.peak_friction
+                "single rigid body + leg kinematics, not a whole-body optimum; torque {:.1} of {:.1} N m, friction {:.2} of 0.60",
+                reference.peak_torque,
+                a1_model::MOTORS[0].torque,
+                reference.peak_friction
             ),
         ),
-        ("simulated", simulated),
-        ("landed", yes(verdict.landed).to_owned()),
-        ("upright after 2 s", yes(verdict.upright).to_owned()),
-        ("first contact", seconds(run.first_contact)),
-        ("position error", format!("{:.3} m", verdict.position_error)),
+        plain(
+            "simulated",
+            format!("{span:.1} s in {wall:.1} s, native simulator, 10 kHz"),
+        ),
+        ("landed", yes(verdict.landed), Some(verdict.landed)),
+        (
+            "upright after 2 s",
+            yes(verdict.upright),
+            Some(verdict.upright),
+        ),
+        plain("first contact", seconds(run.first_contact)),
+        (
+            "position error",
+            format!("{:.3} m", verdict.position_error),
+            Some(verdict.position_error <= 0.10),
+        ),
         (
             "orientation error",
             format!("{:.1} deg", verdict.orientation_error),
+            Some(verdict.orientation_error <= 10.0),
         ),
-        ("apex of the CoM", format!("{:.3} m", verdict.apex)),
-        ("peak torque", format!("{:.1} N m", run.peak_torque)),
-        (
+        plain("apex of the CoM", format!("{:.3} m", verdict.apex)),
+        plain("peak torque", format!("{:.1} N m", run.peak_torque)),
+        plain(
             "torque saturation",
             format!(
                 "{:.1} ms in the push-off, {:.1} ms in the landing",
@@ -124,22 +142,20 @@ fn print_table(
                 run.landing_saturation * 1e3
             ),
         ),
-        ("peak foot force", format!("{:.0} N", run.peak_foot_force)),
+        plain("peak foot force", format!("{:.0} N", run.peak_foot_force)),
         (
             "trunk touched",
             if run.trunk_contact { "YES" } else { "no" }.to_owned(),
+            Some(!run.trunk_contact),
         ),
-        (
+        plain(
             "landing QP",
             format!(
                 "{} solves, {} failures, at most {} iterations",
                 run.qp_solves, run.qp_failures, run.qp_max_iterations
             ),
         ),
-    ];
-    for (name, value) in rows {
-        println!("{name:18} {value}");
-    }
+    ]
 }
 
 /// A folder that did not exist before.

@@ -59,7 +59,6 @@ pub(crate) struct Run {
     pub(crate) samples: Vec<Sample>,
     pub(crate) final_phase: Phase,
     pub(crate) fault: Option<Fault>,
-    pub(crate) takeoff: f64,
     pub(crate) first_contact: Option<f64>,
     pub(crate) peak_torque: f64,
     pub(crate) push_off_saturation: f64,
@@ -191,23 +190,28 @@ impl Controller<'_> {
     }
 }
 
+/// The world of a task. The robot starts at height zero: on the floor, or on a box with the floor below.
+pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
+    let Some(edge) = task.edge else {
+        return Terrain::FLAT;
+    };
+    let (mut lower, mut upper) = ([-0.6, -0.6, -edge.drop], [0.6, 0.6, 0.0]);
+    if edge.sign > 0.0 {
+        upper[edge.axis] = edge.distance;
+    } else {
+        lower[edge.axis] = -edge.distance;
+    }
+    Terrain {
+        floor: -edge.drop,
+        block: Some(Block { lower, upper }),
+    }
+}
+
 /// The plant at the start of a task.
 fn plant(task: &Task, disturbance: &Disturbance) -> Plant {
-    let mut terrain = Terrain::FLAT;
-    if let Some(edge) = task.edge {
-        // The robot starts on a box at height zero; the floor lies lower.
-        terrain.floor = -edge.drop;
-        let (mut lower, mut upper) = ([-2.0, -2.0, -edge.drop], [2.0, 2.0, 0.0]);
-        if edge.sign > 0.0 {
-            upper[edge.axis] = edge.distance;
-        } else {
-            lower[edge.axis] = -edge.distance;
-        }
-        terrain.block = Some(Block { lower, upper });
-    }
     let mut settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
     settings.contact.friction = disturbance.friction;
-    let mut plant = Plant::new(ROBOT, spheres(), terrain, settings);
+    let mut plant = Plant::new(ROBOT, spheres(), terrain(task), settings);
     plant.reset(&task.start, &Tangent::ZERO);
     plant
 }
@@ -275,7 +279,6 @@ pub(crate) fn run(
         samples: Vec::new(),
         final_phase: Phase::Hold,
         fault: None,
-        takeoff: reference.takeoff,
         first_contact: None,
         peak_torque: 0.0,
         push_off_saturation: 0.0,

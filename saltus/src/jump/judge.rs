@@ -33,9 +33,13 @@ impl Verdict {
             so3::math::atan2(so3::math::hypot(up.x, up.y), up.z)
         };
         let landed_at = run.first_contact;
-        let after = |time: f64| run.samples.iter().filter(move |s| s.time >= time);
+        let after = |time: f64| {
+            run.samples
+                .iter()
+                .filter(move |s: &&super::log::Sample| s.time >= time)
+        };
         let upright_after = landed_at.and_then(|t0| {
-            let tilted = after(t0).filter(|s| tilt(s) >= UPRIGHT).last();
+            let tilted = after(t0).rfind(|s| tilt(s) >= UPRIGHT);
             match tilted {
                 None => Some(0.0),
                 Some(s) => (s.time < run.samples.last()?.time - 0.2).then_some(s.time - t0),

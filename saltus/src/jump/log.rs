@@ -1,10 +1,10 @@
 //! What is kept of a run: one sample per millisecond.
 
 use super::{FOOT_COUNT, JOINTS, SPHERES};
+use core::fmt::Write;
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
 use rbd_core::Model;
-use std::fmt::Write;
 
 /// One sample.
 #[derive(Clone, Debug)]

@@ -1,14 +1,234 @@
-//! The report.
+//! The report: one HTML file with the jump in 3D and its plots, no network needed.
+
 use super::execute::Run;
-use super::judge::Verdict;
+use super::kinematics::poses;
+use super::log::{FEET_NAMES, Sample, joint_names};
 use super::reference::Reference;
 use super::task::Task;
+use super::{FOOT_COUNT, JOINTS, State, feet};
+use a1_model::MOTORS;
+use nalgebra::Vector3;
+use rbd_core::Transform;
+use serde_json::{Value, json};
+
+const TEMPLATE: &str = include_str!("../../assets/report.html");
+const THREE: &str = include_str!("../../assets/three.bundle.min.js");
+const UPLOT: &str = include_str!("../../assets/uPlot.iife.min.js");
+const UPLOT_CSS: &str = include_str!("../../assets/uPlot.min.css");
+/// Every so many milliseconds a frame of the animation, and a point of the plots.
+const FRAME: usize = 10;
+const POINT: usize = 4;
+const COLORS: [&str; FOOT_COUNT] = ["#0969da", "#bc4c00", "#1a7f37", "#8250df"];
+
+/// The report's text.
 pub(crate) fn html(
-    _: &Task,
-    _: &Reference,
-    _: &Run,
-    _: &Verdict,
-    _: &serde_json::Value,
-) -> Result<String, String> {
-    Ok(String::new())
+    task: &Task,
+    reference: &Reference,
+    run: &Run,
+    table: &[(&str, String, Option<bool>)],
+) -> String {
+    let title = format!("saltus run {}", task.name);
+    let intro = "The robot stands, pushes off, flies and lands under the controllers of the jump; the \
+        plant is the native contact simulator at 10 kHz. The plan is a single-rigid-body optimum with \
+        leg kinematics and inverse dynamics, not a whole-body optimum.";
+    let data = json!({
+        "frames": frames(&run.samples),
+        "scene": scene(task),
+        "phases": phases(&run.samples),
+        "table": table.iter().map(|(name, value, good)| {
+            json!([name, value, good.map(|good| if good { "good" } else { "bad" })])
+        }).collect::<Vec<_>>(),
+        "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
+        "plots": plots(&run.samples, reference),
+    });
+    // A string in the data must not end the script.
+    let data = data.to_string().replace("</", "<\\/");
+    TEMPLATE
+        .replace("@TITLE@", &title)
+        .replace("@INTRO@", intro)
+        .replace("@UPLOT_CSS@", UPLOT_CSS)
+        .replace("@UPLOT@", UPLOT)
+        .replace("@THREE@", THREE)
+        .replace("@DATA@", &data)
+}
+
+/// A number with so many decimals: the file stays small.
+fn round(x: f64, digits: u32) -> Value {
+    let scale = so3::math::powi(10.0, digits);
+    json!((x * scale).round() / scale)
+}
+
+fn vector(v: &Vector3<f64>) -> Value {
+    json!([round(v.x, 4), round(v.y, 4), round(v.z, 4)])
+}
+
+/// Poses of the links and forces, for the animation.
+fn frames(samples: &[Sample]) -> Value {
+    let kept: Vec<&Sample> = samples.iter().step_by(FRAME).collect();
+    let points = |s: &Sample| {
+        let rotation = s.orientation.to_rotation_matrix();
+        let q = State {
+            base: Transform::new(rotation, s.position),
+            joints: s.joints,
+        };
+        let poses = poses(&q);
+        feet()
+            .iter()
+            .enumerate()
+            .flat_map(|(leg, foot)| {
+                let link = |i: usize| poses.bodies[3 * leg + i].translation;
+                [link(0), link(1), link(2), poses.frame(foot).translation]
+            })
+            .map(|p| vector(&p))
+            .collect::<Vec<_>>()
+    };
+    let each = |f: &dyn Fn(&Sample) -> Value| kept.iter().map(|s| f(s)).collect::<Vec<_>>();
+    json!({
+        "t": each(&|s| round(s.time, 4)),
+        "phase": each(&|s| json!(format!("{:?}", s.phase))),
+        "position": each(&|s| vector(&s.position)),
+        "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
+        "com": each(&|s| vector(&s.com)),
+        "points": each(&|s| json!(points(s))),
+        "forces": each(&|s| json!(s.forces_w[..FOOT_COUNT].iter().map(vector).collect::<Vec<_>>())),
+    })
+}
+
+fn scene(task: &Task) -> Value {
+    let terrain = super::execute::terrain(task);
+    json!({
+        "floor": terrain.floor,
+        "block": terrain.block.map(|block| [block.lower, block.upper]),
+        "foot_radius": a1_model::FOOT_RADIUS,
+        "goal": vector(&(task.start.base.translation + task.goal)),
+    })
+}
+
+/// Runs of equal phase: name, begin, end.
+fn phases(samples: &[Sample]) -> Vec<Value> {
+    samples
+        .chunk_by(|a, b| a.phase == b.phase)
+        .filter_map(|run| {
+            let (first, last) = (run.first()?, run.last()?);
+            Some(json!([
+                format!("{:?}", first.phase),
+                first.time,
+                last.time + 1e-3
+            ]))
+        })
+        .collect()
+}
+
+/// One curve.
+fn curve(
+    label: &str,
+    color: &str,
+    dashed: bool,
+    samples: &[Sample],
+    value: impl Fn(&Sample) -> f64,
+) -> Value {
+    let values: Vec<Value> = samples
+        .iter()
+        .step_by(POINT)
+        .map(|s| round(value(s), 4))
+        .collect();
+    json!({ "label": label, "color": color, "dashed": dashed, "values": values })
+}
+
+fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
+    let plot = |title: &str, unit: &str, series: Vec<Value>| json!({ "title": title, "unit": unit, "series": series });
+    let axes = ["x", "y", "z"];
+    let mut out = vec![
+        plot(
+            "Base position",
+            "m",
+            (0..3)
+                .flat_map(|i| {
+                    let planned = move |s: &Sample| s.planned_position[i];
+                    let name = format!("{} plan", axes[i]);
+                    [
+                        curve(axes[i], COLORS[i], false, samples, move |s| s.position[i]),
+                        curve(&name, COLORS[i], true, samples, planned),
+                    ]
+                })
+                .collect(),
+        ),
+        plot(
+            "Base orientation",
+            "degrees",
+            ["roll", "pitch", "yaw"]
+                .iter()
+                .enumerate()
+                .map(|(i, name)| {
+                    curve(name, COLORS[i], false, samples, move |s| {
+                        let (roll, pitch, yaw) = s.orientation.euler_angles();
+                        [roll, pitch, yaw][i].to_degrees()
+                    })
+                })
+                .collect(),
+        ),
+    ];
+    let names = joint_names();
+    for (i, kind) in ["Hip", "Thigh", "Calf"].iter().enumerate() {
+        let mut series: Vec<Value> = (0..FOOT_COUNT)
+            .map(|leg| {
+                let j = 3 * leg + i;
+                curve(&names[j], COLORS[leg], false, samples, move |s| {
+                    s.torques[j]
+                })
+            })
+            .collect();
+        let limit = MOTORS[i].torque;
+        series.push(curve("limit", "#b42318", true, samples, move |_| limit));
+        series.push(curve("-limit", "#b42318", true, samples, move |_| -limit));
+        out.push(plot(&format!("{kind} torques"), "N m", series));
+    }
+    for (axis, title) in [
+        (2, "Contact forces, normal"),
+        (1, "Contact forces, sideways (y)"),
+    ] {
+        let series = FEET_NAMES
+            .iter()
+            .enumerate()
+            .flat_map(|(leg, name)| {
+                let planned = move |s: &Sample| s.planned_forces_w[leg][axis];
+                [
+                    curve(name, COLORS[leg], false, samples, move |s| {
+                        s.forces_w[leg][axis]
+                    }),
+                    curve(&format!("{name} plan"), COLORS[leg], true, samples, planned),
+                ]
+            })
+            .collect();
+        out.push(plot(title, "N", series));
+    }
+    let touchdown = reference.touchdown;
+    let error = move |s: &Sample| {
+        if s.time > touchdown {
+            return f64::NAN;
+        }
+        let pairs = (0..JOINTS).map(|j| (s.joints[j] - s.planned_joints[j]).abs());
+        pairs.fold(0.0, f64::max)
+    };
+    out.push(plot(
+        "Largest joint tracking error up to the planned touchdown",
+        "rad",
+        vec![curve("error", COLORS[0], false, samples, error)],
+    ));
+    let speed = |s: &Sample| {
+        s.joint_velocities
+            .iter()
+            .fold(0.0, |m: f64, v| m.max(v.abs()))
+    };
+    out.push(plot(
+        "Fastest joint",
+        "rad/s",
+        vec![
+            curve("speed", COLORS[0], false, samples, speed),
+            curve("no-load speed", "#b42318", true, samples, |_| {
+                MOTORS[0].no_load_speed
+            }),
+        ],
+    ));
+    out
 }

@@ -1,0 +1,128 @@
+//! The main job, end to end: one command plans, simulates and reports a jump.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn saltus(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command.args(arguments).output().unwrap()
+}
+
+/// A folder of this test run, not there yet.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+fn run(task: &str, seed: &str, name: &str) -> (Value, PathBuf) {
+    let out = folder(name);
+    let result = saltus(&[
+        "run",
+        task,
+        "--seed",
+        seed,
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let text = String::from_utf8(result.stdout).unwrap();
+    let json: Value = serde_json::from_str(&text)
+        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&result.stderr)));
+    assert_eq!(
+        result.status.success(),
+        on_target(&json),
+        "exit code and result disagree: {json}"
+    );
+    (json, out)
+}
+
+fn on_target(json: &Value) -> bool {
+    json["landed"] == true
+        && json["upright"] == true
+        && json["final_position_error_m"].as_f64().unwrap() <= 0.10
+        && json["final_orientation_error_deg"].as_f64().unwrap() <= 10.0
+}
+
+#[test]
+fn lateral_lands_upright_on_its_target_and_leaves_a_report() {
+    let (json, out) = run("a1/lateral", "0", "lateral");
+    assert!(on_target(&json), "{json}");
+    assert_eq!(json["trunk_contact"], false);
+    assert_eq!(json["torque_saturation_ms"], 0.0);
+    assert!(json["peak_torque_nm"].as_f64().unwrap() <= 33.5);
+    assert_eq!(json["qp"]["failures"], 0);
+    // It jumped: the centre of mass rose well above standing, and there was a flight.
+    assert!(json["apex_height_m"].as_f64().unwrap() > 0.33);
+    let flight = json["plan"]["durations_s"][1].as_f64().unwrap();
+    assert!(flight >= 0.25);
+
+    let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("const DATA = {") && !report.contains("@DATA@"));
+    for outside in ["src=\"http", "href=\"http", "@import"] {
+        assert!(
+            !report.contains(outside),
+            "the report needs the network: {outside}"
+        );
+    }
+    let log = std::fs::read_to_string(out.join("log.csv")).unwrap();
+    let columns = log.lines().next().unwrap().split(',').count();
+    assert!(log.lines().all(|line| line.split(',').count() == columns));
+    assert!(!log.contains("NaN"));
+    // In the log: airborne between take-off and landing, on all feet in the end.
+    let header: Vec<&str> = log.lines().next().unwrap().split(',').collect();
+    let normal: Vec<usize> = ["FL", "FR", "RL", "RR"]
+        .map(|foot| {
+            header
+                .iter()
+                .position(|h| *h == format!("f_{foot}_z"))
+                .unwrap()
+        })
+        .to_vec();
+    let loads = |line: &str| -> Vec<f64> {
+        let cells: Vec<&str> = line.split(',').collect();
+        normal.iter().map(|i| cells[*i].parse().unwrap()).collect()
+    };
+    let airborne = log
+        .lines()
+        .skip(1)
+        .filter(|line| loads(line).iter().all(|f| *f == 0.0));
+    assert!(airborne.count() > 200, "less than 0.2 s in the air");
+    assert!(loads(log.lines().last().unwrap()).iter().all(|f| *f > 5.0));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run_and_noise_does_not_throw_it() {
+    let (first, a) = run("a1/lateral", "3", "seed-3a");
+    let (_, b) = run("a1/lateral", "3", "seed-3b");
+    let read = |folder: &Path| std::fs::read(folder.join("log.csv")).unwrap();
+    assert!(read(&a) == read(&b), "the same seed, another run");
+    let (_, nominal) = run("a1/lateral", "0", "seed-0");
+    assert!(read(&a) != read(&nominal), "the seed has no effect");
+    assert!(on_target(&first), "{first}");
+}
+
+#[test]
+fn nothing_is_overwritten_and_unknown_tasks_are_named() {
+    let out = folder("kept");
+    std::fs::create_dir(&out).unwrap();
+    std::fs::write(out.join("report.html"), "mine").unwrap();
+    let refused = saltus(&["run", "a1/lateral", "--out", out.to_str().unwrap()]);
+    assert!(!refused.status.success());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("nothing is overwritten"));
+    assert_eq!(
+        std::fs::read_to_string(out.join("report.html")).unwrap(),
+        "mine"
+    );
+
+    let unknown = saltus(&[
+        "run",
+        "a1/moonwalk",
+        "--out",
+        folder("moon").to_str().unwrap(),
+    ]);
+    assert!(!unknown.status.success());
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("a1/moonwalk"));
+}
