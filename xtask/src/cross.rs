@@ -8,7 +8,16 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 4] = ["so3", "rbd-core", "a1-model", "icub-model"];
+const CRATES: [&str; 8] = [
+    "so3",
+    "rbd-core",
+    "a1-model",
+    "icub-model",
+    "dense-qp",
+    "landing",
+    "jump-control",
+    "contact-sim",
+];
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
