@@ -25,6 +25,12 @@ const LONGEST_LEG: f64 = 0.30;
 const SIDE_REACH: f64 = 0.09;
 /// Shortest flight, s: the legs must fold and take up the landing posture.
 const SHORTEST_FLIGHT: f64 = 0.28;
+/// Longer flight where the robot jumps off a box, s per metre: the feet must clear its edge.
+const FLIGHT_PER_DROP: f64 = 0.5;
+/// Longest stance on all feet, s.
+const LONGEST_FOUR_LEGS: f64 = 0.55;
+/// Longest stance on two feet, s: it is unstable open loop.
+const LONGEST_TWO_LEGS: f64 = 0.35;
 
 pub(crate) type SrbStage = Stage<f64, srb_opt::State<f64, PHASES>, NX, NU, NI>;
 
@@ -82,11 +88,19 @@ impl Task {
         problem.reach_lower.z = problem.reach_lower.z.max(-LONGEST_LEG);
         problem.reach_lower.y = problem.reach_lower.y.max(-SIDE_REACH);
         problem.reach_upper.y = problem.reach_upper.y.min(SIDE_REACH);
+        let drop = problem.edge.map_or(0.0, |edge| edge.drop);
+        let shortest = SHORTEST_FLIGHT + FLIGHT_PER_DROP * drop;
         for phase in &mut problem.phases[..problem.phase_count] {
-            if !phase.contacts.contains(&true) {
-                phase.min_duration = phase.min_duration.max(SHORTEST_FLIGHT);
-                phase.duration_guess = phase.duration_guess.max(SHORTEST_FLIGHT);
+            let feet = phase.contacts.iter().filter(|on| **on).count();
+            if feet == 0 {
+                phase.min_duration = phase.min_duration.max(shortest);
+            } else if feet < FOOT_COUNT {
+                phase.max_duration = phase.max_duration.min(LONGEST_TWO_LEGS);
+            } else {
+                phase.max_duration = phase.max_duration.min(LONGEST_FOUR_LEGS);
             }
+            let (low, high) = (phase.min_duration, phase.max_duration);
+            phase.duration_guess = phase.duration_guess.clamp(low, high);
         }
         problem
             .check()
