@@ -19,6 +19,8 @@ use so3::{Scalar, math};
 pub(crate) struct Elimination<T, const N: usize> {
     /// Permuted columns. Row k: multipliers of L before column k, U from k to r, W after.
     lu: [[T; N]; N],
+    /// 1 / U_kk.
+    inverse: [T; N],
     /// Reduced right-hand side, then p.
     rhs: [T; N],
     /// Variable of each permuted column.
@@ -42,6 +44,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     pub(crate) const fn new() -> Self {
         Self {
             lu: [[T::ZERO; N]; N],
+            inverse: [T::ZERO; N],
             rhs: [T::ZERO; N],
             perm: [0; N],
             id: [0; N],
@@ -126,20 +129,21 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             let f = if k < self.fixed {
                 f
             } else {
-                let f = f / at(r, k);
+                let f = f * at(&self.inverse, k);
                 sub_scaled(span_mut(work, k + 1, N), f, span(r, k + 1, N));
                 f
             };
             put(work, k, f);
             rhs -= f * *c;
         }
-        // The pivot is the entry that is largest for variables measured by their own curvature.
-        let (mut pivot, mut best) = (rank, T::ZERO);
+        // The pivot is the entry that is largest for variables measured by their own curvature;
+        // w²/c is compared crosswise, without a division.
+        let (mut pivot, mut best, mut best_scale) = (rank, T::ZERO, T::ONE);
         for (j, (w, p)) in work.iter().zip(&self.perm).enumerate().skip(rank) {
-            let curvature = at(row(problem.hessian, *p), *p);
-            let merit = *w * *w / (curvature + T::ONE);
-            if merit > best {
-                (pivot, best) = (j, merit);
+            let scale = at(row(problem.hessian, *p), *p) + T::ONE;
+            let square = *w * *w;
+            if square * best_scale > best * scale {
+                (pivot, best, best_scale) = (j, square, scale);
             }
         }
         let size = max_abs(a);
@@ -158,6 +162,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         copy(row_mut(&mut self.lu, rank), work);
         put(&mut self.rhs, rank, rhs);
         put(&mut self.id, rank, i);
+        put(&mut self.inverse, rank, T::ONE / at(work.as_slice(), pivot));
         if pivot != rank && pivot < N {
             self.perm.swap(rank, pivot);
             for r in self.lu.iter_mut().take(rank + 1) {
@@ -186,7 +191,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                     p -= f * at(&self.rhs, k + 1 + m);
                 }
             }
-            let inverse = T::ONE / at(r.as_slice(), k);
+            let inverse = at(&self.inverse, k);
             for w in span_mut(r, rank, N) {
                 *w *= inverse;
             }

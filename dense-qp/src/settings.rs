@@ -16,13 +16,13 @@ pub struct Settings<T> {
 }
 
 impl<T: Scalar> Default for Settings<T> {
-    /// f64: 1000 iterations, feasibility 1e-9, optimality 1e-10; f32: 1e-5 and 1e-4.
+    /// f64: 1000 iterations, feasibility 1e-9, optimality 1e-10; f32: 1e-4 and 3e-4.
     fn default() -> Self {
         let double = is_double::<T>();
         Self {
             max_iterations: 1000,
-            feasibility: T::of(if double { 1e-9 } else { 1e-5 }),
-            optimality: T::of(if double { 1e-10 } else { 1e-4 }),
+            feasibility: T::of(if double { 1e-9 } else { 1e-4 }),
+            optimality: T::of(if double { 1e-10 } else { 3e-4 }),
         }
     }
 }

@@ -165,8 +165,16 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             }
             self.iterations += 1;
             self.correct();
-            if let Pass::Stop(status) = self.search() {
-                return Ok(status);
+            match self.search() {
+                Pass::Feasible => {}
+                // A contradiction that the data do not confirm comes from round-off in x: correct
+                // x and look again.
+                Pass::Stop(Status::Numerical) if stalls < 4 => {
+                    stalls += 1;
+                    self.evaluate_gradient();
+                    continue;
+                }
+                Pass::Stop(status) => return Ok(status),
             }
             let scale = self.evaluate_gradient();
             let residual = self.reduced_residual();
