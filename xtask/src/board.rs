@@ -1,4 +1,4 @@
-//! The boards that the image runs on, as QEMU knows them.
+//! The boards that the images run on, as QEMU knows them.
 
 /// A board and how to build for it.
 pub(crate) struct Board {
@@ -8,7 +8,12 @@ pub(crate) struct Board {
     pub(crate) processor: &'static str,
     pub(crate) target: &'static str,
     pub(crate) rustflags: &'static [&'static str],
+    /// The images of `firmware/smoke/src/bin` that run on it.
+    pub(crate) images: &'static [&'static str],
 }
+
+/// The quickest image to build: the proof that the proof can fail needs only one.
+pub(crate) const SMALLEST: &str = "basics-f32";
 
 pub(crate) const BOARDS: [Board; 3] = [
     Board {
@@ -16,12 +21,21 @@ pub(crate) const BOARDS: [Board; 3] = [
         processor: "Cortex-M7, f32 and f64 in hardware",
         target: "thumbv7em-none-eabihf",
         rustflags: &["-Ctarget-cpu=cortex-m7"],
+        images: &[
+            "basics-f64",
+            SMALLEST,
+            "a1-f64",
+            "a1-f32",
+            "icub-f64",
+            "icub-f32",
+        ],
     },
     Board {
         name: "mps2-an386",
         processor: "Cortex-M4F, f64 in software",
         target: "thumbv7em-none-eabihf",
         rustflags: &["-Ctarget-cpu=cortex-m4"],
+        images: &["basics-f64", SMALLEST, "a1-f32"],
     },
     Board {
         // `-Ctarget-cpu=cortex-m55` crashes LLVM (2026-11) while it builds `core`: the plain target, without Helium.
@@ -29,15 +43,35 @@ pub(crate) const BOARDS: [Board; 3] = [
         processor: "Cortex-M55, f64 in software",
         target: "thumbv8m.main-none-eabihf",
         rustflags: &[],
+        images: &[SMALLEST, "a1-f32"],
     },
 ];
 
-/// The names, for the command line.
-pub(crate) const NAMES: [&str; 3] = [BOARDS[0].name, BOARDS[1].name, BOARDS[2].name];
+/// Which boards and images a command works on, and how it builds for them.
+#[derive(clap::Args)]
+pub(crate) struct Selection {
+    /// Where `core` comes from.
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) core: crate::bare::Choice,
+    /// Only this board.
+    #[arg(long, value_parser = BOARDS.map(|board| board.name))]
+    board: Option<String>,
+    /// Only this image.
+    #[arg(long, value_parser = BOARDS[0].images.to_vec())]
+    image: Option<String>,
+}
 
-/// The boards called for: the one named, or all.
-pub(crate) fn chosen(name: Option<&str>) -> impl Iterator<Item = &'static Board> {
-    BOARDS
-        .iter()
-        .filter(move |board| name.is_none_or(|only| only == board.name))
+impl Selection {
+    /// The boards called for: the one named, or all.
+    pub(crate) fn boards(&self) -> impl Iterator<Item = &'static Board> {
+        BOARDS
+            .iter()
+            .filter(|board| self.board.as_deref().is_none_or(|only| only == board.name))
+    }
+
+    /// A board's images called for: the one named, or all.
+    pub(crate) fn images(&self, board: &Board) -> impl Iterator<Item = &'static str> {
+        let images = board.images.iter().copied();
+        images.filter(|image| self.image.as_deref().is_none_or(|only| only == *image))
+    }
 }

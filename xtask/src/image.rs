@@ -1,4 +1,4 @@
-//! Building the bare-metal image of `firmware/smoke`.
+//! Building the bare-metal images of `firmware/smoke`.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -6,51 +6,51 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result};
 use serde_json::Value;
 
-use crate::bare::{Bare, Choice};
+use crate::bare::Bare;
 use crate::board::Board;
 use crate::run;
 
-const PACKAGE: &str = "saltus-smoke";
-
-/// The command that builds the image.
-pub(crate) fn command(board: &Board, core: Choice) -> Result<Command> {
-    command_with(board, core, board.rustflags)
+/// An image to build.
+pub(crate) struct Image<'a> {
+    pub(crate) board: &'a Board,
+    pub(crate) name: &'a str,
+    pub(crate) bare: &'a Bare,
 }
 
-fn command_with(board: &Board, core: Choice, rustflags: &[&str]) -> Result<Command> {
-    let bare = Bare::find(board.target, core)?;
-    println!("{}: {}; {bare}", board.name, board.processor);
-    let mut build = bare.build_with(rustflags);
-    build
-        .current_dir(run::root().join("firmware"))
-        .args(["--package", PACKAGE, "--locked"])
-        .env("SALTUS_BOARD", board.name);
-    Ok(build)
-}
+impl Image<'_> {
+    /// The command that builds the image.
+    pub(crate) fn command(&self) -> Command {
+        self.command_with(self.board.rustflags)
+    }
 
-/// Builds the image and returns where it is.
-pub(crate) fn build(board: &Board, core: Choice) -> Result<PathBuf> {
-    build_with(board, core, board.rustflags, &[])
-}
+    fn command_with(&self, rustflags: &[&str]) -> Command {
+        let mut build = self.bare.build_with(rustflags);
+        build
+            .current_dir(run::root().join("firmware"))
+            .args(["--locked", "--package", "saltus-smoke", "--bin", self.name])
+            .env("SALTUS_BOARD", self.board.name);
+        build
+    }
 
-/// As [`build`], with other compiler flags and with features.
-pub(crate) fn build_with(
-    board: &Board,
-    core: Choice,
-    rustflags: &[&str],
-    features: &[&str],
-) -> Result<PathBuf> {
-    let mut build = command_with(board, core, rustflags)?;
-    build.args([
-        "--quiet",
-        "--message-format=json-render-diagnostics",
-        "--features",
-    ]);
-    build.arg(features.join(",")).stderr(Stdio::inherit());
-    let messages = run::stdout(&mut build)?;
-    let executable = messages
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .find_map(|message| message["executable"].as_str().map(PathBuf::from));
-    executable.with_context(|| format!("cargo built no executable of {PACKAGE}"))
+    /// Builds the image and returns where it is.
+    pub(crate) fn build(&self) -> Result<PathBuf> {
+        self.build_with(self.board.rustflags, &[])
+    }
+
+    /// As [`Image::build`], with other compiler flags and with features.
+    pub(crate) fn build_with(&self, rustflags: &[&str], features: &[&str]) -> Result<PathBuf> {
+        let mut build = self.command_with(rustflags);
+        build.args([
+            "--quiet",
+            "--message-format=json-render-diagnostics",
+            "--features",
+        ]);
+        build.arg(features.join(",")).stderr(Stdio::inherit());
+        let messages = run::stdout(&mut build)?;
+        let executable = messages
+            .lines()
+            .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+            .find_map(|message| message["executable"].as_str().map(PathBuf::from));
+        executable.with_context(|| format!("cargo built no executable of {}", self.name))
+    }
 }

@@ -7,14 +7,13 @@ use addr2line::Loader;
 use anyhow::{Context, Result, anyhow};
 use object::{Object, ObjectSection, ObjectSymbol, RelocationTarget};
 
-use crate::bare::Choice;
-use crate::board::Board;
-use crate::{image, run};
+use crate::image::Image;
+use crate::run;
 
 /// Every place, as the chain of inlined calls around it, innermost first.
-pub(crate) fn find(board: &Board, core: Choice) -> Result<Vec<String>> {
-    let flags = [board.rustflags, &["-Clink-arg=--emit-relocs"]].concat();
-    let path = image::build_with(board, core, &flags, &["find_panics"])?;
+pub(crate) fn find(image: &Image<'_>) -> Result<Vec<String>> {
+    let flags = [image.board.rustflags, &["-Clink-arg=--emit-relocs"]].concat();
+    let path = image.build_with(&flags, &["find_panics"])?;
     let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
     let elf = object::File::parse(&*bytes)?;
     let lines = Loader::new(&path).map_err(|e| anyhow!("{}: {e}", path.display()))?;

@@ -6,10 +6,11 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
-use crate::bare::Choice;
-use crate::board::{self, Board};
+use crate::bare::Bare;
+use crate::board::{Board, Selection};
+use crate::image::Image;
 use crate::probe::{self, Call};
-use crate::{image, run};
+use crate::run;
 
 /// Every instruction takes 2^6 ns of virtual time: more than one SysTick period, so that none is lost in the count.
 const ICOUNT: &str = "shift=6,align=off,sleep=off";
@@ -22,59 +23,67 @@ const LOOP_INSTRUCTIONS: f64 = 2.0;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Where `core` comes from.
-    #[arg(long, value_enum, default_value = "auto")]
-    core: Choice,
-    /// Only this board.
-    #[arg(long, value_parser = board::NAMES)]
-    board: Option<String>,
+    #[command(flatten)]
+    selection: Selection,
 }
 
 /// The most that calls of one algorithm cost.
-pub(crate) struct Worst {
+struct Worst {
     /// `subject/scalar/algorithm`.
-    pub(crate) label: String,
-    pub(crate) calls: usize,
-    pub(crate) instructions: f64,
-    pub(crate) stack: u32,
+    label: String,
+    calls: usize,
+    instructions: f64,
+    stack: u32,
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let host = on_host()?;
-    for board in board::chosen(args.board.as_deref()) {
-        let (calls, worst) = on_board(board, args.core)?;
-        print(&worst);
-        let equal = probe::compare(&host, &calls)
-            .with_context(|| format!("{} differs from the host", board.name))?;
-        println!(
-            "  {equal} numbers of {} calls equal the host's bit for bit",
-            calls.len()
-        );
+    let mut total = 0;
+    for board in args.selection.boards() {
+        let bare = Bare::find(board.target, args.selection.core)?;
+        println!("{}: {}; {bare}", board.name, board.processor);
+        for name in args.selection.images(board) {
+            let image = Image {
+                board,
+                name,
+                bare: &bare,
+            };
+            let (calls, worst) = on_board(&image).context(name)?;
+            print(&worst);
+            let equal = probe::compare(&on_host(name)?, &calls)
+                .with_context(|| format!("{name} on {} differs from the host", board.name))?;
+            println!(
+                "  {name}: {equal} numbers of {} calls equal the host's",
+                calls.len()
+            );
+            total += equal;
+        }
     }
-    println!("qemu: every number equals the host's");
+    ensure!(total > 0, "no such image on such a board");
+    println!("qemu: {total} numbers equal the host's bit for bit");
     Ok(())
 }
 
-fn on_host() -> Result<Vec<Call>> {
+fn on_host(part: &str) -> Result<Vec<Call>> {
     let mut cargo = run::cargo();
-    let program = cargo.current_dir(run::root().join("firmware")).args([
+    cargo.current_dir(run::root().join("firmware"));
+    cargo.args([
         "run",
         "--quiet",
         "--release",
         "--locked",
         "--package",
         "saltus-probe",
+        part,
     ]);
-    probe::parse(&run::stdout(program)?).context("the host's probe")
+    probe::parse(&run::stdout(&mut cargo)?).context("the host's probe")
 }
 
 /// Runs the image; returns its calls and what they cost at worst.
-pub(crate) fn on_board(board: &Board, core: Choice) -> Result<(Vec<Call>, Vec<Worst>)> {
+fn on_board(image: &Image<'_>) -> Result<(Vec<Call>, Vec<Worst>)> {
     if !run::exists("qemu-system-arm") {
         run::install_debian(&["qemu-system-arm"])?;
     }
-    let text = simulate(board, &image::build(board, core)?)?;
-    let mut calls = probe::parse(&text).with_context(|| board.name)?;
+    let mut calls = probe::parse(&simulate(image.board, &image.build()?)?)?;
     let clock: Vec<Call> = calls
         .extract_if(.., |call| call.label.starts_with("clock/"))
         .collect();

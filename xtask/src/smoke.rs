@@ -1,35 +1,49 @@
 //! `cargo xtask smoke`: no panic is reachable from any public algorithm.
 //!
-//! The image's panic handler calls a function that exists nowhere, so the image links only if the handler was removed
+//! The images' panic handler calls a function that exists nowhere, so an image links only if the handler was removed
 //! as unreachable. A proof that cannot fail is none: with one panic introduced the same link must fail, and must name
 //! the missing function.
 
 use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSymbol};
 
-use crate::bare::Choice;
-use crate::board::{self, Board};
-use crate::{image, panics, run};
+use crate::bare::Bare;
+use crate::board::{SMALLEST, Selection};
+use crate::image::Image;
+use crate::{panics, run};
 
 /// The function the panic handler calls.
 const UNDEFINED: &str = "saltus_panic_is_reachable";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Where `core` comes from.
-    #[arg(long, value_enum, default_value = "auto")]
-    core: Choice,
-    /// Only this board.
-    #[arg(long, value_parser = board::NAMES)]
-    board: Option<String>,
+    #[command(flatten)]
+    selection: Selection,
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    for board in board::chosen(args.board.as_deref()) {
-        links_without_panic(board, args.core)?;
-        fails_with_panic(board, args.core)?;
+    let mut linked = 0;
+    for board in args.selection.boards() {
+        let bare = Bare::find(board.target, args.selection.core)?;
+        println!("{}: {}; {bare}", board.name, board.processor);
+        fails_with_panic(&Image {
+            board,
+            name: SMALLEST,
+            bare: &bare,
+        })?;
+        for name in args.selection.images(board) {
+            links_without_panic(&Image {
+                board,
+                name,
+                bare: &bare,
+            })
+            .context(name)?;
+            println!("  {name} links: no panic is reachable");
+            linked += 1;
+        }
     }
-    println!("smoke: no panic is reachable, and the proof fails when one is");
+    ensure!(linked > 0, "no such image on such a board");
+    println!("smoke: no panic is reachable in {linked} images, and the proof fails when one is");
     Ok(())
 }
 
@@ -38,22 +52,21 @@ fn undefined() -> String {
     format!("undefined symbol: {UNDEFINED}")
 }
 
-fn links_without_panic(board: &Board, core: Choice) -> Result<()> {
-    let mut build = image::command(board, core)?;
-    let output = run::output(&mut build)?;
+fn links_without_panic(image: &Image<'_>) -> Result<()> {
+    let output = run::output(&mut image.command())?;
     if !output.status.success() {
         let errors = String::from_utf8_lossy(&output.stderr);
         if !errors.contains(&undefined()) {
             bail!("the image does not build:\n{errors}");
         }
-        let found = panics::find(board, core)?;
+        let found = panics::find(image)?;
         bail!(
             "a panic is reachable from {} places:\n{}",
             found.len(),
             found.join("\n")
         );
     }
-    let path = image::build(board, core)?;
+    let path = image.build()?;
     let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
     let elf = object::File::parse(&*bytes)?;
     let names: Vec<&str> = elf
@@ -70,13 +83,11 @@ fn links_without_panic(board: &Board, core: Choice) -> Result<()> {
         panicking.is_empty(),
         "the image contains panicking code: {panicking:?}"
     );
-    println!("  links: no panic is reachable");
     Ok(())
 }
 
-fn fails_with_panic(board: &Board, core: Choice) -> Result<()> {
-    let mut build = image::command(board, core)?;
-    let output = run::output(build.args(["--features", "introduce_panic"]))?;
+fn fails_with_panic(image: &Image<'_>) -> Result<()> {
+    let output = run::output(image.command().args(["--features", "introduce_panic"]))?;
     if output.status.success() {
         bail!("the image links with a panic introduced: the proof proves nothing");
     }
@@ -85,6 +96,9 @@ fn fails_with_panic(board: &Board, core: Choice) -> Result<()> {
         errors.contains(&undefined()),
         "the build with a panic introduced failed for another reason:\n{errors}"
     );
-    println!("  with a panic introduced: {UNDEFINED} is undefined, as it must be");
+    println!(
+        "  {} with a panic introduced: {UNDEFINED} is undefined, as it must be",
+        image.name
+    );
     Ok(())
 }

@@ -5,10 +5,10 @@ use rbd_core::joint::Kind;
 use rbd_core::model::{BaseBody, Body, Link, bodies_f32};
 use so3::Scalar;
 
-pub(crate) const JOINTS: usize = 9;
+const JOINTS: usize = 9;
 
 /// A fixed base that carries two identical arms of two joints and one of five.
-pub(crate) struct Kinds;
+pub struct Kinds;
 
 static BASE: BaseBody<f64> = BaseBody::<f64>::EMPTY;
 static BASE_F32: BaseBody<f32> = BaseBody::<f32>::EMPTY;

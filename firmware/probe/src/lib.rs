@@ -20,10 +20,12 @@ mod introduced;
 use core::fmt;
 use core::marker::PhantomData;
 
-use kinds::Kinds;
-use rbd_core::Tree;
+use a1_model::A1;
+use icub_model::Icub23;
+use rbd_core::{Frame, Model, Tree};
 use so3::Scalar;
 
+pub use kinds::Kinds;
 pub use numbers::Numbers;
 
 /// What was called: `so3/f64/exp`, `a1/f32/rnea`.
@@ -67,28 +69,59 @@ impl Real for f64 {
     const NAME: &'static str = "f64";
 }
 
-/// Runs every algorithm in both scalars.
-pub fn run<R: Recorder>(recorder: &mut R) {
-    run_in::<f64, R>(recorder);
-    run_in::<f32, R>(recorder);
-    #[cfg(feature = "introduce_panic")]
-    introduced::run(recorder);
-}
-
-fn run_in<T: Real, R: Recorder>(recorder: &mut R)
+/// Elementary functions, rotations, spatial algebra, and the dynamics of a small robot with every joint kind, as a
+/// const model and as a model built at run time.
+pub fn basics<T: Real, R: Recorder>(recorder: &mut R)
 where
-    Kinds: Tree<T, { kinds::JOINTS }>,
+    Kinds: Tree<T, 9>,
 {
     let on = &mut Subject::new(recorder);
     elementary::run::<T, R>(on);
     rotations::run::<T, R>(on);
     spatial::run::<T, R>(on);
-    rbd::run::<T, R, _, { kinds::JOINTS }, { 6 + kinds::JOINTS }>(
-        on,
-        ["kinds", "kinds-table"],
-        &Kinds,
-        &kinds::hand(),
-    );
+    rbd::run::<T, R, _, 9, 15>(on, "kinds", &Kinds, &kinds::hand());
+    rbd::run_table::<T, R, _, 9, 15>(on, "kinds-table", &Kinds, &kinds::hand());
+    #[cfg(feature = "introduce_panic")]
+    introduced::run(recorder);
+}
+
+/// The dynamics of A1.
+pub fn a1<T: Real, R: Recorder>(recorder: &mut R)
+where
+    A1: Model<T, 12>,
+{
+    let on = &mut Subject::new(recorder);
+    rbd::run::<T, R, _, 12, 18>(on, "a1", &A1, &frame(&A1, "RL_foot"));
+}
+
+/// The dynamics of iCub-23.
+pub fn icub<T: Real, R: Recorder>(recorder: &mut R)
+where
+    Icub23: Model<T, 23>,
+{
+    let on = &mut Subject::new(recorder);
+    rbd::run::<T, R, _, 23, 29>(on, "icub", &Icub23, &frame(&Icub23, "r_sole"));
+}
+
+/// A part of the probe, with the name of the image that runs it.
+pub type Part<R> = (&'static str, fn(&mut R));
+
+/// All parts.
+#[must_use]
+pub fn parts<R: Recorder>() -> [Part<R>; 6] {
+    [
+        ("basics-f64", basics::<f64, R>),
+        ("basics-f32", basics::<f32, R>),
+        ("a1-f64", a1::<f64, R>),
+        ("a1-f32", a1::<f32, R>),
+        ("icub-f64", icub::<f64, R>),
+        ("icub-f32", icub::<f32, R>),
+    ]
+}
+
+/// A frame of a robot; its base if there is none of that name.
+fn frame<T: Real, M: Model<T, N>, const N: usize>(model: &M, name: &str) -> Frame<T> {
+    model.frame(name).unwrap_or(Frame::IDENTITY)
 }
 
 /// One subject's calls on one recorder, in one scalar.

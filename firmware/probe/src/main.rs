@@ -1,9 +1,9 @@
-//! The probe on the host: writes what the image writes, without cost lines.
+//! The probe on the host: `saltus-probe a1-f64` writes what that image writes, without cost lines.
 
 use core::hint::black_box;
 use std::io::{BufWriter, StdoutLock, Write, stdout};
 
-use saltus_probe::{Label, Recorder, run};
+use saltus_probe::{Label, Recorder, parts};
 
 struct Host {
     out: BufWriter<StdoutLock<'static>>,
@@ -32,11 +32,16 @@ impl Recorder for Host {
 }
 
 fn main() -> std::io::Result<()> {
+    let wanted = std::env::args().nth(1).unwrap_or_default();
+    let Some((_, part)) = parts().into_iter().find(|(name, _)| *name == wanted) else {
+        let names = parts::<Host>().map(|(name, _)| name).join(", ");
+        return Err(std::io::Error::other(format!("name one of: {names}")));
+    };
     let mut host = Host {
         out: BufWriter::new(stdout().lock()),
         failed: None,
     };
-    run(&mut host);
+    part(&mut host);
     let result = host.out.flush();
     host.keep_error(result);
     host.failed.map_or(Ok(()), Err)

@@ -23,11 +23,13 @@ impl Console {
         })
     }
 
+    #[inline(never)]
     pub(crate) fn text(&mut self, text: &str) {
         text.bytes().for_each(|byte| self.byte(byte));
     }
 
     /// Sixteen hexadecimal digits.
+    #[inline(never)]
     pub(crate) fn hex(&mut self, bits: u64) {
         for nibble in (0..16).rev().map(|place| (bits >> (4 * place)) as u8 & 0xf) {
             self.byte(if nibble < 10 {

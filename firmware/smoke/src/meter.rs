@@ -15,6 +15,9 @@ const RELOAD: u32 = 0x00ff_ffff;
 /// Bytes below the stack pointer that are watched.
 const WINDOW: u32 = 128 * 1024;
 
+/// Bytes that keep their paint below the deepest word a call wrote.
+const QUIET: u32 = 16 * 1024;
+
 const PAINT: u32 = 0xa5a5_a5a5;
 
 /// What no measurement returns: the counter or the window was too small.
@@ -83,13 +86,16 @@ fn paint() -> u32 {
         core::arch::asm!(
             "mov {top}, sp",
             "mov {address}, sp",
-            "2: str {paint}, [{address}, #-4]!",
-            "subs {words}, {words}, #1",
+            "2: stmdb {address}!, {{r0, r1, r2, r3}}",
+            "subs {turns}, {turns}, #1",
             "bne 2b",
             top = out(reg) top,
             address = out(reg) _,
-            paint = in(reg) PAINT,
-            words = inout(reg) WINDOW / 4 => _,
+            turns = inout(reg) WINDOW / 16 => _,
+            in("r0") PAINT,
+            in("r1") PAINT,
+            in("r2") PAINT,
+            in("r3") PAINT,
             options(nostack),
         );
     }
@@ -97,15 +103,24 @@ fn paint() -> u32 {
 }
 
 /// Bytes between `top` and the deepest word that is not painted any more.
+///
+/// Looks down from `top` until a [`QUIET`] stretch has kept its paint, which saves reading the whole window after
+/// every call; a call that skips so much stack and then uses more would be measured short.
 #[inline(always)]
 fn depth_below(top: u32) -> u32 {
-    let bottom = top - WINDOW;
-    // SAFETY: the window is memory of the stack, as in `paint`; this only reads.
-    let painted = |address: u32| unsafe { (address as *const u32).read_volatile() } == PAINT;
-    match (bottom..top).step_by(4).find(|&address| !painted(address)) {
-        Some(deepest) if deepest > bottom => top - deepest,
-        Some(_) => SATURATED,
-        None => 0,
+    let mut deepest = top;
+    let mut address = top;
+    while address > top - WINDOW && deepest - address < QUIET {
+        address -= 4;
+        // SAFETY: the window is memory of the stack, as in `paint`; this only reads.
+        if unsafe { (address as *const u32).read_volatile() } != PAINT {
+            deepest = address;
+        }
+    }
+    if top - deepest + QUIET > WINDOW {
+        SATURATED
+    } else {
+        top - deepest
     }
 }
 

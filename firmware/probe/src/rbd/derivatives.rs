@@ -1,11 +1,13 @@
-//! Derivatives of inverse and forward dynamics, and the mass matrix solved and inverted.
+//! Derivatives of inverse and forward dynamics, of a frame's motion and of the momentum.
 
 use rbd_core::{
-    AbaDerivatives, AbaDerivativesWorkspace, BlockMatrix, DerivativesWorkspace, MassFactors,
-    MassMatrix, Posture, RneaDerivatives, Tree, aba_derivatives, aba_derivatives_with_forces, crba,
-    mass_matrix_inverse, rnea_derivatives, rnea_derivatives_with_forces,
+    AbaDerivatives, AbaDerivativesWorkspace, AccelerationKind, Axes, CentroidalDerivatives,
+    DerivativesWorkspace, FrameDerivatives, Posture, RneaDerivatives, Tree, aba_derivatives,
+    aba_derivatives_with_forces, centroidal_derivatives, frame_derivatives, rnea_derivatives,
+    rnea_derivatives_with_forces,
 };
 
+use super::kinematics::Place;
 use super::state::State;
 use crate::{Real, Recorder, Subject};
 
@@ -14,10 +16,12 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: 
     model: &M,
     posture: &Posture<T, N>,
     state: &State<T, N>,
+    place: &Place<'_, T, N>,
 ) {
     inverse::<T, R, M, N>(on, model, posture, state);
     forward::<T, R, M, N>(on, model, posture, state);
-    factors::<T, R, M, N, V>(on, model, posture, state);
+    moving_frame(on, model, place);
+    momentum::<T, R, M, N, V>(on, model, posture, state);
 }
 
 fn inverse<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
@@ -98,53 +102,60 @@ fn forward<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
     });
 }
 
-fn factors<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+fn moving_frame<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
+    on: &mut Subject<'_, T, R>,
+    model: &M,
+    place: &Place<'_, T, N>,
+) {
+    let Place {
+        frame,
+        poses,
+        motions,
+        ..
+    } = place;
+    let mut out = FrameDerivatives::ZERO;
+    for (kind, axes) in [
+        (AccelerationKind::Spatial, Axes::Local),
+        (AccelerationKind::Classical, Axes::World),
+        (AccelerationKind::Classical, Axes::LocalWorldAligned),
+    ] {
+        let input = (model, poses, motions, frame, &mut out);
+        on.call(
+            "frame_derivatives",
+            input,
+            |(m, poses, motions, frame, out)| {
+                frame_derivatives(m, poses, motions, frame, kind, axes, out);
+                &*out
+            },
+        );
+    }
+}
+
+fn momentum<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
     on: &mut Subject<'_, T, R>,
     model: &M,
     posture: &Posture<T, N>,
     state: &State<T, N>,
 ) {
-    let mut mass = MassMatrix::ZERO;
-    crba(model, posture, &mut mass);
-    let (mut factors, mut out) = (MassFactors::new(), BlockMatrix::ZERO);
+    let State {
+        velocity,
+        acceleration,
+        ..
+    } = state;
+    let at = (model, posture, velocity, acceleration);
+    let (mut ws, mut out) = (DerivativesWorkspace::new(), CentroidalDerivatives::ZERO);
     on.call(
-        "MassFactors::factor",
-        (model, &mass, &mut factors),
-        |(m, mass, factors)| {
-            factors.factor(m, mass);
-        },
-    );
-    on.call(
-        "MassFactors::solve",
-        (&factors, &state.effort),
-        |(factors, b)| factors.solve(b),
-    );
-    on.call(
-        "MassFactors::inverse",
-        (&factors, &mut out),
-        |(factors, out)| {
-            factors.inverse(out);
+        "centroidal_derivatives",
+        (at, &mut ws, &mut out),
+        |((m, p, v, a), ws, out)| {
+            centroidal_derivatives(m, p, v, a, ws, out);
             &*out
         },
     );
-    on.call(
-        "MassFactors::solve_columns",
-        (&factors, &mut out),
-        |(factors, b)| {
-            factors.solve_columns(b);
-            &*b
-        },
-    );
-    let input = (model, &mass, &mut factors, &mut out);
-    on.call("mass_matrix_inverse", input, |(m, mass, factors, out)| {
-        mass_matrix_inverse(m, mass, factors, out);
-        &*out
+    on.call("ForceColumns::mul", (&out.map, velocity), |(columns, v)| {
+        columns.mul(v)
     });
-    let v = &state.velocity;
-    on.call(
-        "BlockMatrix::mul",
-        (&out, v.base.to_array(), &v.joints),
-        |(m, base, joints)| m.mul(base, joints),
-    );
-    on.call("BlockMatrix::to_dense", &out, |m| m.to_dense::<V>());
+    on.call("ForceColumns::to_dense", &out.map, |columns| {
+        columns.to_dense::<V>()
+    });
 }

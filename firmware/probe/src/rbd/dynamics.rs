@@ -2,19 +2,20 @@
 
 use rbd_core::linear::{ldl_back_substitute, ldl_factor, ldl_solve};
 use rbd_core::{
-    AbaWorkspace, MassMatrix, Posture, Tree, aba, aba_with_forces, crba, generalized_gravity,
-    joint_friction, mass_solve, nonlinear_effects, rnea, rnea_with_forces,
+    AbaWorkspace, MassMatrix, Posture, Tangent, Tree, aba, aba_with_forces, crba,
+    generalized_gravity, joint_friction, mass_solve, nonlinear_effects, rnea, rnea_with_forces,
 };
 
 use super::state::State;
 use crate::{Real, Recorder, Subject};
 
-pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+/// Returns the acceleration of the free robot.
+pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
     on: &mut Subject<'_, T, R>,
     model: &M,
     posture: &Posture<T, N>,
     state: &State<T, N>,
-) {
+) -> Tangent<T, N> {
     let State {
         velocity,
         acceleration,
@@ -38,7 +39,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: 
         rnea_with_forces(m, p, v, a, base, f)
     });
     let mut ws = AbaWorkspace::new();
-    on.call(
+    let free = on.call(
         "aba",
         (at, velocity, effort, &mut ws),
         |((m, p), v, tau, ws)| aba(m, p, v, tau, ws),
@@ -54,15 +55,15 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: 
     on.call("joint_friction", drag, |(limits, qd, smoothing)| {
         joint_friction(limits, qd, smoothing)
     });
-    mass_matrix::<T, R, M, N, V>(on, model, posture, state);
+    free
 }
 
-fn mass_matrix<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+pub(super) fn mass_matrix<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
     on: &mut Subject<'_, T, R>,
     model: &M,
     posture: &Posture<T, N>,
     state: &State<T, N>,
-) {
+) -> MassMatrix<T, N> {
     let mut mass = MassMatrix::ZERO;
     on.call("crba", (model, posture, &mut mass), |(m, p, out)| {
         crba(m, p, out);
@@ -89,4 +90,5 @@ fn mass_matrix<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usi
     });
     let mut copy = mass.joints;
     on.call("ldl_solve", (&mut copy, b), |(m, b)| ldl_solve(m, b));
+    mass
 }

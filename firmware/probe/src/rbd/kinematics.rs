@@ -8,13 +8,24 @@ use rbd_core::{
 use super::state::State;
 use crate::{Real, Recorder, Subject};
 
-pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+/// What later calls need to know of a frame on the moving robot.
+pub(super) struct Place<'a, T: Real, const N: usize> {
+    pub(super) frame: &'a Frame<T>,
+    pub(super) poses: Kinematics<T, N>,
+    pub(super) motions: BodyMotions<T, N>,
+    /// Local-world-aligned.
+    pub(super) jacobian: FrameJacobian<T, N>,
+    /// Classical acceleration of the frame at rest of the joints, J̇ν.
+    pub(super) bias: Motion<T>,
+}
+
+pub(super) fn run<'a, T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
     on: &mut Subject<'_, T, R>,
     model: &M,
     posture: &Posture<T, N>,
     state: &State<T, N>,
-    frame: &Frame<T>,
-) {
+    frame: &'a Frame<T>,
+) -> Place<'a, T, N> {
     let mut poses = Kinematics::IDENTITY;
     on.call(
         "forward_kinematics",
@@ -30,8 +41,15 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: 
     on.call("Kinematics::link", (&poses, frame.link), |(poses, link)| {
         poses.link(link)
     });
-    motions(on, model, posture, state, frame);
-    jacobians::<T, R, M, N, V>(on, model, &poses, state, frame);
+    let (motions, bias) = motions(on, model, posture, state, frame);
+    let jacobian = jacobians::<T, R, M, N, V>(on, model, &poses, state, frame);
+    Place {
+        frame,
+        poses,
+        motions,
+        jacobian,
+        bias,
+    }
 }
 
 fn motions<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
@@ -40,7 +58,7 @@ fn motions<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
     posture: &Posture<T, N>,
     state: &State<T, N>,
     frame: &Frame<T>,
-) {
+) -> (BodyMotions<T, N>, Motion<T>) {
     let State {
         velocity,
         acceleration,
@@ -64,6 +82,11 @@ fn motions<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
             &*out
         },
     );
+    let bias = on.call(
+        "BodyMotions::frame_classical_acceleration",
+        (&motions, frame),
+        |(x, frame)| x.frame_classical_acceleration(frame),
+    );
     let moving = (at, velocity, acceleration, &mut motions);
     on.call("forward_accelerations", moving, |((m, p), v, a, out)| {
         forward_accelerations(m, p, v, a, out);
@@ -76,11 +99,7 @@ fn motions<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
     on.call("BodyMotions::frame_acceleration", place, |(x, frame)| {
         x.frame_acceleration(frame)
     });
-    on.call(
-        "BodyMotions::frame_classical_acceleration",
-        place,
-        |(x, frame)| x.frame_classical_acceleration(frame),
-    );
+    (motions, bias)
 }
 
 fn jacobians<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
@@ -89,7 +108,7 @@ fn jacobians<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize
     poses: &Kinematics<T, N>,
     state: &State<T, N>,
     frame: &Frame<T>,
-) {
+) -> FrameJacobian<T, N> {
     let mut jacobian = FrameJacobian::ZERO;
     for axes in [Axes::World, Axes::Local, Axes::LocalWorldAligned] {
         let input = (model, poses, frame, axes, &mut jacobian);
@@ -122,4 +141,5 @@ fn jacobians<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize
             &*out
         },
     );
+    jacobian
 }

@@ -1,8 +1,10 @@
 //! `rbd-core`: every algorithm on one robot, as a const model and as the same tables at run time.
 
 mod centroidal;
+mod contact;
 mod derivatives;
 mod dynamics;
+mod factors;
 mod kinematics;
 mod state;
 
@@ -18,16 +20,25 @@ pub(crate) use state::transform;
 /// Random states per robot.
 const STATES: usize = 3;
 
-/// One robot's calls; `V` is 6 + `N`, and `frame` a place on it.
+/// One robot's calls on its const model; `V` is 6 + `N`, and `frame` a place on it.
 pub(crate) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
     on: &mut Subject<'_, T, R>,
-    [const_name, table_name]: [&'static str; 2],
+    name: &'static str,
     model: &M,
     frame: &Frame<T>,
 ) {
-    on.name = const_name;
+    on.name = name;
     algorithms::<T, R, M, N, V>(on, model, frame);
-    on.name = table_name;
+}
+
+/// The same on its tables as a model built at run time.
+pub(crate) fn run_table<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize>(
+    on: &mut Subject<'_, T, R>,
+    name: &'static str,
+    model: &M,
+    frame: &Frame<T>,
+) {
+    on.name = name;
     refused::<T, R, N>(on, model.base());
     let tables = (model.base_kind(), *model.base(), model.bodies().as_slice());
     let built = on.call("TableModel::new", tables, |(kind, base, rows)| {
@@ -90,9 +101,13 @@ fn algorithms<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usiz
         }
         let input = (model, &state.configuration);
         let posture = on.call("Posture::new", input, |(model, q)| Posture::new(model, q));
-        dynamics::run::<T, R, M, N, V>(on, model, &posture, &state);
-        derivatives::run::<T, R, M, N, V>(on, model, &posture, &state);
-        kinematics::run::<T, R, M, N, V>(on, model, &posture, &state, frame);
+        let free = dynamics::run(on, model, &posture, &state);
+        let mass = dynamics::mass_matrix::<T, R, M, N, V>(on, model, &posture, &state);
+        let factors = factors::run::<T, R, M, N, V>(on, model, &mass, &state);
+        let place = kinematics::run::<T, R, M, N, V>(on, model, &posture, &state, frame);
+        derivatives::run::<T, R, M, N, V>(on, model, &posture, &state, &place);
         centroidal::run::<T, R, M, N, V>(on, model, &posture, &state);
+        contact::run(on, &factors, &free, &state, &place);
+        state::run(on, &state);
     }
 }

@@ -1,10 +1,13 @@
 //! Random states of a robot.
 
-use rbd_core::{Configuration, Effort, Force, JointLimits, Motion, Tangent, Transform};
+use rbd_core::{
+    Configuration, Effort, Force, JointLimits, Motion, Tangent, Transform, difference, integrate,
+    interpolate,
+};
 use so3::{Matrix3, Rotation3, math};
 
-use crate::Real;
 use crate::inputs::Stream;
+use crate::{Real, Recorder, Subject};
 
 /// A robot somewhere, moving, driven and pushed.
 pub(crate) struct State<T: Real, const N: usize> {
@@ -39,6 +42,20 @@ impl<T: Real, const N: usize> State<T, N> {
             }),
         }
     }
+}
+
+/// The manifold of configurations.
+pub(super) fn run<T: Real, R: Recorder, const N: usize>(
+    on: &mut Subject<'_, T, R>,
+    state: &State<T, N>,
+) {
+    let (from, velocity) = (&state.configuration, &state.velocity);
+    let to = on.call("integrate", (from, velocity), |(q, v)| integrate(q, v));
+    on.call("difference", (from, &to), |(from, to)| difference(from, to));
+    on.call("interpolate", (from, &to, T::of(0.3)), |(from, to, f)| {
+        interpolate(from, to, f)
+    });
+    on.call("Tangent::dot", (velocity, &state.effort), |(v, f)| v.dot(f));
 }
 
 fn tangent<T: Real, const N: usize>(stream: &mut Stream, half_width: f64) -> Tangent<T, N> {

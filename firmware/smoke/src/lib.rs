@@ -1,31 +1,34 @@
-//! The bare-metal image of the probe.
+//! The bare-metal images of the probe.
 //!
-//! It links only if no panic is reachable: the panic handler calls a function that exists nowhere, so the handler
-//! must have been removed as unreachable. `cargo xtask smoke` builds it, and builds it again with a panic introduced
-//! to see the link fail. `cargo xtask qemu` runs it and compares its numbers with the host's.
+//! An image links only if no panic is reachable: the panic handler calls a function that exists nowhere, so the
+//! handler must have been removed as unreachable. `cargo xtask smoke` builds the images, and builds one again with a
+//! panic introduced to see the link fail. `cargo xtask qemu` runs them and compares their numbers with the host's.
+//!
+//! One image per robot and scalar, in `src/bin`, keeps each within the boards' memories.
 #![no_std]
-#![no_main]
 
 mod console;
 mod meter;
 
 use core::panic::PanicInfo;
 
-use cortex_m_rt::{entry, exception};
+use cortex_m_rt::exception;
 use cortex_m_semihosting::debug;
 use saltus_probe::{Label, Recorder};
 
 use crate::console::Console;
-use crate::meter::Meter;
+use crate::meter::{Cost, Meter};
 
-struct Target {
+/// Measures every call and writes it to the host.
+pub struct Target {
     console: Console,
     meter: Meter,
 }
 
-impl Recorder for Target {
-    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
-        let (result, cost) = self.meter.measure(input, work);
+impl Target {
+    /// Kept out of line, as everything around the calls: only the algorithms should fill the image.
+    #[inline(never)]
+    fn report(&mut self, label: Label, cost: Cost) {
         self.console.text("call ");
         self.console.text(label.subject);
         self.console.text("/");
@@ -37,9 +40,17 @@ impl Recorder for Target {
         self.console.text(" ");
         self.console.hex(u64::from(cost.stack));
         self.console.text("\n");
+    }
+}
+
+impl Recorder for Target {
+    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
+        let (result, cost) = self.meter.measure(input, work);
+        self.report(label, cost);
         result
     }
 
+    #[inline(never)]
     fn value(&mut self, bits: u64) {
         self.console.text("value ");
         self.console.hex(bits);
@@ -50,8 +61,8 @@ impl Recorder for Target {
 /// Lengths of the counted loop by which the host learns what a tick is.
 const LOOPS: [(&str, u32); 2] = [("1000", 1000), ("2000", 2000)];
 
-#[entry]
-fn main() -> ! {
+/// Runs `probe` and ends QEMU, with success if everything it wrote reached the host.
+pub fn run(probe: fn(&mut Target)) -> ! {
     let (Some(core), Some(console)) = (cortex_m::Peripherals::take(), Console::open()) else {
         finish(debug::EXIT_FAILURE)
     };
@@ -67,7 +78,7 @@ fn main() -> ! {
         };
         target.call(label, turns, meter::counted_loop);
     }
-    saltus_probe::run(&mut target);
+    probe(&mut target);
     let status = if target.console.close() {
         debug::EXIT_SUCCESS
     } else {
@@ -106,4 +117,15 @@ fn saltus_panic_is_reachable() -> ! {
 #[panic_handler]
 fn panic(_: &PanicInfo<'_>) -> ! {
     saltus_panic_is_reachable()
+}
+
+/// The entry point of an image that runs one function of the probe.
+#[macro_export]
+macro_rules! image {
+    ($probe:expr) => {
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            $crate::run($probe)
+        }
+    };
 }
