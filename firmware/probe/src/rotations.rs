@@ -187,4 +187,7 @@ fn interpolations<T: Real, R: Recorder>(
         Geodesic::about(start, axis, x)
     });
     on.call("Geodesic::at", (&way, T::of(0.25)), |(way, f)| way.at(f));
+    on.call("Geodesic::rotation_vector", &way, |way| {
+        *way.rotation_vector()
+    });
 }

@@ -1,6 +1,7 @@
 //! `rbd-core`'s spatial algebra: one operation at a time.
 
-use rbd_core::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Tangent};
+use rbd_core::hardware::Motor;
+use rbd_core::{ArticulatedInertia, Body, Force, Frame, Inertia, Motion, Symmetric3, Tangent};
 use so3::Vector3;
 
 use crate::inputs::Stream;
@@ -17,6 +18,7 @@ pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
         transforms(on, &mut stream);
         symmetric(on, &mut stream);
         inertias(on, &mut stream);
+        tables(on, &mut stream);
     }
 }
 
@@ -139,4 +141,28 @@ fn inertias<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, stream: &mut Strea
     on.call("ArticulatedInertia::solve", (&whole, &f), |(i, f)| {
         i.solve(f)
     });
+}
+
+/// What the rows of a robot's tables say about themselves.
+fn tables<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, stream: &mut Stream) {
+    let frame: Frame<T> = Frame {
+        offset: stream.array(1.0),
+        ..Frame::IDENTITY
+    };
+    on.call("Frame::placement", &frame, |frame| frame.placement());
+    on.call("Body::tilt_matrix", &Body::EMPTY, |body: &Body<T>| {
+        body.tilt_matrix()
+    });
+    let motor = Motor {
+        gear: T::of(9.0),
+        torque: T::of(30.0),
+        corner_speed: T::of(10.0),
+        no_load_speed: T::of(20.0),
+        rotor_inertia: T::of(0.01),
+    };
+    for speed in [stream.next(30.0), T::ZERO, T::NAN] {
+        on.call("Motor::torque_range", (&motor, speed), |(motor, speed)| {
+            motor.torque_range(speed)
+        });
+    }
 }

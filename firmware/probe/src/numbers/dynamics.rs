@@ -2,10 +2,10 @@
 
 use rbd_core::{
     AbaDerivatives, ArticulatedInertia, BlockMatrix, BodyMotions, CenterOfMass,
-    CentroidalDerivatives, CentroidalMap, CentroidalState, ComJacobian, Configuration, ContactRow,
-    ContactSolution, Effort, Force, ForceColumns, FrameDerivatives, FrameJacobian, Inertia,
-    Kinematics, MassMatrix, Motion, Posture, RneaDerivatives, Symmetric3, TableError, TableModel,
-    Tangent, Transform, Tree,
+    CentroidalDerivatives, CentroidalMap, CentroidalState, ComJacobian, ComMotion, Configuration,
+    ContactRow, ContactSolution, Effort, Force, ForceColumns, FrameDerivatives, FrameJacobian,
+    Inertia, Kinematics, MassMatrix, Motion, Posture, RneaDerivatives, Symmetric3, TableError,
+    TableModel, Tangent, Transform, Tree,
 };
 use so3::Scalar;
 
@@ -47,6 +47,7 @@ fields! {
     }
     ContactRow const N { gradient, bias }
     CenterOfMass { mass, position_w }
+    ComMotion { mass, position_w, velocity_w, acceleration_w }
     ComJacobian const N { base_linear, base_angular, joints }
     CentroidalMap const N { mass, com_w, locked_inertia_w, base, joints }
     CentroidalState { mass, com_w, com_velocity_w, momentum_w, kinetic_energy, potential_energy }

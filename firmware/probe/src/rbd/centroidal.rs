@@ -2,7 +2,7 @@
 
 use rbd_core::{
     CentroidalMap, ComJacobian, Posture, Tree, center_of_mass, centroidal_bias, centroidal_map,
-    centroidal_momentum_rate, centroidal_state, com_jacobian,
+    centroidal_momentum_rate, centroidal_state, com_jacobian, com_motion,
 };
 
 use super::state::State;
@@ -25,6 +25,11 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: 
     on.call("com_jacobian", (at, &mut jacobian), |((m, p), out)| {
         (com_jacobian(m, p, out), &*out)
     });
+    on.call(
+        "com_motion",
+        (at, velocity, acceleration),
+        |((m, p), v, a)| com_motion(m, p, v, a),
+    );
     on.call("ComJacobian::mul", (&jacobian, velocity), |(j, v)| j.mul(v));
     let mut map = CentroidalMap::ZERO;
     on.call("centroidal_map", (at, &mut map), |((m, p), out)| {

@@ -44,6 +44,11 @@ pub(crate) fn run_table<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, con
     let built = on.call("TableModel::new", tables, |(kind, base, rows)| {
         TableModel::<T, N>::new(kind, base, rows)
     });
+    let _ = on.call(
+        "TableModel::with_any_inertia",
+        tables,
+        |(kind, base, rows)| TableModel::<T, N>::with_any_inertia(kind, base, rows),
+    );
     if let Ok(table) = built {
         algorithms::<T, R, _, N, V>(on, &table, frame);
     }
