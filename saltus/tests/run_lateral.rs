@@ -126,3 +126,30 @@ fn nothing_is_overwritten_and_unknown_tasks_are_named() {
     assert!(!unknown.status.success());
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("a1/moonwalk"));
 }
+
+/// Tasks beyond this reference end with a verdict that says so, or with a named error; never with a panic.
+#[test]
+fn every_task_ends_with_a_verdict_or_a_named_error() {
+    for task in [
+        "lateral-down",
+        "spin-90",
+        "diagonal",
+        "forward-60",
+        "barrel-roll",
+        "barrel-roll-box",
+        "double-barrel-roll",
+        "double-backflip",
+    ] {
+        let (name, out) = (format!("a1/{task}"), folder(task));
+        let result = saltus(&["run", &name, "--json", "--out", out.to_str().unwrap()]);
+        let error = String::from_utf8_lossy(&result.stderr);
+        match result.status.code() {
+            Some(code @ (0 | 2)) => {
+                let json: Value = serde_json::from_slice(&result.stdout).unwrap();
+                assert_eq!(code == 0, on_target(&json), "{json}");
+            }
+            Some(1) => assert!(error.starts_with("saltus: "), "{name}: {error}"),
+            code => panic!("{name} ended with {code:?}: {error}"),
+        }
+    }
+}

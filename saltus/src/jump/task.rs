@@ -27,6 +27,8 @@ const SIDE_REACH: f64 = 0.09;
 const SHORTEST_FLIGHT: f64 = 0.28;
 /// Longer flight where the robot jumps off a box, s per metre: the feet must clear its edge.
 const FLIGHT_PER_DROP: f64 = 0.5;
+/// Box height from which falling alone takes long enough, m.
+const LOW_BOX: f64 = 0.4;
 /// Longest stance on all feet, s.
 const LONGEST_FOUR_LEGS: f64 = 0.55;
 /// Longest stance on two feet, s: it is unstable open loop.
@@ -88,19 +90,21 @@ impl Task {
         problem.reach_lower.z = problem.reach_lower.z.max(-LONGEST_LEG);
         problem.reach_lower.y = problem.reach_lower.y.max(-SIDE_REACH);
         problem.reach_upper.y = problem.reach_upper.y.min(SIDE_REACH);
-        let drop = problem.edge.map_or(0.0, |edge| edge.drop);
+        let drop = problem
+            .edge
+            .map_or(0.0, |edge| edge.drop.clamp(0.0, LOW_BOX));
         let shortest = SHORTEST_FLIGHT + FLIGHT_PER_DROP * drop;
         for phase in &mut problem.phases[..problem.phase_count] {
             let feet = phase.contacts.iter().filter(|on| **on).count();
             if feet == 0 {
-                phase.min_duration = phase.min_duration.max(shortest);
+                phase.min_duration = phase.min_duration.max(shortest).min(phase.max_duration);
             } else if feet < FOOT_COUNT {
                 phase.max_duration = phase.max_duration.min(LONGEST_TWO_LEGS);
             } else {
                 phase.max_duration = phase.max_duration.min(LONGEST_FOUR_LEGS);
             }
-            let (low, high) = (phase.min_duration, phase.max_duration);
-            phase.duration_guess = phase.duration_guess.clamp(low, high);
+            let guess = phase.duration_guess.min(phase.max_duration);
+            phase.duration_guess = guess.max(phase.min_duration);
         }
         problem
             .check()
