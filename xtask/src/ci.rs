@@ -37,6 +37,7 @@ const STEPS: &[Step] = &[
     ("no reachable panic", &["xtask", "smoke"]),
     ("host equals target", &["xtask", "qemu"]),
     ("instruction counts", &["xtask", "icount"]),
+    ("imports agree with Pinocchio", &["xtask", "import-check"]),
 ];
 
 /// Runs every step; stops at the first that fails, and names it.

@@ -81,9 +81,17 @@ fn python(args: &Args, root: &Path) -> Result<PathBuf> {
         venv.join("bin/python")
     };
     let python = args.python.clone().unwrap_or_else(default);
+    if args.python.is_none() {
+        // Makes the environment where it is missing or out of date.
+        run::succeed(
+            Command::new("bash")
+                .arg(root.join("tests/peers/setup.sh"))
+                .arg("venv"),
+        )?;
+    }
     if !python.exists() {
         bail!(
-            "{} is not there: run tests/peers/setup.sh venv, or give --python",
+            "{} is not there: give an existing --python",
             python.display()
         );
     }
