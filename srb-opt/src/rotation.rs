@@ -3,12 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 use so3::math::{atan2, sin_cos, sqrt};
-
-/// `hat(v) x = v × x`.
-#[inline(always)]
-pub(crate) fn hat<T: Scalar>(v: &Vector3<T>) -> Matrix3<T> {
-    Matrix3::new(T::ZERO, -v.z, v.y, v.z, T::ZERO, -v.x, -v.y, v.x, T::ZERO)
-}
+pub(crate) use so3::{exp_taylor4 as exp4, hat};
 
 /// Vector of the antisymmetric part of a matrix: `vee((E − Eᵀ)/2)`.
 #[inline(always)]
@@ -20,17 +15,6 @@ pub(crate) fn vee_skew<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
 #[inline(always)]
 pub(crate) fn vee_skew_derivative<T: Scalar>(e: &Matrix3<T>) -> Matrix3<T> {
     (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF
-}
-
-/// Degree-4 Taylor exponential `I + A + A²/2 + A³/6 + A⁴/24`, `A = hat(w)` (paper A, Remark 1).
-///
-/// By `A³ = −|w|² A` it is `I + (1 − |w|²/6) A + (1/2 − |w|²/24) A²`.
-#[inline(always)]
-pub(crate) fn exp4<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
-    let (a, s) = (hat(w), w.norm_squared());
-    let linear = T::ONE - s / T::of(6.0);
-    let square = T::HALF - s / T::of(24.0);
-    Matrix3::identity() + a * linear + (a * a) * square
 }
 
 /// Right Jacobian of the exponential to the same order: `exp4(w + δ) ≈ exp4(w) Exp(J δ)`.
