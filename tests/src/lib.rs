@@ -5,4 +5,3 @@
 pub mod agree;
 pub mod bench;
 pub mod golden;
-pub mod tables;

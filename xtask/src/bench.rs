@@ -34,8 +34,8 @@ enum What {
     },
 }
 
-/// Compiler flags of our native build. LLVM's straight-line vectoriser slows the loops of run-time models down by half.
-const NATIVE: &str = "-C target-cpu=native -C no-vectorize-slp";
+/// Compiler flags of our native build.
+const NATIVE: &str = "-C target-cpu=native";
 
 /// Pinocchio's names of one algorithm, when there are several conventions: the fastest is the peer.
 const PINOCCHIO_BEST: [(&str, &[&str]); 2] = [

@@ -13,19 +13,20 @@ use core::hint::black_box;
 use std::path::Path;
 use std::process::ExitCode;
 
+use a1_model::A1;
+use icub_model::gazebo::AsPublished as Icub23;
 use rbd_core::{
-    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, Axes, BaseKind, BlockMatrix,
-    BodyMotions, CentroidalMap, ComJacobian, DerivativesWorkspace, Force, Frame, FrameJacobian,
-    Kinematics, MassFactors, MassMatrix, RneaDerivatives, TableModel, Tree, aba, aba_derivatives,
-    bias_accelerations, center_of_mass, centroidal_bias, centroidal_map, centroidal_momentum_rate,
-    centroidal_state, com_jacobian, crba, forward_accelerations, forward_kinematics,
-    forward_velocities, frame_jacobian, generalized_gravity, joint_jacobians, mass_matrix_inverse,
+    AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, AccelerationKind, Axes, BlockMatrix,
+    BodyMotions, CentroidalDerivatives, CentroidalMap, ComJacobian, ContactRow, ContactWorkspace,
+    DerivativesWorkspace, Force, Frame, FrameDerivatives, FrameJacobian, Kinematics, MassFactors,
+    MassMatrix, Model, Posture, RneaDerivatives, TableModel, Tangent, Tree, aba, aba_derivatives,
+    bias_accelerations, center_of_mass, centroidal_bias, centroidal_derivatives, centroidal_map,
+    centroidal_momentum_rate, centroidal_state, com_jacobian, contact_dynamics, crba, difference,
+    forward_accelerations, forward_kinematics, forward_velocities, frame_derivatives,
+    frame_jacobian, generalized_gravity, impact, integrate, joint_jacobians, mass_matrix_inverse,
     nonlinear_effects, rnea, rnea_derivatives, rnea_with_forces,
 };
 use saltus_tests::bench::{State, time};
-use saltus_tests::tables::{
-    A1, A1_BASE, A1_BODIES, A1_FRAMES, ICUB_BASE, ICUB_BODIES, ICUB_FRAMES, Icub23,
-};
 
 /// Algorithms by the names that the peer benches use; the argument is the index of a state.
 type Algorithms<'a> = Vec<(&'static str, Box<dyn FnMut(usize) + 'a>)>;
@@ -33,7 +34,7 @@ type Algorithms<'a> = Vec<(&'static str, Box<dyn FnMut(usize) + 'a>)>;
 /// Everything to measure on one model.
 fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     model: &'a M,
-    feet: &'a [(&'a str, Frame<f64>)],
+    feet: &'a [Frame<f64>],
     states: &'a [State<N>],
 ) -> Algorithms<'a> {
     let mut list: Algorithms<'a> = Vec::new();
@@ -51,7 +52,7 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
         };
     }
     let mut forces = [Force::ZERO; N];
-    for (_, foot) in feet {
+    for foot in feet {
         if let rbd_core::Link::Joint(i) = foot.link {
             forces[i] = Force::from_array([1.0, 2.0, 30.0, 0.0, 0.0, 0.0]);
         }
@@ -126,6 +127,20 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
         &of
     });
 
+    let mut of = CentroidalDerivatives::ZERO;
+    let mut ws = DerivativesWorkspace::new();
+    algorithm!("centroidal_derivatives", |i, p| {
+        centroidal_derivatives(
+            model,
+            &p,
+            &s[i].velocity,
+            &s[i].acceleration,
+            &mut ws,
+            &mut of,
+        );
+        &of
+    });
+
     let mut kinematics = Kinematics::IDENTITY;
     algorithm!("fk_placements", |i, p| {
         forward_kinematics(model, &p, &mut kinematics);
@@ -145,14 +160,14 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     algorithm!("feet_accelerations", |i, p| {
         forward_kinematics(model, &p, &mut kinematics);
         forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
-        for (_, foot) in feet {
+        for foot in feet {
             let classical = moving.frame_classical_acceleration(foot);
             black_box(&Axes::LocalWorldAligned.motion(&kinematics.frame(foot), &classical));
         }
     });
     algorithm!("feet_bias_accelerations", |i, p| {
         bias_accelerations(model, &p, &s[i].velocity, &mut moving);
-        for (_, foot) in feet {
+        for foot in feet {
             black_box(&moving.frame_classical_acceleration(foot));
         }
     });
@@ -165,7 +180,7 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     let mut jacobian = FrameJacobian::ZERO;
     algorithm!("feet_jacobians", |i, p| {
         forward_kinematics(model, &p, &mut kinematics);
-        for (_, foot) in feet {
+        for foot in feet {
             frame_jacobian(
                 model,
                 &kinematics,
@@ -178,6 +193,57 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     });
 
     algorithm!("com", |i, p| center_of_mass(model, &p));
+    let mut of = FrameDerivatives::ZERO;
+    algorithm!("feet_acceleration_derivatives", |i, p| {
+        forward_kinematics(model, &p, &mut kinematics);
+        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
+        for foot in feet {
+            let kind = AccelerationKind::Spatial;
+            frame_derivatives(
+                model,
+                &kinematics,
+                &moving,
+                foot,
+                kind,
+                Axes::Local,
+                &mut of,
+            );
+            black_box(&of);
+        }
+    });
+    let mut contact = Contact::<N>::new();
+    algorithm!("constrained_dynamics", |i, p| {
+        contact.prepare(model, &p, feet, Some(&s[i].velocity));
+        let free = aba(model, &p, &s[i].velocity, &s[i].effort, &mut contact.aba);
+        let rows = &contact.rows[..contact.count];
+        contact_dynamics(&contact.factors, &free, rows, &mut contact.workspace)
+    });
+    let mut contact = Contact::<N>::new();
+    algorithm!("impulse_dynamics", |i, p| {
+        contact.prepare(model, &p, feet, None);
+        let rows = &contact.rows[..contact.count];
+        impact(
+            &contact.factors,
+            &s[i].velocity,
+            0.0,
+            rows,
+            &mut contact.workspace,
+        )
+    });
+    list.push((
+        "integrate",
+        Box::new(|i| {
+            black_box(&integrate(&s[i].configuration(), &s[i].velocity));
+        }),
+    ));
+    list.push((
+        "difference",
+        Box::new(|i| {
+            let next = (i + 1) % s.len();
+            black_box(&difference(&s[i].configuration(), &s[next].configuration()));
+        }),
+    ));
+
     let mut jacobian = ComJacobian::ZERO;
     algorithm!("com_jacobian", |i, p| {
         com_jacobian(model, &p, &mut jacobian);
@@ -216,6 +282,65 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     list
 }
 
+/// What contact dynamics needs: every foot held, points if there are four, soles if there are two.
+struct Contact<const N: usize> {
+    mass: MassMatrix<f64, N>,
+    factors: MassFactors<f64, N>,
+    kinematics: Kinematics<f64, N>,
+    bias: BodyMotions<f64, N>,
+    jacobian: FrameJacobian<f64, N>,
+    aba: AbaWorkspace<f64, N>,
+    rows: [ContactRow<f64, N>; 12],
+    count: usize,
+    workspace: ContactWorkspace<f64, N, 12>,
+}
+
+impl<const N: usize> Contact<N> {
+    fn new() -> Self {
+        Self {
+            mass: MassMatrix::ZERO,
+            factors: MassFactors::new(),
+            kinematics: Kinematics::IDENTITY,
+            bias: BodyMotions::ZERO,
+            jacobian: FrameJacobian::ZERO,
+            aba: AbaWorkspace::new(),
+            rows: [ContactRow::ZERO; 12],
+            count: 0,
+            workspace: ContactWorkspace::new(),
+        }
+    }
+
+    /// Factors of the mass matrix and the rows of the feet; without a velocity the rows have no bias.
+    fn prepare<M: Tree<f64, N>>(
+        &mut self,
+        model: &M,
+        posture: &Posture<f64, N>,
+        feet: &[Frame<f64>],
+        velocity: Option<&Tangent<f64, N>>,
+    ) {
+        crba(model, posture, &mut self.mass);
+        self.factors.factor(model, &self.mass);
+        forward_kinematics(model, posture, &mut self.kinematics);
+        if let Some(velocity) = velocity {
+            bias_accelerations(model, posture, velocity, &mut self.bias);
+        }
+        let rows_per_foot = self.rows.len() / feet.len();
+        self.count = rows_per_foot * feet.len();
+        for (rows, foot) in self.rows.chunks_exact_mut(rows_per_foot).zip(feet) {
+            frame_jacobian(
+                model,
+                &self.kinematics,
+                foot,
+                Axes::Local,
+                &mut self.jacobian,
+            );
+            let drift = self.bias.frame_classical_acceleration(foot);
+            let all = ContactRow::surface(&self.jacobian, &drift);
+            rows.copy_from_slice(&all[..rows_per_foot]);
+        }
+    }
+}
+
 /// What to do with the algorithms of one robot and model.
 trait Visit {
     fn visit(&mut self, robot: &str, model: &str, states: usize, list: Algorithms<'_>);
@@ -224,35 +349,42 @@ trait Visit {
 }
 
 fn each<V: Visit>(visit: &mut V) -> Result<(), String> {
-    let states = load::<12, V>(visit, "a1")?;
-    visit.visit(
+    robot::<_, V, 12>(
+        visit,
         "a1",
+        &A1,
+        &["FL_foot", "FR_foot", "RL_foot", "RR_foot"],
+    )?;
+    robot::<_, V, 23>(visit, "icub23", &Icub23, &["l_sole", "r_sole"])
+}
+
+/// The const model, and the same robot as a model built at run time.
+fn robot<M: Model<f64, N>, V: Visit, const N: usize>(
+    visit: &mut V,
+    name: &str,
+    model: &M,
+    feet: &[&str],
+) -> Result<(), String> {
+    let states = load::<N, V>(visit, name)?;
+    let frame = |foot: &&str| {
+        model
+            .frame(foot)
+            .ok_or_else(|| format!("{name} has no {foot}"))
+    };
+    let feet = feet.iter().map(frame).collect::<Result<Vec<_>, _>>()?;
+    visit.visit(
+        name,
         "const",
         states.len(),
-        algorithms(black_box(&A1), &A1_FRAMES[..4], &states),
+        algorithms(black_box(model), &feet, &states),
     );
-    let table = TableModel::<f64, 12>::new(BaseKind::Floating, A1_BASE, &A1_BODIES)
-        .map_err(|e| e.to_string())?;
+    let table = TableModel::<f64, N>::new(model.base_kind(), *model.base(), model.bodies());
+    let table = table.map_err(|error| error.to_string())?;
     visit.visit(
-        "a1",
+        name,
         "run-time",
         states.len(),
-        algorithms(black_box(&table), &A1_FRAMES[..4], &states),
-    );
-    let states = load::<23, V>(visit, "icub23")?;
-    visit.visit(
-        "icub23",
-        "const",
-        states.len(),
-        algorithms(black_box(&Icub23), &ICUB_FRAMES[..2], &states),
-    );
-    let table = TableModel::<f64, 23>::new(BaseKind::Floating, ICUB_BASE, &ICUB_BODIES)
-        .map_err(|e| e.to_string())?;
-    visit.visit(
-        "icub23",
-        "run-time",
-        states.len(),
-        algorithms(black_box(&table), &ICUB_FRAMES[..2], &states),
+        algorithms(black_box(&table), &feet, &states),
     );
     Ok(())
 }
