@@ -21,8 +21,8 @@ use rbd_core::{
     DerivativesWorkspace, Force, Frame, FrameDerivatives, FrameJacobian, Kinematics, MassFactors,
     MassMatrix, Model, Posture, RneaDerivatives, TableModel, Tangent, Tree, aba, aba_derivatives,
     bias_accelerations, center_of_mass, centroidal_bias, centroidal_derivatives, centroidal_map,
-    centroidal_momentum_rate, centroidal_state, com_jacobian, contact_dynamics, crba, difference,
-    forward_accelerations, forward_kinematics, forward_velocities, frame_derivatives,
+    centroidal_momentum_rate, centroidal_state, com_jacobian, com_motion, contact_dynamics, crba,
+    difference, forward_accelerations, forward_kinematics, forward_velocities, frame_derivatives,
     frame_jacobian, generalized_gravity, impact, integrate, joint_jacobians, mass_matrix_inverse,
     nonlinear_effects, rnea, rnea_derivatives, rnea_with_forces,
 };
@@ -272,11 +272,7 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
         centroidal_momentum_rate(model, &p, &s[i].velocity, &s[i].acceleration)
     });
     algorithm!("com_acceleration", |i, p| {
-        // Position, velocity and acceleration, as Pinocchio's centerOfMass(q, v, a) gives them.
-        (
-            centroidal_state(model, &p, &s[i].velocity),
-            centroidal_momentum_rate(model, &p, &s[i].velocity, &s[i].acceleration),
-        )
+        com_motion(model, &p, &s[i].velocity, &s[i].acceleration)
     });
     list.push(("none", Box::new(|_| {})));
     list

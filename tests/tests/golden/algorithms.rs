@@ -170,6 +170,10 @@ pub(crate) fn centroidal<T: Scalar, M: Tree<T, N>, const N: usize, const V: usiz
         "centroidal.bias",
         rbd_core::centroidal_bias(model, posture, v).to_array(),
     );
+    let com = rbd_core::com_motion(model, posture, v, a);
+    w.see(state, "com.position", com.position_w.entries());
+    w.see(state, "com.velocity", com.velocity_w.entries());
+    w.see(state, "com.acceleration", com.acceleration_w.entries());
     let rate = rbd_core::centroidal_momentum_rate(model, posture, v, a);
     w.see(state, "centroidal.momentum_rate", rate.to_array());
     w.see(
