@@ -1,5 +1,6 @@
 //! Caller-owned storage of one node.
 
+use crate::kernel::{factor, solve_lower, solve_upper};
 use crate::problem::{Derivatives, Dims, Values};
 use so3::Scalar;
 
@@ -150,8 +151,41 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         &self.riccati.gain
     }
 
-    /// Hessian of the cost-to-go at this node, in the tangent space; at node 0 its block of free
-    /// coordinates gives the gains of the phase durations.
+    /// Feedback gain of free state coordinates, such as phase durations, on the others.
+    ///
+    /// With the cost-to-go Hessian `P` split into free and given coordinates the optimum moves by
+    /// `d_free = −P_ff⁻¹ P_fg d_given`; row `i` of the result is the row of coordinate `i`, zero where it
+    /// is not free. `None` if `P_ff` is not positive definite.
+    #[must_use]
+    pub fn free_gain(&self, free: &[bool; NX]) -> Option<[[T; NX]; NX]> {
+        let mut block = self.riccati.hessian;
+        let mut rows = [[T::ZERO; NX]; NX];
+        for (i, (column, row)) in block.iter_mut().zip(&mut rows).enumerate() {
+            for (j, ((entry, out), is_free)) in column.iter_mut().zip(row).zip(free).enumerate() {
+                let both = free.get(i).copied().unwrap_or(false) && *is_free;
+                if free.get(i).copied().unwrap_or(false) && !*is_free {
+                    *out = -*entry;
+                }
+                if !both {
+                    *entry = if i == j { T::ONE } else { T::ZERO };
+                }
+            }
+        }
+        let mut inverse = [T::ZERO; NX];
+        if !factor(&mut block, &mut inverse, NX, T::ZERO) {
+            return None;
+        }
+        solve_lower(&block, &mut rows, NX);
+        for (row, inverse) in rows.iter_mut().zip(&inverse) {
+            for value in row {
+                *value *= *inverse;
+            }
+        }
+        solve_upper(&block, &mut rows, NX);
+        Some(rows)
+    }
+
+    /// Hessian of the cost-to-go at this node, in the tangent space.
     #[must_use]
     pub const fn cost_to_go(&self) -> &[[T; NX]; NX] {
         &self.riccati.hessian

@@ -5,7 +5,10 @@ mod common;
 
 use common::{BrysonDenham, LeastTime};
 use core::ops::ControlFlow;
-use ocp_solver::{Barrier, Error, Settings, Solver, Stage, Status, derivative_errors};
+use ocp_solver::{
+    Barrier, Derivatives, Dims, Error, Evaluated, Problem, Settings, Solver, Stage, Status, Values,
+    derivative_errors,
+};
 
 fn least_time(intervals: usize) -> Vec<Stage<f64, [f64; 3], 8, 4, 4>> {
     let mut stages = vec![Stage::new([0.0; 3]); intervals + 1];
@@ -166,4 +169,113 @@ fn bad_data_is_refused_by_name() {
         .solve(&problem, &mut least_time(20), go)
         .unwrap_err();
     assert_eq!(error, Error::Setting("equality_weight"));
+}
+
+#[test]
+fn the_gain_of_the_duration_is_its_derivative_at_the_start() {
+    // T = 2 √(1 − p + v²/2) − v for a start at p with speed v: both derivatives are −1 at rest at 0.
+    let problem = LeastTime {
+        intervals: 20,
+        longest: 10.0,
+    };
+    let mut stages = least_time(20);
+    let solution = Solver::new(Settings::new())
+        .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_eq!(solution.status, Status::Solved);
+    let mut free = [false; 8];
+    free[2] = true;
+    let gain = stages[0].free_gain(&free).unwrap();
+    assert!((gain[2][0] + 1.0).abs() < 1e-3, "{:?}", gain[2]);
+    // A speed moves the switch off its node, which a control held per interval pays for: 1/N more.
+    assert!((gain[2][1] + 1.0).abs() < 0.06, "{:?}", gain[2]);
+    assert_eq!(gain[0], [0.0; 8]);
+}
+
+/// The metre problem, whose dynamics turn to NaN after a number of evaluations.
+struct Breaking {
+    inner: LeastTime,
+    left: core::cell::Cell<u32>,
+}
+
+impl Problem<f64, 8, 4, 4> for Breaking {
+    type State = [f64; 3];
+
+    fn intervals(&self) -> usize {
+        self.inner.intervals
+    }
+
+    fn dims(&self, k: usize) -> Dims {
+        self.inner.dims(k)
+    }
+
+    fn bounds(&self, k: usize, lower: &mut [f64; 4], upper: &mut [f64; 4]) {
+        self.inner.bounds(k, lower, upper);
+    }
+
+    fn is_free_at_start(&self, i: usize) -> bool {
+        self.inner.is_free_at_start(i)
+    }
+
+    fn retract(
+        &self,
+        k: usize,
+        x: &[f64; 3],
+        dx: &[f64; 8],
+        before: Option<(&[f64; 3], &[f64; 4])>,
+    ) -> [f64; 3] {
+        self.inner.retract(k, x, dx, before)
+    }
+
+    fn evaluate(
+        &self,
+        k: usize,
+        x: &[f64; 3],
+        u: &[f64; 4],
+        next: Option<&[f64; 3]>,
+        values: &mut Values<f64, 8, 4>,
+    ) {
+        self.inner.evaluate(k, x, u, next, values);
+        self.left.set(self.left.get().saturating_sub(1));
+        if self.left.get() == 0 {
+            values.gap[0] = f64::NAN;
+            values.cost = f64::NAN;
+        }
+    }
+
+    fn differentiate(
+        &self,
+        k: usize,
+        x: &[f64; 3],
+        u: &[f64; 4],
+        next: Option<&[f64; 3]>,
+        at: Evaluated<'_, f64, 8, 4>,
+        d: &mut Derivatives<f64, 8, 4, 4>,
+    ) {
+        self.inner.differentiate(k, x, u, next, at, d);
+    }
+}
+
+#[test]
+fn numbers_that_break_midway_end_the_solve_with_the_best_iterate() {
+    for evaluations in [22, 60, 100, 150] {
+        let inner = LeastTime {
+            intervals: 20,
+            longest: 10.0,
+        };
+        let problem = Breaking {
+            inner,
+            left: core::cell::Cell::new(evaluations),
+        };
+        let mut stages = least_time(20);
+        let solution = Solver::new(Settings::new())
+            .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+            .unwrap();
+        assert_eq!(
+            solution.status,
+            Status::NotFinite,
+            "{evaluations} {solution:?}"
+        );
+        assert!(stages.iter().all(|s| s.state.iter().all(|x| x.is_finite())));
+    }
 }
