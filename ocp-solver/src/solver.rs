@@ -28,6 +28,8 @@ struct Run<T, const NX: usize> {
     iterations: usize,
     factorisations: usize,
     attempt: usize,
+    /// Sums of violations of the last iterates.
+    recent: [T; 4],
     best: Residual<T>,
     best_cost: T,
     best_score: T,
@@ -106,6 +108,7 @@ impl<T: Scalar> Solver<T> {
             stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
         }
         let mut point = iterate::merit(stages);
+        run.recent = [point.sum; 4];
         let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
         loop {
             let mut complementarity = Complementarity::new();
@@ -147,7 +150,7 @@ impl<T: Scalar> Solver<T> {
             };
             let mut trial = iterate::try_step(problem, stages, primal_step);
             let mut halvings = 0u8;
-            while !trial.is_finite() {
+            while !trial.is_finite() || (halvings < 4 && run.explodes(trial.sum)) {
                 halvings = halvings.wrapping_add(1);
                 if halvings > 20 {
                     return Status::NotFinite;
@@ -155,6 +158,7 @@ impl<T: Scalar> Solver<T> {
                 primal_step *= T::HALF;
                 trial = iterate::try_step(problem, stages, primal_step);
             }
+            run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
             let floor = max(run.mu, settings.smallest_mu());
             iterate::accept(
                 stages,
@@ -281,10 +285,23 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
             iterations: 0,
             factorisations: 0,
             attempt: 0,
+            recent: [T::ZERO; 4],
             best: none,
             best_cost: T::INFINITY,
             best_score: T::INFINITY,
         }
+    }
+
+    /// Whether a step to this sum of violations should be halved: it is far above all recent ones.
+    ///
+    /// Nearly every step to the boundary is a good one, so this is insurance against the rare one
+    /// that is not, and does not ask for descent.
+    fn explodes(&self, sum: T) -> bool {
+        let worst = self
+            .recent
+            .iter()
+            .fold(T::ONE, |worst, sum| max(worst, *sum));
+        sum > T::of(2.0) * worst
     }
 
     /// Keeps the iterate if it is the closest to a solution so far.
