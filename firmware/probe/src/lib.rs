@@ -5,13 +5,13 @@
 //! A [`Recorder`] decides what is done around a call and with its results.
 #![no_std]
 
+mod conversions;
 mod elementary;
 mod inputs;
 mod kinds;
 mod numbers;
 mod rbd;
 mod rotations;
-
 mod spatial;
 
 #[cfg(feature = "introduce_panic")]
@@ -78,6 +78,7 @@ where
     let on = &mut Subject::new(recorder);
     elementary::run::<T, R>(on);
     rotations::run::<T, R>(on);
+    conversions::run::<T, R>(on);
     spatial::run::<T, R>(on);
     rbd::run::<T, R, _, 9, 15>(on, "kinds", &Kinds, &kinds::hand());
     rbd::run_table::<T, R, _, 9, 15>(on, "kinds-table", &Kinds, &kinds::hand());
