@@ -232,7 +232,8 @@ pub fn rnea<T: Scalar, M: Tree<T, N>, const N: usize>(
 /// Inverse dynamics with forces applied from outside: τ = M ν̇ + C ν + g − Σ Jᵀ f.
 ///
 /// `base_force` acts on the base in base axes about its origin; `forces[i]` on body i in its canonical
-/// frame about its origin (see [`Kinematics::to_body`](crate::Kinematics) for forces known in the world).
+/// frame about its origin; a force known in the world is brought there by
+/// [`Transform::inverse_force`](crate::Transform::inverse_force) of the body's pose.
 #[inline]
 #[must_use]
 pub fn rnea_with_forces<T: Scalar, M: Tree<T, N>, const N: usize>(
