@@ -12,6 +12,7 @@ mod articulated;
 mod force;
 mod inertia;
 mod motion;
+mod six;
 mod symmetric;
 mod transform;
 

@@ -5,6 +5,8 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 use nalgebra::Vector3;
 use so3::Scalar;
 
+use super::six::six_vector;
+
 /// A spatial velocity or acceleration, expressed in one frame and about its origin.
 ///
 /// Acceleration here is *spatial* (the derivative of the coordinates of the velocity in the moving
@@ -17,38 +19,9 @@ pub struct Motion<T> {
     pub angular: Vector3<T>,
 }
 
+six_vector!(Motion);
+
 impl<T: Scalar> Motion<T> {
-    /// All six coordinates zero.
-    pub const ZERO: Self = Self {
-        linear: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
-        angular: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
-    };
-
-    /// From its linear and angular parts.
-    #[inline(always)]
-    #[must_use]
-    pub const fn new(linear: Vector3<T>, angular: Vector3<T>) -> Self {
-        Self { linear, angular }
-    }
-
-    /// From six coordinates, linear first.
-    #[inline(always)]
-    #[must_use]
-    pub const fn from_array([x, y, z, rx, ry, rz]: [T; 6]) -> Self {
-        Self {
-            linear: Vector3::new(x, y, z),
-            angular: Vector3::new(rx, ry, rz),
-        }
-    }
-
-    /// Its six coordinates, linear first.
-    #[inline(always)]
-    #[must_use]
-    pub fn to_array(self) -> [T; 6] {
-        let (l, a) = (self.linear, self.angular);
-        [l.x, l.y, l.z, a.x, a.y, a.z]
-    }
-
     /// Motion × motion: how `other` changes because its frame moves with `self`.
     ///
     /// (v, ω) × (v′, ω′) = (ω × v′ + v × ω′, ω × ω′).
@@ -96,63 +69,6 @@ impl<T: Scalar> Motion<T> {
         Self {
             linear: self.linear - velocity.angular.cross(&velocity.linear),
             angular: self.angular,
-        }
-    }
-}
-
-impl<T: Scalar> Default for Motion<T> {
-    fn default() -> Self {
-        Self::ZERO
-    }
-}
-
-impl<T: Scalar> Add for Motion<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self {
-            linear: self.linear + other.linear,
-            angular: self.angular + other.angular,
-        }
-    }
-}
-
-impl<T: Scalar> AddAssign for Motion<T> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<T: Scalar> Sub for Motion<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self {
-            linear: self.linear - other.linear,
-            angular: self.angular - other.angular,
-        }
-    }
-}
-
-impl<T: Scalar> Neg for Motion<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self {
-            linear: -self.linear,
-            angular: -self.angular,
-        }
-    }
-}
-
-impl<T: Scalar> Mul<T> for Motion<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: T) -> Self {
-        Self {
-            linear: self.linear * factor,
-            angular: self.angular * factor,
         }
     }
 }
