@@ -9,6 +9,7 @@ mod gen_model;
 mod icount;
 mod image;
 mod import_check;
+mod mujoco;
 mod panics;
 mod probe;
 mod qemu;
@@ -46,6 +47,8 @@ enum Command {
     Icount(icount::Args),
     /// Import many robots, compile what comes out, and compare it with Pinocchio.
     ImportCheck(import_check::Args),
+    /// Fetch the MuJoCo library and run cargo with it.
+    Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
     GenModel(gen_model::Args),
 }
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
         Command::ImportCheck(args) => import_check::run(&args),
+        Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };
     match result {

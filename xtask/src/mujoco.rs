@@ -1,0 +1,79 @@
+//! `cargo xtask mujoco`: fetches the MuJoCo library that `mujoco-rs` is made for, and runs cargo with it.
+//!
+//! The library is the one in the wheel `mujoco` on PyPI: it needs nothing but glibc. It is linked by the names
+//! `libmujoco.so` and `libmujoco.so.VERSION`, of which the second is its SONAME.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::run;
+
+/// The version that the bindings were written for; they refuse any other.
+const VERSION: &str = "3.17.0";
+
+/// Arguments of `cargo xtask mujoco`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Python with pip.
+    #[arg(long, env = "SALTUS_PYTHON", default_value = "python3")]
+    python: PathBuf,
+    /// Arguments of cargo, such as `test -p contact-sim --features mujoco`; without them the environment that a build needs is printed.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    cargo: Vec<OsString>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let folder = run::root().join("target/mujoco");
+    let library = folder.join(format!("libmujoco.so.{VERSION}"));
+    if !library.exists() {
+        fetch(&args.python, &folder, &library)?;
+    }
+    let search = search_path(&folder)?;
+    if args.cargo.is_empty() {
+        println!("export MUJOCO_DYNAMIC_LINK_DIR={}", folder.display());
+        println!("export LD_LIBRARY_PATH={}", search.to_string_lossy());
+        return Ok(());
+    }
+    let mut cargo = run::cargo();
+    cargo.current_dir(env::current_dir()?).args(&args.cargo);
+    cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
+    run::succeed(cargo.env("LD_LIBRARY_PATH", search))
+}
+
+/// The folder before whatever the caller has.
+fn search_path(folder: &Path) -> Result<OsString> {
+    let old = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let paths = core::iter::once(folder.to_path_buf())
+        .chain(env::split_paths(&old).filter(|path| !path.as_os_str().is_empty()));
+    env::join_paths(paths).context("LD_LIBRARY_PATH")
+}
+
+fn fetch(python: &Path, folder: &Path, library: &Path) -> Result<()> {
+    let wheel = folder.join("wheel");
+    fs::create_dir_all(&wheel)?;
+    println!("fetching MuJoCo {VERSION} from PyPI");
+    let mut pip = Command::new(python);
+    pip.args(["-m", "pip", "download", "--quiet", "--no-deps", "--dest"]);
+    pip.arg(&wheel).arg(format!("mujoco=={VERSION}"));
+    run::succeed(&mut pip).context("pip is needed to fetch MuJoCo (Debian: python3-pip)")?;
+    for entry in fs::read_dir(&wheel)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|end| end == "whl") {
+            let mut unpack = Command::new(python);
+            unpack.args(["-m", "zipfile", "-e"]);
+            run::succeed(unpack.arg(&path).arg(&wheel))?;
+        }
+    }
+    let inside = wheel.join(format!("mujoco/libmujoco.so.{VERSION}"));
+    // The short name first: a library in place means that all is in place.
+    fs::copy(&inside, folder.join("libmujoco.so"))
+        .with_context(|| format!("{} is not in the wheel", inside.display()))?;
+    fs::rename(&inside, library)?;
+    fs::remove_dir_all(&wheel)?;
+    Ok(())
+}
