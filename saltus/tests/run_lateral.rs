@@ -127,6 +127,81 @@ fn nothing_is_overwritten_and_unknown_tasks_are_named() {
     assert!(String::from_utf8_lossy(&unknown.stderr).contains("a1/moonwalk"));
 }
 
+/// What fails leaves nothing behind that looks like a run.
+#[test]
+fn a_run_that_fails_leaves_no_folder() {
+    let out = folder("failed");
+    let path = out.to_str().unwrap();
+    let mut failures = vec![["run", "a1/moonwalk", "--out", path, "--sim", "native"]];
+    if cfg!(not(feature = "mujoco")) {
+        failures.push(["run", "a1/lateral", "--out", path, "--sim", "mujoco"]);
+    }
+    for arguments in failures {
+        let failed = saltus(&arguments);
+        assert_eq!(failed.status.code(), Some(1));
+        assert!(!out.exists(), "{arguments:?} left a folder");
+        if arguments[5] == "mujoco" {
+            let said = String::from_utf8_lossy(&failed.stderr).into_owned();
+            assert!(said.contains("cargo xtask mujoco"), "{said}");
+        }
+    }
+}
+
+/// The judge agrees: `cargo xtask mujoco test -p saltus --features mujoco`.
+#[cfg(feature = "mujoco")]
+#[test]
+fn lateral_lands_on_its_target_in_mujoco_too() {
+    for seed in ["0", "3"] {
+        let out = folder(&format!("judged-{seed}"));
+        let path = out.to_str().unwrap();
+        let result = saltus(&[
+            "run",
+            "a1/lateral",
+            "--sim",
+            "mujoco",
+            "--seed",
+            seed,
+            "--json",
+            "--out",
+            path,
+        ]);
+        let json: Value = serde_json::from_slice(&result.stdout).unwrap();
+        assert_eq!(json["sim"], "mujoco");
+        assert!(on_target(&json), "{json}");
+        assert_eq!(json["trunk_contact"], false);
+    }
+}
+
+/// Every field that the program promises is there and has a value.
+#[test]
+fn the_result_has_every_field() {
+    let (json, _) = run("a1/lateral", "0", "fields");
+    for field in [
+        "task",
+        "sim",
+        "landed",
+        "upright_after_s",
+        "final_position_error_m",
+        "final_orientation_error_deg",
+        "apex_height_m",
+        "first_contact_s",
+        "peak_torque_nm",
+        "torque_saturation_ms",
+        "peak_foot_force_n",
+    ] {
+        assert!(!json[field].is_null(), "{field} is missing in {json}");
+    }
+    for (group, fields) in [
+        ("ticks", ["joint", "cartesian", "landing"]),
+        ("qp", ["solves", "failures", "max_iterations"]),
+    ] {
+        for field in fields {
+            assert!(json[group][field].is_u64(), "{group}.{field} in {json}");
+        }
+    }
+    assert!(json["ticks"]["joint"].as_u64() > json["ticks"]["cartesian"].as_u64());
+}
+
 /// Tasks beyond this reference end with a verdict that says so, or with a named error; never with a panic.
 #[test]
 fn every_task_ends_with_a_verdict_or_a_named_error() {

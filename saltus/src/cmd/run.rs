@@ -1,6 +1,7 @@
 //! `saltus run`: plan a jump, execute it in simulation, report.
 
 use crate::jump::judge::Verdict;
+use crate::jump::plant::Sim;
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, reference, report};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -14,9 +15,9 @@ pub(crate) struct Args {
     /// Task, such as a1/lateral.
     task: String,
     /// Simulator.
-    #[arg(long, default_value = "native", value_parser = ["native"])]
-    sim: String,
-    /// Seed of the disturbances: 0 is the nominal run, others draw ground friction and encoder noise.
+    #[arg(long, default_value = "native")]
+    sim: Sim,
+    /// Seed of the disturbances: 0 is the nominal run, others draw masses, friction, rotor inertia, latency and noise.
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Print one JSON object instead of text.
@@ -30,7 +31,9 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let task = Task::load(&args.task)?;
-    let folder = new_folder(args.out.as_deref(), &task.name)?;
+    if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
+        return Err(taken(path));
+    }
     let bar = if args.json {
         ProgressBar::hidden()
     } else {
@@ -46,17 +49,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let reference = reference::build(&task, &plan)?;
     let clock = Instant::now();
     let end = execute::HOLD + reference.touchdown + execute::SETTLE;
-    let run = execute::run(&task, &reference, args.seed, |t, phase| {
+    let run = execute::run(&task, &reference, args.sim, args.seed, |t, phase| {
         bar.set_message(format!("simulating: {phase:?}"));
         bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
     })?;
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let verdict = Verdict::of(&task, &run);
-    let json = verdict.json(&task, &plan, &reference, &run, args.seed);
+    let json = verdict.json(&task, &plan, &reference, &run, args.sim, args.seed);
+    // Only a run that came to its end leaves a folder.
+    let folder = new_folder(args.out.as_deref(), &task.name)?;
     write(&folder, "log.csv", &log::csv(&run.samples))?;
     write(&folder, "result.json", &format!("{json:#}\n"))?;
-    let table = table(&task, &plan, &reference, &run, &verdict, wall);
+    let table = table(&task, &plan, &reference, &run, &verdict, args.sim, wall);
     write(
         &folder,
         "report.html",
@@ -87,6 +92,7 @@ fn table(
     reference: &reference::Reference,
     run: &execute::Run,
     verdict: &Verdict,
+    sim: Sim,
     wall: f64,
 ) -> Vec<Line> {
     let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
@@ -113,7 +119,10 @@ fn table(
         ),
         plain(
             "simulated",
-            format!("{span:.1} s in {wall:.1} s, native simulator, 10 kHz"),
+            format!(
+                "{span:.1} s in {wall:.1} s, {} simulator, 10 kHz",
+                sim.name()
+            ),
         ),
         ("landed", yes(verdict.landed), Some(verdict.landed)),
         (
@@ -158,6 +167,13 @@ fn table(
     ]
 }
 
+fn taken(path: &Path) -> String {
+    format!(
+        "{} exists already: choose another --out, nothing is overwritten",
+        path.display()
+    )
+}
+
 /// A folder that did not exist before.
 fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
     let create = |path: &Path| {
@@ -169,12 +185,7 @@ fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
     let describe = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
     if let Some(path) = wanted {
         create(path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::AlreadyExists => {
-                format!(
-                    "{} exists already: choose another --out, nothing is overwritten",
-                    path.display()
-                )
-            }
+            std::io::ErrorKind::AlreadyExists => taken(path),
             _ => describe(path, error),
         })?;
         return Ok(path.to_owned());

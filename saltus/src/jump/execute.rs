@@ -1,12 +1,12 @@
 //! The closed loop: plant at 10 kHz, joint PD at 10 kHz, Cartesian PD, phases and landing at 1 kHz.
 
 use super::log::Sample;
+use super::plant::{Disturbance, Plant, Sim, plant};
 use super::reference::{Reference, heading_matrix};
+use super::sensors::Sensors;
 use super::task::Task;
-use super::{FOOT_COUNT, JOINTS, Plant, ROBOT, feet, kinematics, spheres};
-use crate::noise::Noise;
-use a1_model::{MOTORS, a1};
-use contact_sim::{Block, Simulator, Terrain};
+use super::{FOOT_COUNT, JOINTS, ROBOT, TRUNK, feet, kinematics};
+use a1_model::MOTORS;
 use jump_control::{
     CartesianGains, CartesianPd, Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan,
     Torques, Watch, next_phase, sample,
@@ -27,32 +27,6 @@ const LEAN: f64 = 0.03;
 const SAFE_DAMPING: f64 = 2.0;
 /// Ticks of the plant per tick of the controller.
 const RATIO: usize = 10;
-
-/// Disturbances drawn from a seed; seed 0 is the nominal run.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Disturbance {
-    /// Friction of the ground.
-    pub(crate) friction: f64,
-    /// Standard deviations of encoder position and speed noise, rad and rad/s.
-    pub(crate) encoder: (f64, f64),
-}
-
-impl Disturbance {
-    /// Seed 0: none. Others: friction 0.6 ± 20 %, encoder noise.
-    pub(crate) fn draw(seed: u64) -> Self {
-        if seed == 0 {
-            return Self {
-                friction: 0.6,
-                encoder: (0.0, 0.0),
-            };
-        }
-        let spread = 2.0 * Noise::new(seed, 0.0).uniform() - 1.0;
-        Self {
-            friction: 0.6 * (1.0 + 0.2 * spread),
-            encoder: (1e-3, 0.05),
-        }
-    }
-}
 
 /// Everything a run leaves behind.
 pub(crate) struct Run {
@@ -190,32 +164,6 @@ impl Controller<'_> {
     }
 }
 
-/// The world of a task. The robot starts at height zero: on the floor, or on a box with the floor below.
-pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
-    let Some(edge) = task.edge else {
-        return Terrain::FLAT;
-    };
-    let (mut lower, mut upper) = ([-0.6, -0.6, -edge.drop], [0.6, 0.6, 0.0]);
-    if edge.sign > 0.0 {
-        upper[edge.axis] = edge.distance;
-    } else {
-        lower[edge.axis] = -edge.distance;
-    }
-    Terrain {
-        floor: -edge.drop,
-        block: Some(Block { lower, upper }),
-    }
-}
-
-/// The plant at the start of a task.
-fn plant(task: &Task, disturbance: &Disturbance) -> Plant {
-    let mut settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
-    settings.contact.friction = disturbance.friction;
-    let mut plant = Plant::new(ROBOT, spheres(), terrain(task), settings);
-    plant.reset(&task.start, &Tangent::ZERO);
-    plant
-}
-
 /// Whether a motor gives no more than its limit at this speed.
 fn saturated(torques: &[f64; JOINTS], speeds: &[f64; JOINTS]) -> bool {
     torques
@@ -232,12 +180,13 @@ fn saturated(torques: &[f64; JOINTS], speeds: &[f64; JOINTS]) -> bool {
 pub(crate) fn run(
     task: &Task,
     reference: &Reference,
+    sim: Sim,
     seed: u64,
     mut progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let disturbance = Disturbance::draw(seed);
-    let mut noise = Noise::new(seed, 1.0);
-    let mut plant = plant(task, &disturbance);
+    let mut sensors = Sensors::new(&disturbance, seed);
+    let mut plant = plant(sim, task, &disturbance)?;
     let plan = Plan::new(
         &reference.nodes,
         reference.takeoff,
@@ -297,14 +246,15 @@ pub(crate) fn run(
         if t > end {
             break;
         }
-        let measured = measure(&plant, &disturbance, &mut noise);
+        let measured = sensors.measure(&plant);
         let command = controller.tick(t, &measured, &mut run);
         run.samples.push(record(&plant, &controller, t));
         for _ in 0..RATIO {
-            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+            let (q, v) = sensors.encoders(&plant);
             let torques = command.torques(&q, &v, &MOTORS);
+            let speeds = plant.velocity().joints;
             plant.step(&torques).map_err(|error| error.to_string())?;
-            observe(&mut run, &plant, &torques, &v, controller.phase, t);
+            observe(&mut run, &plant, &torques, &speeds, controller.phase, t);
         }
         if k.is_multiple_of(10) {
             progress(t, controller.phase);
@@ -314,31 +264,6 @@ pub(crate) fn run(
     run.final_phase = controller.phase;
     run.fault = controller.fault;
     Ok(run)
-}
-
-/// Ground truth of the base, joints with the disturbance's encoder noise.
-fn measure(
-    plant: &Plant,
-    disturbance: &Disturbance,
-    noise: &mut Noise,
-) -> Measurement<f64, JOINTS, FOOT_COUNT> {
-    let (mut q, mut v) = (*plant.configuration(), *plant.velocity());
-    let (dq, dv) = disturbance.encoder;
-    if dq > 0.0 {
-        for (q, v) in q.joints.iter_mut().zip(&mut v.joints) {
-            *q += dq * noise.sample();
-            *v += dv * noise.sample();
-        }
-    }
-    let forces = plant.contact_forces_w();
-    Measurement {
-        base: q.base,
-        base_velocity: v.base,
-        joints: q.joints,
-        joint_velocities: v.joints,
-        foot_forces: core::array::from_fn(|i| forces[i].norm()),
-        age: 0.0,
-    }
 }
 
 /// Extremes of one plant tick.
@@ -366,7 +291,7 @@ fn observe(
     for force in &forces[..FOOT_COUNT] {
         run.peak_foot_force = run.peak_foot_force.max(force.norm());
     }
-    run.trunk_contact |= forces[8..].iter().any(|f| f.norm() > 0.0);
+    run.trunk_contact |= forces[TRUNK..].iter().any(|f| f.norm() > 0.0);
     let looking = matches!(phase, Phase::PreLanding | Phase::Landing);
     if run.first_contact.is_none()
         && looking

@@ -1,6 +1,7 @@
 //! What a run achieved, as numbers.
 
 use super::execute::{Run, SETTLE};
+use super::plant::Sim;
 use super::reference::{Reference, heading_matrix};
 use super::task::{SrbPlan, Task};
 use jump_control::Phase;
@@ -88,11 +89,12 @@ impl Verdict {
         plan: &SrbPlan,
         reference: &Reference,
         run: &Run,
+        sim: Sim,
         seed: u64,
     ) -> Value {
         json!({
             "task": task.name,
-            "sim": "native",
+            "sim": sim.name(),
             "seed": seed,
             "landed": self.landed,
             "upright": self.upright,

@@ -4,12 +4,14 @@ pub(crate) mod execute;
 pub(crate) mod judge;
 pub(crate) mod kinematics;
 pub(crate) mod log;
+pub(crate) mod plant;
 pub(crate) mod reference;
 pub(crate) mod report;
+mod sensors;
 pub(crate) mod task;
 
 use a1_model::{A1Geared, FEET};
-use contact_sim::{ContactSphere, NativeSimulator};
+use contact_sim::ContactSphere;
 use rbd_core::{Configuration, Frame, Tangent};
 
 /// Joints of the robot.
@@ -18,6 +20,12 @@ pub(crate) const JOINTS: usize = 12;
 pub(crate) const FOOT_COUNT: usize = 4;
 /// Its contact spheres: feet, knees, corners of the trunk.
 pub(crate) const SPHERES: usize = 16;
+/// The first of the trunk's.
+pub(crate) const TRUNK: usize = 8;
+/// The published trunk is a box of this size, m.
+pub(crate) const TRUNK_SIZE: [f64; 3] = [0.267, 0.194, 0.114];
+/// Radius of the spheres at its corners in the native simulator, m.
+const CORNER_RADIUS: f64 = 0.01;
 
 /// The robot that is planned for and simulated: A1 as published, with rotors.
 pub(crate) const ROBOT: A1Geared = A1Geared;
@@ -25,7 +33,6 @@ pub(crate) const ROBOT: A1Geared = A1Geared;
 pub(crate) type State = Configuration<f64, JOINTS>;
 pub(crate) type Velocity = Tangent<f64, JOINTS>;
 pub(crate) type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;
-pub(crate) type Plant = NativeSimulator<f64, A1Geared, JOINTS, SPHERES>;
 
 /// Frames of the feet: the centres of the balls.
 pub(crate) fn feet() -> [Frame<f64>; FOOT_COUNT] {
@@ -40,18 +47,24 @@ pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
             offset: foot.frame.offset,
             radius: a1_model::FOOT_RADIUS,
         },
-        (None, 4..8) => ContactSphere {
+        (None, 4..TRUNK) => ContactSphere {
             link: rbd_core::Link::Joint(3 * (i - 4) + 2),
             offset: [0.0; 3],
             radius: 0.02,
         },
         _ => {
-            // The published trunk is a box of 0.267 x 0.194 x 0.114 m; its corners, rounded.
-            let side = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
+            let corner = |axis: usize| {
+                let inside = 0.5 * TRUNK_SIZE[axis] - CORNER_RADIUS;
+                if (i >> axis) & 1 == 0 {
+                    inside
+                } else {
+                    -inside
+                }
+            };
             ContactSphere {
                 link: rbd_core::Link::Base,
-                offset: [0.1235 * side(0), 0.087 * side(1), 0.047 * side(2)],
-                radius: 0.01,
+                offset: core::array::from_fn(corner),
+                radius: CORNER_RADIUS,
             }
         }
     })

@@ -29,7 +29,7 @@ pub(crate) fn html(
 ) -> String {
     let title = format!("saltus run {}", task.name);
     let intro = "The robot stands, pushes off, flies and lands under the controllers of the jump; the \
-        plant is the native contact simulator at 10 kHz. The plan is a single-rigid-body optimum with \
+        plant is simulated at 10 kHz (see the table). The plan is a single-rigid-body optimum with \
         leg kinematics and inverse dynamics, not a whole-body optimum.";
     let data = json!({
         "frames": frames(&run.samples),
@@ -95,7 +95,7 @@ fn frames(samples: &[Sample]) -> Value {
 }
 
 fn scene(task: &Task) -> Value {
-    let terrain = super::execute::terrain(task);
+    let terrain = super::plant::terrain(task);
     json!({
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),

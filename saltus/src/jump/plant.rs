@@ -1,0 +1,164 @@
+//! The simulated robot: which simulator, and how it differs from the robot that was planned for.
+
+use super::task::Task;
+use super::{JOINTS, ROBOT, SPHERES, spheres};
+use crate::noise::Noise;
+use a1_model::{MOTORS, a1};
+use contact_sim::{Block, NativeSimulator, Settings, Simulator, Terrain};
+use rbd_core::{BaseBody, BaseKind, Body, TableModel, Tangent, Tree};
+
+/// A simulator of A1.
+pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
+
+/// The simulators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Sim {
+    /// Our own contact simulator.
+    Native,
+    /// MuJoCo, in builds with the feature `mujoco`.
+    Mujoco,
+}
+
+impl Sim {
+    /// Its name on the command line and in results.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Native => "native",
+            Self::Mujoco => "mujoco",
+        }
+    }
+}
+
+/// How the plant and its sensors differ from what the planner knew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Disturbance {
+    /// Friction of the ground.
+    pub(crate) friction: f64,
+    /// Every mass and moment of mass, relative.
+    pub(crate) mass: f64,
+    /// Rotor inertias, relative.
+    pub(crate) rotors: f64,
+    /// Viscous and Coulomb friction of the joints, relative.
+    pub(crate) joint_friction: f64,
+    /// Age of every measurement at 1 kHz, ms.
+    pub(crate) latency_ms: usize,
+    /// Standard deviations of encoder position and speed noise, rad and rad/s.
+    pub(crate) encoder: (f64, f64),
+}
+
+impl Disturbance {
+    /// None: the nominal run.
+    pub(crate) const NOMINAL: Self = Self {
+        friction: 0.6,
+        mass: 1.0,
+        rotors: 1.0,
+        joint_friction: 1.0,
+        latency_ms: 0,
+        encoder: (0.0, 0.0),
+    };
+
+    /// Seed 0: none. Others: friction ± 20 %, mass ± 5 %, rotors and joint friction ± 30 %, 2 ms of latency, encoder noise.
+    pub(crate) fn draw(seed: u64) -> Self {
+        if seed == 0 {
+            return Self::NOMINAL;
+        }
+        let mut noise = Noise::new(seed, 0.0);
+        let mut around = |share: f64| 1.0 + share * (2.0 * noise.uniform() - 1.0);
+        Self {
+            friction: Self::NOMINAL.friction * around(0.2),
+            mass: around(0.05),
+            rotors: around(0.3),
+            joint_friction: around(0.3),
+            latency_ms: 2,
+            encoder: (1e-3, 0.05),
+        }
+    }
+
+    /// The disturbed robot.
+    fn robot(&self) -> Result<TableModel<f64, JOINTS>, String> {
+        let mut base: BaseBody<f64> = *Tree::<f64, JOINTS>::base(&ROBOT);
+        let mut bodies: [Body<f64>; JOINTS] = *Tree::<f64, JOINTS>::bodies(&ROBOT);
+        base.mass *= self.mass;
+        base.first = base.first.map(|x| x * self.mass);
+        base.second = base.second.map(|x| x * self.mass);
+        for body in &mut bodies {
+            body.mass *= self.mass;
+            body.first = body.first.map(|x| x * self.mass);
+            body.second = body.second.map(|x| x * self.mass);
+            body.rotor_inertia *= self.rotors;
+        }
+        TableModel::new(BaseKind::Floating, base, &bodies).map_err(|error| error.to_string())
+    }
+
+    fn settings(&self) -> Settings<f64, JOINTS> {
+        let limits = a1::LIMITS.map(|mut limits| {
+            limits.damping *= self.joint_friction;
+            limits.friction *= self.joint_friction;
+            limits
+        });
+        let mut settings = Settings::new(&limits, &MOTORS);
+        settings.contact.friction = self.friction;
+        settings
+    }
+}
+
+/// The plant at the start of a task.
+pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
+    let mut plant = match sim {
+        Sim::Native => Box::new(NativeSimulator::new(
+            disturbance.robot()?,
+            spheres(),
+            terrain(task),
+            disturbance.settings(),
+        )),
+        Sim::Mujoco => mujoco(task, disturbance)?,
+    };
+    plant.reset(&task.start, &Tangent::ZERO);
+    Ok(plant)
+}
+
+/// MuJoCo: feet and knees as the native simulator has them, the trunk as the published box.
+#[cfg(feature = "mujoco")]
+fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
+    use contact_sim::{Geom, GeomShape, MujocoSimulator};
+    use rbd_core::Frame;
+
+    let balls = spheres();
+    let mut geoms: Vec<Geom> = balls[..super::TRUNK]
+        .iter()
+        .enumerate()
+        .map(|(i, sphere)| Geom::sphere(sphere, i))
+        .collect();
+    geoms.push(Geom {
+        frame: Frame::IDENTITY,
+        shape: GeomShape::Box(super::TRUNK_SIZE.map(|x| 0.5 * x)),
+        contact: super::TRUNK,
+    });
+    let mut settings = disturbance.settings();
+    settings.substeps = 1;
+    let robot = disturbance.robot()?;
+    let sim = MujocoSimulator::new(&robot, &geoms, &terrain(task), settings);
+    Ok(Box::new(sim.map_err(|error| error.to_string())?))
+}
+
+#[cfg(not(feature = "mujoco"))]
+fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
+    Err("this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`".into())
+}
+
+/// The world of a task. The robot starts at height zero: on the floor, or on a box with the floor below.
+pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
+    let Some(edge) = task.edge else {
+        return Terrain::FLAT;
+    };
+    let (mut lower, mut upper) = ([-0.6, -0.6, -edge.drop], [0.6, 0.6, 0.0]);
+    if edge.sign > 0.0 {
+        upper[edge.axis] = edge.distance;
+    } else {
+        lower[edge.axis] = -edge.distance;
+    }
+    Terrain {
+        floor: -edge.drop,
+        block: Some(Block { lower, upper }),
+    }
+}
