@@ -8,7 +8,7 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "so3",
     "rbd-core",
     "a1-model",
@@ -16,6 +16,7 @@ const CRATES: [&str; 8] = [
     "dense-qp",
     "landing",
     "jump-control",
+    "state-est",
     "contact-sim",
 ];
 

@@ -1,0 +1,414 @@
+//! One step of the estimator.
+
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::{
+    Axes, Configuration, Contact, ContactShape, Frame, FrameJacobian, GRAVITY, Kinematics, Motion,
+    Posture, Tangent, Transform, Tree, forward_kinematics, frame_jacobian,
+};
+use so3::{Scalar, math, orthonormalize_step};
+
+use crate::filter::{FEET, Filter, POSITION, VELOCITY};
+use crate::{Fault, Sample, Settings};
+
+/// A foot: the centre of a ball that may roll, or the middle of a sole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot<T> {
+    /// Where it is.
+    pub frame: Frame<T>,
+    /// Radius of the ball, m; zero for a sole.
+    pub radius: T,
+}
+
+impl<T: Scalar> Foot<T> {
+    /// A robot's contact: a ball by its centre, a sole by its middle.
+    #[must_use]
+    pub fn of(contact: &Contact<T>) -> Self {
+        match contact.shape {
+            ContactShape::Sphere { radius } => Self {
+                frame: contact.frame,
+                radius,
+            },
+            ContactShape::Rectangle {
+                x: [a, b],
+                y: [c, d],
+            } => {
+                let middle = Vector3::new((a + b) * T::HALF, (c + d) * T::HALF, T::ZERO);
+                let mut frame = contact.frame;
+                frame.offset = frame.placement().point(&middle).into();
+                Self {
+                    frame,
+                    radius: T::ZERO,
+                }
+            }
+        }
+    }
+}
+
+/// The estimator of a robot with `N` joints and `F` feet; `S` must be F + 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimator<T: Scalar, const N: usize, const F: usize, const S: usize> {
+    /// The feet.
+    pub feet: [Foot<T>; F],
+    /// Pose of the IMU in the base.
+    pub imu: Transform<T>,
+    /// Noise, gates and limits.
+    pub settings: Settings<T>,
+}
+
+/// Memory of the estimator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<T: Scalar, const F: usize, const S: usize> {
+    filter: Filter<T, S>,
+    rot_wb: Rotation3<T>,
+    /// Bias of the gyroscope, base axes.
+    bias_b: Vector3<T>,
+    /// The last good IMU sample, base axes, bias not removed.
+    force_b: Vector3<T>,
+    rate_b: Vector3<T>,
+    anchored: [bool; F],
+    confidence: [T; F],
+    coasting: T,
+}
+
+/// Whether the estimate may be acted on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Fresh.
+    Good,
+    /// IMU samples are missing, for a short time so far.
+    Coasting,
+    /// They are missing for too long: the estimate stands still where it was.
+    Lost,
+}
+
+/// The estimate after one step; always finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate<T: Scalar, const F: usize> {
+    /// Pose of the base in the world.
+    pub base: Transform<T>,
+    /// Velocity of the base, base axes.
+    pub velocity: Motion<T>,
+    /// How sure it is that each foot stands on the ground, 0 to 1.
+    pub confidence: [T; F],
+    /// Whether it may be acted on.
+    pub status: Status,
+    /// The first thing that was wrong with the sample.
+    pub fault: Option<Fault>,
+}
+
+impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
+    /// Standing still in a known place.
+    #[must_use]
+    pub fn new<M: Tree<T, N>, const N: usize>(
+        estimator: &Estimator<T, N, F, S>,
+        model: &M,
+        start: &Configuration<T, N>,
+    ) -> Self {
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(model, &Posture::new(model, start), &mut kinematics);
+        let mut mean = [Vector3::zeros(); S];
+        if let Some(p) = mean.get_mut(POSITION) {
+            *p = start.base.point(&estimator.imu.translation);
+        }
+        for (slot, foot) in mean.iter_mut().skip(FEET).zip(&estimator.feet) {
+            *slot = kinematics.frame(&foot.frame).translation;
+        }
+        let rot_wb = start.base.rotation;
+        Self {
+            filter: Filter::new(mean, T::of(1e-3)),
+            rot_wb,
+            bias_b: Vector3::zeros(),
+            force_b: rot_wb.inverse() * -gravity::<T>(),
+            rate_b: Vector3::zeros(),
+            anchored: [false; F],
+            confidence: [T::ZERO; F],
+            coasting: T::ZERO,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        let vectors = [&self.bias_b, &self.force_b, &self.rate_b];
+        self.filter.is_finite()
+            && self.rot_wb.matrix().iter().all(|x| x.is_finite_number())
+            && vectors.into_iter().all(is_finite)
+    }
+}
+
+/// A foot as the legs say: from the IMU's point, world axes.
+#[derive(Clone, Copy)]
+struct Seen<T: Scalar> {
+    /// Place.
+    arm_w: Vector3<T>,
+    /// Velocity of the IMU's point if the foot stands or rolls.
+    velocity_w: Vector3<T>,
+    /// Velocity of a ball's centre while it rolls.
+    rolling_w: Vector3<T>,
+    /// Evidence of contact; zero where the leg cannot be used.
+    evidence: T,
+}
+
+impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, F, S> {
+    /// One step of `dt` seconds; `None` if no sample arrived.
+    #[must_use]
+    pub fn step<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        state: &mut State<T, F, S>,
+        sample: Option<&Sample<T, N, F>>,
+        dt: T,
+    ) -> Estimate<T, F> {
+        const { assert!(S == F + 2, "S must be F + 2") };
+        // Also false for NaN.
+        if !(dt > T::ZERO && dt <= self.settings.max_dt) {
+            return self.report(state, Some(Fault::Step));
+        }
+        let before = *state;
+        let mut fault = self.read_imu(state, sample, dt);
+        if state.coasting > self.settings.max_coasting {
+            state.rate_b = state.bias_b;
+            if let Some(v) = state.filter.mean.get_mut(VELOCITY) {
+                *v = Vector3::zeros();
+            }
+            state.confidence = [T::ZERO; F];
+            return self.report(state, fault);
+        }
+        self.propagate(state, dt);
+        match sample {
+            Some(sample) => {
+                let (seen, wrong) = self.look(model, state, sample);
+                fault = fault.or(wrong);
+                self.correct(state, &seen, dt);
+                self.level(state, sample, dt);
+            }
+            None => state.confidence = [T::ZERO; F],
+        }
+        if !state.is_finite() {
+            *state = before;
+            fault = fault.or(Some(Fault::Diverged));
+        }
+        self.report(state, fault)
+    }
+
+    /// Takes the IMU's numbers where they are possible, and counts the time without.
+    fn read_imu(
+        &self,
+        state: &mut State<T, F, S>,
+        sample: Option<&Sample<T, N, F>>,
+        dt: T,
+    ) -> Option<Fault> {
+        let s = &self.settings;
+        let within = |x: &Vector3<T>, limit: T| x.iter().all(|x| math::abs(*x) <= limit);
+        let fault = match sample {
+            None => Some(Fault::Missing),
+            Some(x) => {
+                let gyroscope = within(&x.angular_velocity_i, s.max_angular_velocity);
+                let accelerometer = within(&x.specific_force_i, s.max_specific_force);
+                if gyroscope {
+                    state.rate_b = self.imu.rotation * x.angular_velocity_i;
+                }
+                if accelerometer {
+                    state.force_b = self.imu.rotation * x.specific_force_i;
+                }
+                match (gyroscope, accelerometer) {
+                    (false, _) => Some(Fault::Gyroscope),
+                    (true, false) => Some(Fault::Accelerometer),
+                    (true, true) => None,
+                }
+            }
+        };
+        state.coasting = if fault.is_some() {
+            // Not beyond the limit: sums of small numbers must not end in a stuck float.
+            math::min(state.coasting + dt, s.max_coasting * T::TWO)
+        } else {
+            T::ZERO
+        };
+        fault
+    }
+
+    /// Attitude by the gyroscope, position and velocity by the accelerometer.
+    fn propagate(&self, state: &mut State<T, F, S>, dt: T) {
+        let turn = so3::exp(&((state.rate_b - state.bias_b) * (dt * T::HALF)));
+        // The force is felt at the middle of the step.
+        let middle = state.rot_wb * turn;
+        let acceleration = middle * state.force_b + gravity::<T>();
+        state.rot_wb = orthonormalize_step(&(middle * turn));
+        state
+            .filter
+            .predict(&acceleration, self.settings.accelerometer, dt);
+    }
+
+    /// Where the legs say the feet are, and how the IMU moves if they stand.
+    fn look<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        state: &State<T, F, S>,
+        sample: &Sample<T, N, F>,
+    ) -> ([Seen<T>; F], Option<Fault>) {
+        let mut q = Configuration {
+            base: Transform::IDENTITY,
+            joints: sample.joints,
+        };
+        let mut v = Tangent::ZERO;
+        v.joints = sample.joint_velocities;
+        let mut blind = [false; N];
+        let mut fault = None;
+        let joints = q.joints.iter_mut().zip(&mut v.joints).zip(&mut blind);
+        for (i, ((q, qd), blind)) in joints.enumerate() {
+            // What an encoder can say; false for NaN.
+            let sane = |x: T| math::abs(x) <= T::of(1e4);
+            if !(sane(*q) && sane(*qd)) {
+                (*q, *qd, *blind) = (T::ZERO, T::ZERO, true);
+                fault = fault.or(Some(Fault::Joint(i)));
+            }
+        }
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
+        let mut jacobian = FrameJacobian::ZERO;
+        let omega_b = state.rate_b - state.bias_b;
+        let mut seen = [Seen {
+            arm_w: Vector3::zeros(),
+            velocity_w: Vector3::zeros(),
+            rolling_w: Vector3::zeros(),
+            evidence: T::ZERO,
+        }; F];
+        let feet = self.feet.iter().zip(&sample.evidence);
+        for (i, (seen, (foot, evidence))) in seen.iter_mut().zip(feet).enumerate() {
+            frame_jacobian(
+                model,
+                &kinematics,
+                &foot.frame,
+                Axes::LocalWorldAligned,
+                &mut jacobian,
+            );
+            let motion = jacobian.mul(&v);
+            let arm_b = kinematics.frame(&foot.frame).translation - self.imu.translation;
+            let up = Vector3::z() * foot.radius;
+            seen.arm_w = state.rot_wb * arm_b;
+            seen.rolling_w = (state.rot_wb * (omega_b + motion.angular)).cross(&up);
+            let relative = state.rot_wb * (motion.linear + omega_b.cross(&arm_b));
+            seen.velocity_w = seen.rolling_w - relative;
+            let usable = !blind
+                .iter()
+                .enumerate()
+                .any(|(j, blind)| *blind && model.moves(j, foot.frame.link));
+            if evidence.is_nan_number() {
+                fault = fault.or(Some(Fault::Evidence(i)));
+            } else if usable {
+                seen.evidence = math::clamp(*evidence, T::ZERO, T::ONE);
+            }
+        }
+        (seen, fault)
+    }
+
+    /// Feet in contact as anchors and speedometers.
+    fn correct(&self, state: &mut State<T, F, S>, seen: &[Seen<T>; F], dt: T) {
+        let s = &self.settings;
+        let velocity = state.filter.get(VELOCITY);
+        let majority = consensus(seen, s);
+        let half = |slip: T| {
+            let ratio = slip / s.slip_gate;
+            T::ONE / (T::ONE + ratio * ratio)
+        };
+        for (i, foot) in seen.iter().enumerate() {
+            let slip = |from: Vector3<T>| half((foot.velocity_w - from).norm());
+            let fit =
+                majority.map_or_else(|| slip(velocity), |m| math::max(slip(velocity), slip(m)));
+            let confidence = foot.evidence * fit;
+            let trusted = confidence >= s.least_confidence;
+            if let Some(slot) = state.confidence.get_mut(i) {
+                *slot = confidence;
+            }
+            let Some(anchored) = state.anchored.get_mut(i) else {
+                return;
+            };
+            let fresh = trusted && !*anchored;
+            *anchored = trusted;
+            if !trusted {
+                continue;
+            }
+            let row = FEET + i;
+            let position = s.foot_position * s.foot_position / confidence;
+            if fresh {
+                state.filter.anchor(row, &foot.arm_w, position);
+            } else {
+                let drift = s.foot_drift * s.foot_drift * dt / confidence;
+                state.filter.walk(row, &(foot.rolling_w * dt), drift);
+                state
+                    .filter
+                    .measure(row, Some(POSITION), &foot.arm_w, position);
+            }
+            let speed = s.foot_speed * s.foot_speed / (confidence * confidence);
+            state
+                .filter
+                .measure(VELOCITY, None, &foot.velocity_w, speed);
+        }
+    }
+
+    /// Gravity for the tilt while quasi-static; standing still for the bias.
+    fn level(&self, state: &mut State<T, F, S>, sample: &Sample<T, N, F>, dt: T) {
+        let s = &self.settings;
+        let size = state.force_b.norm();
+        let stands = state.confidence.iter().filter(|c| **c > T::HALF).count();
+        let rate = state.rate_b - state.bias_b;
+        let quiet = |x: T, limit: f64| math::abs(x) < T::of(limit);
+        let steady = quiet(size - T::of(9.81), 1.0) && quiet(rate.norm(), 0.3);
+        if !steady || stands == 0 || state.coasting > T::ZERO {
+            return;
+        }
+        // Turning the estimate by up × f brings its vertical to the force.
+        let up_b = state.rot_wb.inverse() * Vector3::z();
+        let error = (state.force_b / size).cross(&up_b);
+        state.rot_wb *= so3::exp(&(error * (s.tilt_gain * dt)));
+        let still = sample.joint_velocities.iter().all(|qd| quiet(*qd, 0.3));
+        if still && stands == F {
+            let bias = state.bias_b + rate * (s.bias_gain * dt);
+            state.bias_b = bias.map(|x| math::clamp(x, -s.max_bias, s.max_bias));
+        }
+    }
+
+    /// The estimate for the outside: the base instead of the IMU.
+    fn report(&self, state: &State<T, F, S>, fault: Option<Fault>) -> Estimate<T, F> {
+        let omega_b = state.rate_b - state.bias_b;
+        let arm_b = self.imu.translation;
+        let status = if state.coasting > self.settings.max_coasting {
+            Status::Lost
+        } else if state.coasting > T::ZERO {
+            Status::Coasting
+        } else {
+            Status::Good
+        };
+        let at = state.filter.get(POSITION) - state.rot_wb * arm_b;
+        let velocity_b = state.rot_wb.inverse() * state.filter.get(VELOCITY);
+        Estimate {
+            base: Transform::new(state.rot_wb, at),
+            velocity: Motion::new(velocity_b - omega_b.cross(&arm_b), omega_b),
+            confidence: state.confidence,
+            status,
+            fault,
+        }
+    }
+}
+
+/// The velocity on which more than half of all feet agree, if they do.
+fn consensus<T: Scalar, const F: usize>(
+    seen: &[Seen<T>; F],
+    settings: &Settings<T>,
+) -> Option<Vector3<T>> {
+    let standing = || seen.iter().filter(|foot| foot.evidence > T::HALF);
+    let count = standing().count();
+    if 2 * count <= F {
+        return None;
+    }
+    let sum: Vector3<T> = standing().fold(Vector3::zeros(), |sum, foot| sum + foot.velocity_w);
+    let mean = sum / T::of(count as f64);
+    let agree = standing().all(|foot| (foot.velocity_w - mean).norm() < settings.slip_gate);
+    agree.then_some(mean)
+}
+
+fn gravity<T: Scalar>() -> Vector3<T> {
+    Vector3::from(GRAVITY.map(T::of))
+}
+
+fn is_finite<T: Scalar>(x: &Vector3<T>) -> bool {
+    x.iter().all(|x| x.is_finite_number())
+}
