@@ -55,6 +55,21 @@ pub struct Edge<T> {
     pub width: T,
 }
 
+impl<T: Scalar> Edge<T> {
+    /// Height of the ground under a point of the world, m, and its slope along the axis across the edge.
+    #[inline(always)]
+    #[must_use]
+    pub fn ground(&self, pos_w: &Vector3<T>) -> (T, T) {
+        let across = if self.axis == 0 { pos_w.x } else { pos_w.y };
+        let t = so3::math::tanh((self.sign * across - self.distance) / self.width);
+        let half = self.drop * T::HALF;
+        (
+            -half * (T::ONE + t),
+            -half * (T::ONE - t * t) * self.sign / self.width,
+        )
+    }
+}
+
 /// Weights of the cost, per node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights<T> {
@@ -168,14 +183,10 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         }
     }
 
-    /// Smoothed ground height and its slope across the edge at a point.
+    /// Smoothed ground height under a point.
     #[inline(always)]
     pub(crate) fn ground(&self, point: &Vector3<T>) -> T {
-        self.edge.map_or(T::ZERO, |edge| {
-            let across = if edge.axis == 0 { point.x } else { point.y };
-            let t = so3::math::tanh((edge.sign * across - edge.distance) / edge.width);
-            -edge.drop * T::HALF * (T::ONE + t)
-        })
+        self.edge.map_or(T::ZERO, |edge| edge.ground(point).0)
     }
 
     /// Checks the data.

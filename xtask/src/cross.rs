@@ -8,12 +8,15 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 12] = [
     "so3",
     "rbd-core",
     "a1-model",
     "icub-model",
     "dense-qp",
+    "ocp-solver",
+    "srb-opt",
+    "wb-opt",
     "landing",
     "jump-control",
     "state-est",

@@ -1,5 +1,7 @@
 //! The reference problems: `a1-jumps.json` read into srb-opt's problem.
 
+pub(crate) mod whole_body;
+
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
@@ -9,7 +11,7 @@ use std::collections::BTreeMap;
 pub(crate) const FEET: usize = 4;
 
 /// The nine problems as shipped.
-pub(crate) const SHIPPED: &str = include_str!("../data/a1-jumps.json");
+pub(crate) const SHIPPED: &str = include_str!("../../data/a1-jumps.json");
 
 /// The file: numbers shared by all tasks, and the tasks.
 #[derive(Deserialize)]
@@ -44,6 +46,8 @@ struct Constants {
     eps_r: f64,
     eps_log: f64,
     edge_w: f64,
+    tau_max: f64,
+    qd_max: f64,
 }
 
 #[derive(Deserialize)]
@@ -60,6 +64,7 @@ struct Task {
     r#box: f64,
     edge: Option<(usize, f64, f64)>,
     ttot: f64,
+    euler: Option<String>,
 }
 
 /// Product names of the nine tasks, beside the names of the reference file.

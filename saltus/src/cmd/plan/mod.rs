@@ -1,0 +1,183 @@
+//! `saltus plan`: solve a reference problem.
+
+mod srb;
+mod whole_body;
+
+use crate::reference::whole_body::shipped;
+use crate::reference::{File, SHIPPED};
+use core::ops::ControlFlow;
+use ocp_solver::{Barrier, Progress, Solution};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Options of `saltus plan`.
+#[derive(clap::Args, Clone)]
+pub(crate) struct Args {
+    /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).
+    #[arg(long)]
+    reference: Option<String>,
+    /// JSON description to take tasks from instead of the shipped nine.
+    #[arg(long)]
+    problem: Option<PathBuf>,
+    /// Stage to solve.
+    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"])]
+    stage: String,
+    /// SRB solution that the whole-body stage follows; default: the shipped one of the reference task, or,
+    /// for tasks of a problem file, one that is solved first.
+    #[arg(long)]
+    srb: Option<PathBuf>,
+    /// Write the solution here, in the layout of the reference checkers.
+    #[arg(long)]
+    solution: Option<PathBuf>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    json: bool,
+    /// Standard deviation of the noise added to the initial guess.
+    #[arg(long, default_value_t = 0.0)]
+    guess_noise: f64,
+    /// Seed of the guess noise.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Solve this many times, each from the cold guess, and report the median time.
+    #[arg(long, default_value_t = 1)]
+    repeat: usize,
+    /// Print every iteration to standard error.
+    #[arg(long)]
+    trace: bool,
+    /// Barrier rule.
+    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"])]
+    barrier: String,
+}
+
+/// What a stage hands back.
+struct Planned {
+    /// How the solve ended.
+    status: String,
+    /// Durations of the phases, s.
+    durations: Vec<f64>,
+    /// The stage's entry of the report.
+    report: Value,
+    /// The solution in the layout of the reference checkers.
+    solution: Value,
+}
+
+impl Planned {
+    fn number(&self, key: &str) -> f64 {
+        self.report[key].as_f64().unwrap_or(f64::NAN)
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    let text = match &args.problem {
+        Some(path) => read(path)?,
+        None => SHIPPED.to_owned(),
+    };
+    let file = File::parse(&text)?;
+    let name = file.pick(args.reference.as_deref())?;
+    let mut report = json!({ "task": name });
+    let (key, planned) = if args.stage == "whole-body" {
+        let srb = match &args.srb {
+            Some(path) => read(path)?,
+            None => match shipped(name).filter(|_| args.problem.is_none()) {
+                Some(text) => text.to_owned(),
+                None => {
+                    let first = srb::solve(&args.plain(), &file, name)?;
+                    report["srb"] = first.report;
+                    first.solution.to_string()
+                }
+            },
+        };
+        ("whole_body", whole_body::solve(args, &file, name, &srb)?)
+    } else {
+        ("srb", srb::solve(args, &file, name)?)
+    };
+    if let Some(path) = &args.solution {
+        std::fs::write(path, planned.solution.to_string())
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    if args.json {
+        let phase = |t: &f64| json!({ "duration_s": t });
+        report["status"] = json!(planned.status);
+        report["phases"] = planned.durations.iter().map(phase).collect();
+        report[key] = planned.report;
+        println!("{report}");
+    } else {
+        println!(
+            "{name}: {} in {:.2} ms, {} iterations, cost {:.6}, violation {:.1e}, durations {:.3?} s",
+            planned.status,
+            planned.number("wall_ms"),
+            planned.report["iterations"],
+            planned.number("cost"),
+            planned.number("max_violation"),
+            planned.durations,
+        );
+    }
+    Ok(if planned.status == "Solved" {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    })
+}
+
+fn read(path: &PathBuf) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+impl Args {
+    /// The same task, solved once from the plain guess.
+    fn plain(&self) -> Self {
+        Self {
+            guess_noise: 0.0,
+            repeat: 1,
+            ..self.clone()
+        }
+    }
+
+    fn barrier(&self) -> Barrier {
+        match self.barrier.as_str() {
+            "adaptive" => Barrier::Adaptive,
+            "monotone" => Barrier::Monotone,
+            _ => Barrier::Portfolio,
+        }
+    }
+
+    /// Prints an iteration where that is asked for.
+    fn observe(&self, progress: &Progress<f64>) -> ControlFlow<()> {
+        if self.trace {
+            let r = &progress.residual;
+            eprintln!(
+                "{:3} cost {:12.6} primal {:.1e} dual {:.1e} compl {:.1e} mu {:.1e} step {:.3} {:.3} shift {:.0e}",
+                progress.iteration,
+                progress.cost,
+                r.primal,
+                r.dual,
+                r.complementarity,
+                progress.mu,
+                progress.primal_step,
+                progress.dual_step,
+                progress.shift
+            );
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Solves as often as asked for; the outcome and the median wall time, ms.
+    fn timed(
+        &self,
+        mut solve: impl FnMut() -> Result<Solution<f64>, String>,
+    ) -> Result<(Solution<f64>, f64), String> {
+        let mut times = Vec::new();
+        let mut outcome = None;
+        for _ in 0..self.repeat.max(1) {
+            let start = Instant::now();
+            outcome = Some(solve()?);
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        let outcome = outcome.ok_or("nothing was solved")?;
+        Ok((outcome, times[times.len() / 2]))
+    }
+}

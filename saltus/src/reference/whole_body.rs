@@ -1,0 +1,315 @@
+//! The whole-body reference problem of a task, from a solution of its SRB problem.
+
+use super::{FEET, File};
+use a1_model::{A1Reference, a1_reference::frame};
+use core::f64::consts::{PI, TAU};
+use nalgebra::{Matrix3, Vector3};
+use serde::Deserialize;
+use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Problem, Robot, Weights};
+
+/// Coordinates of the reference robot.
+pub(crate) const N: usize = 18;
+
+/// Length of an interval, s.
+pub(crate) const DT: f64 = 0.01;
+/// Landing configuration of a leg.
+const LANDING: [f64; 3] = [0.0, 0.8957, -1.7914];
+/// Intervals before touchdown over which the joints rest.
+const LANDING_INTERVALS: usize = 5;
+const KNEE_CLEARANCE: f64 = 0.02;
+const SWING_HEIGHT: f64 = -0.01;
+const DRIFT: f64 = 0.01;
+const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
+const WEIGHTS: Weights<f64> = Weights {
+    position: 1.0,
+    effort: 1e-4,
+    goal: 10.0,
+};
+
+/// A solution of the SRB problem in the layout of the reference checkers.
+#[derive(Deserialize)]
+pub(crate) struct SrbMotion {
+    sol: SrbArrays,
+}
+
+#[derive(Deserialize)]
+struct SrbArrays {
+    #[serde(rename = "T")]
+    durations: Vec<f64>,
+    p: Vec<[f64; 3]>,
+    /// Body to world, column-major.
+    #[serde(rename = "R")]
+    rotations: Vec<[f64; 9]>,
+    f: Vec<[f64; 3 * FEET]>,
+}
+
+/// SRB solutions shipped for the nine tasks.
+pub(crate) fn shipped(name: &str) -> Option<&'static str> {
+    let text = match name {
+        "lateral" => include_str!("../../data/srb/lateral.json"),
+        "lateral_down" => include_str!("../../data/srb/lateral_down.json"),
+        "spin" => include_str!("../../data/srb/spin.json"),
+        "diagonal" => include_str!("../../data/srb/diagonal.json"),
+        "barrel" => include_str!("../../data/srb/barrel.json"),
+        "double_barrel" => include_str!("../../data/srb/double_barrel.json"),
+        "double_backflip" => include_str!("../../data/srb/double_backflip.json"),
+        "forward" => include_str!("../../data/srb/forward.json"),
+        "barrel_box" => include_str!("../../data/srb/barrel_box.json"),
+        _ => return None,
+    };
+    Some(text)
+}
+
+impl SrbMotion {
+    /// Parses a solution.
+    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|error| format!("SRB solution: {error}"))
+    }
+}
+
+/// What a whole-body problem borrows, and the guess that comes with it.
+pub(crate) struct Data {
+    robot: Robot<f64, N>,
+    feet: [Foot<f64>; FEET],
+    clearances: Vec<Clearance<f64>>,
+    phases: Vec<Phase<FEET>>,
+    /// References of the intervals.
+    reference: Vec<[f64; N]>,
+    /// References of the nodes.
+    pub(crate) nodes: Vec<[f64; N]>,
+    /// Forces of the SRB solution, per interval.
+    pub(crate) forces: Vec<[f64; 3 * FEET]>,
+    edge: Option<srb_opt::Edge<f64>>,
+    start: [f64; N],
+    goal: [f64; N],
+    friction: f64,
+    /// Order of the base coordinates.
+    pub(crate) order: EulerOrder,
+}
+
+impl Data {
+    /// Durations of the phases, s.
+    pub(crate) fn durations(&self) -> Vec<f64> {
+        let seconds = |phase: &Phase<FEET>| DT * phase.intervals as f64;
+        self.phases.iter().map(seconds).collect()
+    }
+
+    /// The problem.
+    pub(crate) fn problem(&self) -> Problem<'_, f64, N, FEET> {
+        Problem {
+            robot: self.robot,
+            feet: self.feet,
+            clearances: &self.clearances,
+            swing_height: SWING_HEIGHT,
+            edge: self.edge,
+            phases: &self.phases,
+            reference: &self.reference,
+            dt: DT,
+            start: self.start,
+            goal: self.goal,
+            goal_tolerance: GOAL_TOLERANCE,
+            landing_intervals: LANDING_INTERVALS,
+            friction: self.friction,
+            drift: DRIFT,
+            weights: WEIGHTS,
+        }
+    }
+}
+
+/// A base in the file's order x, y, z, roll, pitch, yaw, with the legs at the landing configuration.
+fn with_landing_legs(order: EulerOrder, base: [f64; BASE]) -> [f64; N] {
+    let columns = order.columns();
+    core::array::from_fn(|i| match i.checked_sub(BASE) {
+        None => base[columns[i]],
+        Some(joint) => LANDING[joint % 3],
+    })
+}
+
+impl File {
+    /// The whole-body problem of a task.
+    pub(crate) fn whole_body(&self, name: &str, srb: &SrbMotion) -> Result<Data, String> {
+        let c = &self.constants;
+        let t = self
+            .tasks
+            .get(name)
+            .ok_or_else(|| format!("no task `{name}`"))?;
+        // Data that both stages share is checked by the SRB problem.
+        let shared: srb_opt::Problem<f64, FEET, 12> = self.problem(name)?;
+        let order = match t.euler.as_deref() {
+            None | Some("zyx") => EulerOrder::Zyx,
+            Some("zxy") => EulerOrder::Zxy,
+            Some(other) => {
+                return Err(format!(
+                    "task {name}: euler must be zyx or zxy, not {other}"
+                ));
+            }
+        };
+        let track = Track::new(name, &t.n, srb, order)?;
+        let phases: Vec<Phase<FEET>> = shared
+            .used_phases()
+            .iter()
+            .zip(&srb.sol.durations)
+            .map(|(phase, duration)| Phase {
+                contacts: phase.contacts,
+                intervals: (duration / DT).round_ties_even().max(1.0) as usize,
+            })
+            .collect();
+        // The clock of the reference is stretched phase by phase onto the intervals.
+        let mut times = vec![0.0];
+        let mut begin = 0.0;
+        for (phase, duration) in phases.iter().zip(&srb.sol.durations) {
+            let step = duration / phase.intervals as f64;
+            times.extend((1..=phase.intervals).map(|i| begin + step * i as f64));
+            begin += duration;
+        }
+        let nodes: Vec<[f64; N]> = times
+            .iter()
+            .map(|time| with_landing_legs(order, track.at(*time)))
+            .collect();
+        let intervals = times.len() - 1;
+        let forces = times[..intervals].iter().map(|time| track.force(*time));
+        let forces = forces.collect();
+        let p = shared.goal_w;
+        let turn = shared.axis * shared.angle;
+        let goal = with_landing_legs(order, [p.x, p.y, p.z, turn.x, turn.y, turn.z]);
+        let mut reference: Vec<[f64; N]> = nodes
+            .windows(2)
+            .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
+            .collect();
+        if let Some(last) = reference.last_mut() {
+            *last = goal;
+        }
+        let s = shared.start_w;
+        let mut robot = Robot::on_euler_base(&A1Reference, order);
+        for limit in robot.limits.iter_mut().skip(BASE) {
+            (limit.effort, limit.speed) = (c.tau_max, c.qd_max);
+        }
+        let frames = [
+            frame::FL_FOOT,
+            frame::FR_FOOT,
+            frame::RL_FOOT,
+            frame::RR_FOOT,
+        ];
+        let foot = |i: usize| Foot {
+            point: Robot::<f64, N>::point(&frames[i]),
+            pos_wf: Vector3::from(c.feet0[i]),
+        };
+        let corner = |offset: &[f64; 3]| Clearance {
+            point: Point {
+                link: BASE - 1,
+                offset_l: Vector3::from(*offset),
+            },
+            height: c.clear,
+        };
+        let knee = |leg: usize| Clearance {
+            point: Point {
+                link: BASE + 3 * leg + 2,
+                offset_l: Vector3::zeros(),
+            },
+            height: KNEE_CLEARANCE,
+        };
+        Ok(Data {
+            robot,
+            feet: core::array::from_fn(foot),
+            clearances: c
+                .corners
+                .iter()
+                .map(corner)
+                .chain((0..FEET).map(knee))
+                .collect(),
+            phases,
+            reference,
+            nodes,
+            forces,
+            edge: shared.edge,
+            start: with_landing_legs(order, [s.x, s.y, s.z, 0.0, 0.0, 0.0]),
+            goal,
+            friction: shared.friction,
+            order,
+        })
+    }
+}
+
+/// The SRB solution over time.
+struct Track<'a> {
+    times: Vec<f64>,
+    /// x, y, z, roll, pitch, yaw at the nodes, angles without jumps.
+    base: Vec<[f64; BASE]>,
+    forces: &'a [[f64; 3 * FEET]],
+}
+
+impl<'a> Track<'a> {
+    fn new(
+        name: &str,
+        intervals: &[usize],
+        srb: &'a SrbMotion,
+        order: EulerOrder,
+    ) -> Result<Self, String> {
+        let sol = &srb.sol;
+        let total: usize = intervals.iter().sum();
+        let fits = sol.durations.len() == intervals.len()
+            && sol.p.len() == total + 1
+            && sol.rotations.len() == total + 1
+            && sol.f.len() == total;
+        if !fits {
+            return Err(format!(
+                "task {name}: the SRB solution must have {} durations, {} nodes and {total} forces",
+                intervals.len(),
+                total + 1
+            ));
+        }
+        let mut times = vec![0.0];
+        let mut begin = 0.0;
+        for (n, duration) in intervals.iter().zip(&sol.durations) {
+            if !(*duration > 0.0 && duration.is_finite()) {
+                return Err(format!(
+                    "task {name}: durations of the SRB solution must be positive"
+                ));
+            }
+            times.extend((1..=*n).map(|i| begin + duration / *n as f64 * i as f64));
+            begin += duration;
+        }
+        let mut base: Vec<[f64; BASE]> = Vec::with_capacity(times.len());
+        for (p, r) in sol.p.iter().zip(&sol.rotations) {
+            let angles = order.angles(&Matrix3::from_column_slice(r));
+            let columns = order.columns();
+            let mut row = [p[0], p[1], p[2], 0.0, 0.0, 0.0];
+            for (angle, column) in angles.iter().zip(&columns[3..]) {
+                row[*column] = *angle;
+            }
+            if let Some(before) = base.last() {
+                for (x, x0) in row.iter_mut().zip(before).skip(3) {
+                    // Steps above half a turn are jumps of the principal value.
+                    if (*x - x0).abs() > PI {
+                        *x -= TAU * ((*x - x0) / TAU).round();
+                    }
+                }
+            }
+            base.push(row);
+        }
+        Ok(Self {
+            times,
+            base,
+            forces: &sol.f,
+        })
+    }
+
+    /// Last node at or before a time.
+    fn index(&self, time: f64) -> usize {
+        let after = self.times.partition_point(|t| *t <= time + 1e-9);
+        after.saturating_sub(1)
+    }
+
+    /// Linear interpolation between nodes.
+    fn at(&self, time: f64) -> [f64; BASE] {
+        let i = self.index(time).min(self.times.len() - 2);
+        let (from, to) = (&self.base[i], &self.base[i + 1]);
+        let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);
+        let share = share.clamp(0.0, 1.0);
+        core::array::from_fn(|c| from[c] + share * (to[c] - from[c]))
+    }
+
+    fn force(&self, time: f64) -> [f64; 3 * FEET] {
+        self.forces[self.index(time).min(self.forces.len() - 1)]
+    }
+}

@@ -1,0 +1,301 @@
+//! Second derivatives of inverse dynamics, accelerations and positions, contracted with multipliers.
+//!
+//! The scalar is
+//!
+//! ```text
+//! φ(q, q̇, q̈, F) = λ · τ(q, q̇, q̈, F) + Σ μ_f · a_f(q, q̇, q̈) + Σ ν_i · r_i(q)
+//! ```
+//!
+//! with efforts τ, accelerations a_f of contact points and positions r_i of points. λ is treated as a
+//! virtual velocity: Λ = Σ S λ over a body and its ancestors, and λ·τ = Σ_bodies Λ · f. When joint k moves,
+//! its subtree is carried along, and seen from the subtree only what comes in through joint k changes:
+//! δV = Ṡ_k, δA = S̈_k + Ṡ_k × V, δΛ = S^λ_k with S^λ = Λ × S; for q̇_k it is δV = S_k,
+//! δA = 2 Ṡ_k + S_k × V. With the subtree's sums H = ∫ Λ, G = Σ Cᵀ Λ (I, C of [`crate::moments`]), and for a joint j
+//! and an ancestor k (or k = j):
+//!
+//! ```text
+//! P = I S^λ_j + S_j ×* H                                   q_j q_k: S̈_k·P + Ṡ_k·Q + S^λ_k·R
+//! Q = Cᵀ S^λ_j + Ṡ_j ×* 2H + S_j ×* G + Nᵀ Ṡ_j             q̇_j q_k: Ṡ_k·U + S^λ_k·W
+//! R = S_j ×* f + I S̈_j + C Ṡ_j                             q̈_j q_k: S^λ_k·Φ
+//! U = S_j ×* 2H + Nᵀ S_j                                   q_j q̇_k: 2 Ṡ_k·P + S_k·Q
+//! W = 2 I Ṡ_j + C S_j,   Φ = I S_j                         q̇_j q̇_k: S_k·U,   q_j q̈_k: S_k·P
+//! ```
+//!
+//! where N X = (0, 2 ∫ x(r) × Λ) . Contact forces, μ and ν keep their directions in the world while the bodies turn
+//! under them; the terms that this adds are marked below.
+//!
+//! This is the contraction of the second-order derivatives of Singh, Russell, Wensing, "On second-order
+//! derivatives of rigid-body dynamics", 2023, with one sweep instead of a tensor; derived here in the
+//! moments' form.
+
+use nalgebra::{Matrix3, Vector3};
+use rbd_core::model::Link;
+use rbd_core::{Force, Motion};
+use so3::Scalar;
+
+use crate::moments::{at_point, hat, moment_of, outer, turn};
+use crate::sweep::{Contacts, PointMotion, Sweep};
+
+/// Second derivatives of φ by rows; those of a pair of equal kind are symmetric. ∂²/∂q̇∂q̈ and ∂²/∂q̈² are zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curvature<T, const N: usize, const FEET: usize> {
+    pub(crate) qq: [[T; N]; N],
+    /// `[i][k]`: ∂²φ/∂q̇_i∂q_k.
+    pub(crate) vq: [[T; N]; N],
+    pub(crate) vv: [[T; N]; N],
+    /// `[i][k]`: ∂²φ/∂q̈_i∂q_k.
+    pub(crate) aq: [[T; N]; N],
+    /// `[f][c][k]`: ∂²φ/∂F_fc∂q_k.
+    pub(crate) fq: [[[T; N]; 3]; FEET],
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Curvature<T, N, FEET> {
+    pub(crate) const fn zero() -> Self {
+        Self {
+            qq: [[T::ZERO; N]; N],
+            vq: [[T::ZERO; N]; N],
+            vv: [[T::ZERO; N]; N],
+            aq: [[T::ZERO; N]; N],
+            fq: [[[T::ZERO; N]; 3]; FEET],
+        }
+    }
+}
+
+/// Sums over the virtual velocities and multipliers of a subtree.
+#[derive(Clone, Copy)]
+struct Weights<T: Scalar> {
+    /// ∫ Λ and Σ μ.
+    virtual_momentum: Vector3<T>,
+    /// ∫ Λ rᵀ and Σ μ rᵀ.
+    virtual_transport: Matrix3<T>,
+    /// Angular part of G.
+    gyration: Vector3<T>,
+    /// Σ μ.
+    pull: Vector3<T>,
+    /// Σ μ rᵀ.
+    pull_by_pos: Matrix3<T>,
+    /// Σ μ vᵀ.
+    pull_by_velocity: Matrix3<T>,
+    /// Σ a μᵀ.
+    acceleration_by_pull: Matrix3<T>,
+    /// Σ Λ(r) Fᵀ over contact forces F.
+    virtual_by_force: Matrix3<T>,
+    /// Σ ν.
+    push: Vector3<T>,
+    /// Σ ν rᵀ.
+    push_by_pos: Matrix3<T>,
+}
+
+impl<T: Scalar> Weights<T> {
+    fn zero() -> Self {
+        Self {
+            virtual_momentum: Vector3::zeros(),
+            virtual_transport: Matrix3::zeros(),
+            gyration: Vector3::zeros(),
+            pull: Vector3::zeros(),
+            pull_by_pos: Matrix3::zeros(),
+            pull_by_velocity: Matrix3::zeros(),
+            acceleration_by_pull: Matrix3::zeros(),
+            virtual_by_force: Matrix3::zeros(),
+            push: Vector3::zeros(),
+            push_by_pos: Matrix3::zeros(),
+        }
+    }
+
+    fn add(&mut self, o: &Self) {
+        self.virtual_momentum += o.virtual_momentum;
+        self.virtual_transport += o.virtual_transport;
+        self.gyration += o.gyration;
+        self.pull += o.pull;
+        self.pull_by_pos += o.pull_by_pos;
+        self.pull_by_velocity += o.pull_by_velocity;
+        self.acceleration_by_pull += o.acceleration_by_pull;
+        self.virtual_by_force += o.virtual_by_force;
+        self.push += o.push;
+        self.push_by_pos += o.push_by_pos;
+    }
+
+    /// H.
+    fn momentum(&self) -> Force<T> {
+        Force::new(self.virtual_momentum, moment_of(&self.virtual_transport))
+    }
+
+    /// Nᵀ X.
+    fn gyration_transposed(&self, x: &Motion<T>) -> Force<T> {
+        let (p, k, w) = (&self.virtual_momentum, &self.virtual_transport, &x.angular);
+        Force::new(p.cross(w), k * w - w * k.trace()) * T::TWO
+    }
+}
+
+/// x × M-weighted points: `Σ x(r) × μ` from Σ μ and Σ μ rᵀ.
+fn pulled<T: Scalar>(x: &Motion<T>, pull: &Vector3<T>, by_pos: &Matrix3<T>) -> Vector3<T> {
+    x.linear.cross(pull) - turn(&by_pos.transpose(), &x.angular)
+}
+
+/// Multipliers of the terms of φ.
+pub(crate) struct Multipliers<'a, T: Scalar, const N: usize, const FEET: usize> {
+    /// λ.
+    pub(crate) effort: &'a [T; N],
+    /// μ of the active contacts.
+    pub(crate) acceleration: &'a [Vector3<T>; FEET],
+}
+
+/// The sums ν of position terms, collected per body.
+#[derive(Clone, Copy)]
+pub(crate) struct PositionTerms<T: Scalar, const N: usize> {
+    push: [(Vector3<T>, Matrix3<T>); N],
+}
+
+impl<T: Scalar, const N: usize> PositionTerms<T, N> {
+    pub(crate) fn new() -> Self {
+        Self {
+            push: [(Vector3::zeros(), Matrix3::zeros()); N],
+        }
+    }
+
+    /// Adds ν · r of a point at `pos` on body `link`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, link: usize, pos: &Vector3<T>, weight: &Vector3<T>) {
+        if let Some((sum, by_pos)) = self.push.get_mut(link) {
+            *sum += weight;
+            *by_pos += outer(weight, pos);
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
+    /// Writes the second derivatives of φ; entries of joints that do not move each other are left alone.
+    #[inline(never)]
+    pub(crate) fn curvature<const FEET: usize>(
+        &self,
+        contacts: &Contacts<T, FEET>,
+        multipliers: &Multipliers<'_, T, N, FEET>,
+        positions: &PositionTerms<T, N>,
+        out: &mut Curvature<T, N, FEET>,
+    ) {
+        // Λ and S^λ of every joint.
+        let mut virtuals = [Motion::ZERO; N];
+        let mut virtual_rates = [Motion::ZERO; N];
+        let mut weights = [Weights::zero(); N];
+        for i in 0..N {
+            let parent = match self.bodies[i].parent {
+                Link::Joint(p) => virtuals.get(p).copied().unwrap_or(Motion::ZERO),
+                Link::Base => Motion::ZERO,
+            };
+            let axis = &self.joints[i].axis;
+            virtual_rates[i] = parent.cross(axis);
+            virtuals[i] = parent + *axis * multipliers.effort[i];
+        }
+        for i in 0..N {
+            (weights[i].push, weights[i].push_by_pos) = positions.push[i];
+            self.own_weights(i, &virtuals[i], &mut weights[i]);
+        }
+        for ((point, force), mu) in contacts.active().zip(multipliers.acceleration) {
+            if let (Some(weight), Some(lambda)) =
+                (weights.get_mut(point.link), virtuals.get(point.link))
+            {
+                add_acceleration(weight, point, mu);
+                weight.virtual_by_force += outer(&at_point(lambda, &point.pos), force);
+            }
+        }
+        for i in (0..N).rev() {
+            if let Link::Joint(p) = self.bodies[i].parent {
+                let below = weights[i];
+                if let Some(slot) = weights.get_mut(p) {
+                    slot.add(&below);
+                }
+            }
+        }
+        let pushes = contacts.sums(self);
+        for j in 0..N {
+            let (joint, sums, w, push) =
+                (&self.joints[j], &self.moments[j], &weights[j], &pushes[j]);
+            let (s, rate, second) = (&joint.axis, &joint.rate, &joint.second);
+            let virtual_rate = &virtual_rates[j];
+            let h = w.momentum();
+            let angular = |v| Force::new(Vector3::zeros(), v);
+
+            // μ keeps its direction: seen from the subtree it turns by −S_k × μ, where Λ gains S^λ_k.
+            let pulled_axis =
+                Force::new(w.pull.cross(&s.angular), -turn(&w.pull_by_pos, &s.angular));
+            let p = sums.inertia(virtual_rate) + s.cross_force(&h) + pulled_axis;
+            let q = angular(sums.carried_transposed(virtual_rate))
+                + rate.cross_force(&h) * T::TWO
+                + s.cross_force(&angular(w.gyration))
+                + w.gyration_transposed(rate)
+                - angular(turn(&w.pull_by_velocity, &s.angular) * T::TWO);
+            let r = s.cross_force(&sums.force)
+                + sums.inertia(second)
+                + sums.carried(rate)
+                + angular(push.kept_direction(s));
+            let u = s.cross_force(&h) * T::TWO + w.gyration_transposed(s);
+            let big_w = sums.inertia(rate) * T::TWO + sums.carried(s);
+            let f = sums.inertia(s);
+
+            // What the axis of k sees of vectors that do not turn with it: F, μ, ν.
+            let turning = |w: &Weights<T>, m: &Motion<T>| pulled(m, &w.pull, &w.pull_by_pos);
+            let swept = |m: &Vector3<T>| -turn(&w.pull_by_velocity.transpose(), m) * T::TWO;
+            let z_q = push.kept_direction(virtual_rate) - turn(&w.acceleration_by_pull, &s.angular)
+                + turn(&w.virtual_by_force, &s.angular)
+                + turning(w, second)
+                + swept(&rate.angular)
+                + pulled(s, &w.push, &w.push_by_pos);
+            let z_v = turning(w, rate) * T::TWO + swept(&s.angular);
+            let z_a = turning(w, s);
+
+            for k in self.path(j) {
+                let (other, other_rate) = (&self.joints[k], &virtual_rates[k]);
+                let turn_k = &other.axis.angular;
+                let qq = other.second.dot(&p)
+                    + other.rate.dot(&q)
+                    + other_rate.dot(&r)
+                    + turn_k.dot(&z_q);
+                (out.qq[j][k], out.qq[k][j]) = (qq, qq);
+                out.vq[k][j] = other.rate.dot(&p) * T::TWO + other.axis.dot(&q);
+                out.vq[j][k] = other.rate.dot(&u) + other_rate.dot(&big_w) + turn_k.dot(&z_v);
+                let vv = other.axis.dot(&u);
+                (out.vv[j][k], out.vv[k][j]) = (vv, vv);
+                out.aq[k][j] = other.axis.dot(&p);
+                out.aq[j][k] = other_rate.dot(&f) + turn_k.dot(&z_a);
+            }
+        }
+        for ((point, _), block) in contacts.active().zip(&mut out.fq) {
+            let Some(virtual_motion) = virtuals.get(point.link) else {
+                continue;
+            };
+            let slip = at_point(virtual_motion, &point.pos);
+            for k in self.path(point.link) {
+                let turn_k = &self.joints[k].axis.angular;
+                let column = turn_k.cross(&slip) + at_point(&virtual_rates[k], &point.pos);
+                for (row, value) in block.iter_mut().zip(column.iter()) {
+                    row[k] = -*value;
+                }
+            }
+        }
+    }
+
+    /// ∫ Λ, ∫ Λ rᵀ and Cᵀ Λ of body `i` alone.
+    #[inline(always)]
+    fn own_weights(&self, i: usize, lambda: &Motion<T>, weight: &mut Weights<T>) {
+        let own = &self.own[i];
+        if own.mass > T::ZERO {
+            weight.virtual_momentum = lambda.linear * own.mass + lambda.angular.cross(&own.first);
+            weight.virtual_transport =
+                outer(&lambda.linear, &own.first) + hat(&lambda.angular) * own.second;
+            weight.gyration = own.carried_transposed(lambda);
+        }
+    }
+}
+
+/// Adds μ · a of a contact point.
+#[inline(always)]
+fn add_acceleration<T: Scalar>(weight: &mut Weights<T>, point: &PointMotion<T>, mu: &Vector3<T>) {
+    let by_pos = outer(mu, &point.pos);
+    weight.virtual_momentum += mu;
+    weight.virtual_transport += by_pos;
+    weight.gyration += point.velocity.cross(mu) * T::TWO;
+    weight.pull += mu;
+    weight.pull_by_pos += by_pos;
+    weight.pull_by_velocity += outer(mu, &point.velocity);
+    weight.acceleration_by_pull += outer(&point.lifted, mu);
+}

@@ -1,0 +1,199 @@
+//! Derivatives of one interval: cost, mixed rows, and the exact Hessian of the Lagrangian.
+
+use crate::curvature::{Curvature, Multipliers, PositionTerms};
+use crate::midpoint::{Gradient, Hessian, Map, Midpoint, add_scaled};
+use crate::moments::at_point;
+use crate::problem::Problem;
+use crate::robot::BASE;
+use crate::state::Units;
+use crate::sweep::{Contacts, EffortJacobian, Sweep};
+use nalgebra::Vector3;
+use ocp_solver::Derivatives;
+use so3::Scalar;
+
+/// One interval whose nonlinear part is differentiated.
+pub(crate) struct Interval<'a, 'p, T: Scalar, const N: usize, const FEET: usize> {
+    pub(crate) problem: &'a Problem<'p, T, N, FEET>,
+    pub(crate) k: usize,
+    pub(crate) mid: &'a Midpoint<T, N, FEET>,
+    pub(crate) sweep: &'a Sweep<'a, T, N>,
+    pub(crate) contacts: &'a Contacts<T, FEET>,
+    pub(crate) map: Map<T>,
+    /// Next row to write.
+    pub(crate) row: usize,
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> {
+    /// Writes the next row and returns its multiplier in physical units.
+    #[inline(always)]
+    fn push<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        unit: T,
+        gradient: &Gradient<T, N, FEET>,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) -> T {
+        let i = self.row;
+        self.row = i.saturating_add(1);
+        let scale = T::ONE / unit;
+        if let (Some(x), Some(u)) = (d.rows_x.get_mut(i), d.rows_u.get_mut(i)) {
+            self.map.gradient(scale, gradient, x, u);
+        }
+        y.get(i).copied().unwrap_or(T::ZERO) * scale
+    }
+
+    /// Writes cost, mixed rows and the Hessian of the Lagrangian.
+    pub(crate) fn differentiate<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let units = Units::new();
+        let weights = &self.problem.weights;
+        let mut effort = [T::ZERO; N];
+        self.sweep.effort(&self.mid.a, self.contacts, &mut effort);
+        let mut jacobian = EffortJacobian::<T, N, FEET>::zero();
+        self.sweep.differentiate(self.contacts, &mut jacobian);
+
+        let mut hessian = Hessian::<T, N, FEET>::zero();
+        let mut cost = Gradient::<T, N, FEET>::zero();
+        let mut multipliers = [T::ZERO; N];
+        let mut pulls = [Vector3::zeros(); FEET];
+        for (i, multiplier) in multipliers.iter_mut().enumerate().take(BASE) {
+            *multiplier = self.push(units.effort(i), &jacobian.row(i), y, d);
+        }
+        for f in 0..self.contacts.count {
+            let rows = self.acceleration(f);
+            if let Some(pull) = pulls.get_mut(f) {
+                for (row, pull) in rows.iter().zip(pull.iter_mut()) {
+                    *pull = self.push(units.foot_acceleration, row, y, d);
+                }
+            }
+        }
+        for i in BASE..N {
+            let gradient = jacobian.row(i);
+            let by_effort = T::TWO * weights.effort * effort[i];
+            multipliers[i] = self.push(units.moment, &gradient, y, d) + by_effort;
+            cost.add(by_effort, &gradient);
+            let end = self.sweep.bodies[i].subtree_end;
+            let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
+            hessian.add_outer(T::TWO * weights.effort, &gradient, support);
+        }
+        let positions = self.positions(y, d);
+
+        let mut curvature = Curvature::<T, N, FEET>::zero();
+        let multipliers = Multipliers {
+            effort: &multipliers,
+            acceleration: &pulls,
+        };
+        self.sweep
+            .curvature(self.contacts, &multipliers, &positions, &mut curvature);
+        hessian.add(&curvature);
+
+        let two = T::TWO * weights.position;
+        let reference = self.problem.reference.get(self.k).unwrap_or(&self.mid.q);
+        for (i, reference) in reference.iter().enumerate() {
+            hessian.qq[i][i] += two;
+            cost.q[i] += two * (self.mid.q[i] - *reference);
+        }
+        self.map
+            .gradient(T::ONE, &cost, &mut d.cost_x, &mut d.cost_u);
+        self.map.hessian(&hessian, d);
+    }
+
+    /// Gradients of the acceleration of the f-th foot in contact.
+    fn acceleration(&self, f: usize) -> [Gradient<T, N, FEET>; 3] {
+        let mut rows = [Gradient::zero(); 3];
+        let Some((point, _)) = self.contacts.active().nth(f) else {
+            return rows;
+        };
+        for k in self.sweep.path(point.link) {
+            let joint = &self.sweep.joints[k];
+            let turn = &joint.axis.angular;
+            let carried = |w: &Vector3<T>| w.cross(&point.velocity) * T::TWO;
+            let by_q = at_point(&joint.second, &point.pos)
+                + carried(&joint.rate.angular)
+                + turn.cross(&point.lifted);
+            let by_v = at_point(&joint.rate, &point.pos) * T::TWO + carried(turn);
+            let by_a = at_point(&joint.axis, &point.pos);
+            for (c, row) in rows.iter_mut().enumerate() {
+                (row.q[k], row.v[k], row.a[k]) = (by_q[c], by_v[c], by_a[c]);
+            }
+        }
+        rows
+    }
+
+    /// Rows of positions: drift, heights over the ground, joint positions and speeds.
+    fn positions<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) -> PositionTerms<T, N> {
+        let units = Units::new();
+        let mut terms = PositionTerms::new();
+        for (point, _) in self.contacts.active() {
+            for normal in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                let gradient = self.along(point.link, &point.pos, &normal);
+                let y = self.push(units.position, &gradient, y, d);
+                terms.add(point.link, &point.pos, &(normal * y));
+            }
+        }
+        // The curvature of a box edge's smoothing is left out: it was measured not to matter.
+        for point in self.problem.points_over_ground(self.k) {
+            let pos = self.sweep.place(point);
+            let (_, normal) = self.problem.over_ground(&pos);
+            let gradient = self.along(point.link, &pos, &normal);
+            let y = self.push(units.position, &gradient, y, d);
+            terms.add(point.link, &pos, &(normal * y));
+        }
+        if self.mid.layout.joints > 0 {
+            for i in BASE..N {
+                let mut gradient = Gradient::zero();
+                gradient.q[i] = T::ONE;
+                self.push(T::ONE, &gradient, y, d);
+            }
+            for i in BASE..N {
+                let mut gradient = Gradient::zero();
+                gradient.v[i] = T::ONE;
+                self.push(units.speed, &gradient, y, d);
+            }
+        }
+        terms
+    }
+
+    /// Gradient of the position of a point along a direction.
+    fn along(&self, link: usize, pos: &Vector3<T>, normal: &Vector3<T>) -> Gradient<T, N, FEET> {
+        let mut gradient = Gradient::zero();
+        for k in self.sweep.path(link) {
+            gradient.q[k] = normal.dot(&at_point(&self.sweep.joints[k].axis, pos));
+        }
+        gradient
+    }
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> EffortJacobian<T, N, FEET> {
+    fn row(&self, i: usize) -> Gradient<T, N, FEET> {
+        Gradient {
+            q: self.by_q[i],
+            v: self.by_v[i],
+            a: self.by_a[i],
+            force: self.by_force[i],
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
+    fn add(&mut self, c: &Curvature<T, N, FEET>) {
+        for i in 0..N {
+            add_scaled(&mut self.qq[i], T::ONE, &c.qq[i]);
+            add_scaled(&mut self.vq[i], T::ONE, &c.vq[i]);
+            add_scaled(&mut self.vv[i], T::ONE, &c.vv[i]);
+            add_scaled(&mut self.aq[i], T::ONE, &c.aq[i]);
+        }
+        for (mine, other) in self.force.iter_mut().zip(&c.fq) {
+            for (mine, other) in mine.iter_mut().zip(other) {
+                add_scaled(&mut mine.q, T::ONE, other);
+            }
+        }
+    }
+}

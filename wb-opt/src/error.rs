@@ -1,0 +1,34 @@
+//! Bad data.
+
+/// Data that cannot be planned with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter of the problem is not usable: its name and what it must be.
+    Parameter(&'static str),
+    /// The solver refused its input.
+    Solver(ocp_solver::Error),
+    /// The const sizes are too small for the problem: `NX ≥ 2 N`, `NU ≥ N + 3 FEET`,
+    /// `NI ≥` [`crate::row_capacity`].
+    Capacity,
+}
+
+impl core::fmt::Display for Error {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Parameter(what) => f.write_str(what),
+            Self::Solver(error) => error.fmt(f),
+            Self::Capacity => f.write_str(
+                "const sizes too small: NX >= 2 N, NU >= N + 3 FEET, NI >= row_capacity(N, FEET, clearances)",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+impl From<ocp_solver::Error> for Error {
+    fn from(error: ocp_solver::Error) -> Self {
+        Self::Solver(error)
+    }
+}

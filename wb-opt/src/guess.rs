@@ -1,0 +1,68 @@
+//! The initial guess: the reference, its rates, and given contact forces.
+
+use crate::problem::Problem;
+use crate::robot::BASE;
+use crate::state::{Layout, State, Units};
+use nalgebra::Vector3;
+use ocp_solver::Stage;
+use so3::Scalar;
+
+impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
+    /// Writes the guess into the stages.
+    ///
+    /// Configurations are those of `nodes`, one per node; rates and accelerations of the base their
+    /// differences; joints do not move. `forces` gives the force on each foot during an interval, world
+    /// axes, N; only feet in contact are asked for. `perturb` gives the offset of every unknown in the
+    /// solver's units: pass `|| T::ZERO` for the plain guess.
+    pub fn write_guess<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        stages: &mut [Stage<T, State<T, N>, NX, NU, NI>],
+        nodes: &[[T; N]],
+        mut forces: impl FnMut(usize, usize) -> Vector3<T>,
+        mut perturb: impl FnMut() -> T,
+    ) {
+        let units = Units::<T>::new();
+        let last = nodes.len().saturating_sub(1);
+        // Speed over interval k of the plain guess; none before the start.
+        let speed = |k: usize, i: usize| {
+            let at = |k: usize| nodes.get(k.min(last)).map_or(T::ZERO, |q| q[i]);
+            (at(k.saturating_add(1)) - at(k)) / self.dt
+        };
+        let before = |k: usize, i: usize| k.checked_sub(1).map_or(T::ZERO, |k| speed(k, i));
+        for (k, stage) in stages.iter_mut().enumerate() {
+            let mut state = State::at_rest(nodes.get(k.min(last)).copied().unwrap_or(self.start));
+            for i in 0..BASE.min(N) {
+                state.v[i] = (before(k, i) + speed(k.min(last.saturating_sub(1)), i)) * T::HALF;
+            }
+            stage.control = [T::ZERO; NU];
+            if k == 0 {
+                state = State::at_rest(self.start);
+            } else {
+                for q in &mut state.q {
+                    *q += perturb();
+                }
+                for v in &mut state.v {
+                    *v += units.speed * perturb();
+                }
+            }
+            stage.state = state;
+            if k >= self.intervals() {
+                continue;
+            }
+            for (i, u) in stage.control.iter_mut().enumerate().take(BASE.min(N)) {
+                *u = (speed(k, i) - before(k, i)) / (self.dt * units.acceleration);
+            }
+            let on = self.contacts(k);
+            let standing = (0..FEET).filter(|f| on.get(*f).copied().unwrap_or(false));
+            for (slot, f) in standing.enumerate() {
+                let slots = stage.control.iter_mut().skip(Layout::force(slot));
+                for (u, value) in slots.zip(forces(k, f).iter()) {
+                    *u = *value / units.force;
+                }
+            }
+            for u in stage.control.iter_mut().take(self.layout(k).controls()) {
+                *u += perturb();
+            }
+        }
+    }
+}

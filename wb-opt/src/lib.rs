@@ -1,0 +1,25 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod curvature;
+mod differentiate;
+mod error;
+mod guess;
+mod judge;
+mod midpoint;
+mod moments;
+mod plan;
+mod problem;
+mod robot;
+mod rows;
+mod state;
+mod sweep;
+mod transcription;
+
+pub use error::Error;
+pub use judge::{Judgement, Sample};
+pub use plan::settings;
+pub use problem::{Clearance, Foot, Phase, Problem, Weights};
+pub use robot::{BASE, EulerOrder, Point, Robot};
+pub use rows::row_capacity;
+pub use state::State;

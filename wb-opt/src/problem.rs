@@ -1,0 +1,210 @@
+//! Eq. (4) to (6) of paper A as plain data: robot, contacts, reference, limits and weights.
+
+use crate::error::Error;
+use crate::robot::{BASE, Point, Robot};
+use nalgebra::Vector3;
+use so3::Scalar;
+use srb_opt::Edge;
+
+/// A foot: a point of the robot that may push against the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot<T: Scalar> {
+    /// Where it is on the robot.
+    pub point: Point<T>,
+    /// Where it stands during its contact phases, world, m.
+    pub pos_wf: Vector3<T>,
+}
+
+/// A point that keeps a distance from the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance<T: Scalar> {
+    /// Where it is on the robot.
+    pub point: Point<T>,
+    /// Least height over the ground, m.
+    pub height: T,
+}
+
+/// One contact phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Phase<const FEET: usize> {
+    /// Feet in contact.
+    pub contacts: [bool; FEET],
+    /// Intervals of length `dt`, at least 1.
+    pub intervals: usize,
+}
+
+/// Weights of the cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights<T> {
+    /// Of the squared distance of an interval's midpoint from its reference, rad⁻² or m⁻².
+    pub position: T,
+    /// Of the squared joint efforts, (N m)⁻².
+    pub effort: T,
+    /// Of the squared distance of the last configuration from the goal.
+    pub goal: T,
+}
+
+/// Whole-body problem: joint motions, efforts and contact forces over given contact phases.
+///
+/// Midpoint transcription on intervals of length `dt`: acceleration and contact forces are constant over
+/// an interval, q⁺ = q + dt q̇ + ½ dt² q̈, q̇⁺ = q̇ + dt q̈, and all nonlinear rows hold at the midpoint
+/// qm = q + ½ dt q̇ + ¼ dt² q̈, vm = q̇ + ½ dt q̈. `N` coordinates, the base's six first.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
+    /// Robot and its limits.
+    pub robot: Robot<T, N>,
+    /// Feet.
+    pub feet: [Foot<T>; FEET],
+    /// Points other than feet that stay clear of the ground.
+    pub clearances: &'a [Clearance<T>],
+    /// Least height of a foot that is not in contact, m; negative lets it graze.
+    pub swing_height: T,
+    /// Box edge, if the ground has one.
+    pub edge: Option<Edge<T>>,
+    /// Contact phases in order.
+    pub phases: &'a [Phase<FEET>],
+    /// Reference configuration at the midpoint of every interval.
+    pub reference: &'a [[T; N]],
+    /// Length of an interval, s.
+    pub dt: T,
+    /// Configuration at the start, at rest.
+    pub start: [T; N],
+    /// Configuration wanted at the end.
+    pub goal: [T; N],
+    /// How far the base may end from the goal, per coordinate, m and rad.
+    pub goal_tolerance: [T; BASE],
+    /// Over this many last intervals the joints rest at the goal: the pre-landing configuration.
+    pub landing_intervals: usize,
+    /// Coulomb coefficient of the friction pyramid.
+    pub friction: T,
+    /// How far a foot in contact may be from its place, per axis, m.
+    pub drift: T,
+    /// Weights.
+    pub weights: Weights<T>,
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
+    /// Number of intervals.
+    #[must_use]
+    pub const fn intervals(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// First node at which the joints rest in the landing configuration.
+    #[must_use]
+    pub const fn landing_node(&self) -> usize {
+        self.intervals().saturating_sub(self.landing_intervals)
+    }
+
+    /// Whether the joints rest during interval `k`.
+    #[must_use]
+    pub const fn is_landing(&self, k: usize) -> bool {
+        k >= self.landing_node()
+    }
+
+    /// Feet in contact during interval `k`; none at the last node.
+    #[must_use]
+    pub fn contacts(&self, k: usize) -> [bool; FEET] {
+        let mut left = k;
+        for phase in self.phases {
+            if left < phase.intervals {
+                return phase.contacts;
+            }
+            left = left.saturating_sub(phase.intervals);
+        }
+        [false; FEET]
+    }
+
+    /// Height of the ground under a point, and the gradient of the point's height over it.
+    #[inline(always)]
+    pub(crate) fn over_ground(&self, pos: &Vector3<T>) -> (T, Vector3<T>) {
+        let mut normal = Vector3::new(T::ZERO, T::ZERO, T::ONE);
+        let Some(edge) = &self.edge else {
+            return (pos.z, normal);
+        };
+        let (ground, slope) = edge.ground(pos);
+        if edge.axis == 0 {
+            normal.x = -slope;
+        } else {
+            normal.y = -slope;
+        }
+        (pos.z - ground, normal)
+    }
+
+    /// Checks the data.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] names the first number that is not usable and what it must be.
+    pub fn check(&self) -> Result<(), Error> {
+        let require = |ok: bool, what| {
+            if ok {
+                Ok(())
+            } else {
+                Err(Error::Parameter(what))
+            }
+        };
+        let positive = |x: T| x > T::ZERO && x.is_finite_number();
+        let finite = |x: &T| x.is_finite_number();
+        require(
+            N >= BASE,
+            "N: a robot has at least the six coordinates of its base",
+        )?;
+        require(positive(self.dt), "dt: must be positive")?;
+        require(positive(self.friction), "friction: must be positive")?;
+        require(positive(self.drift), "drift: must be positive")?;
+        require(self.start.iter().all(finite), "start: must be finite")?;
+        require(self.goal.iter().all(finite), "goal: must be finite")?;
+        require(
+            self.goal_tolerance.iter().all(|x| positive(*x)),
+            "goal_tolerance: must be positive",
+        )?;
+        require(
+            self.reference.iter().flatten().all(finite),
+            "reference: must be finite",
+        )?;
+        require(
+            self.phases.iter().all(|phase| phase.intervals > 0),
+            "phases.intervals: must be at least 1",
+        )?;
+        let total = self
+            .phases
+            .iter()
+            .fold(0usize, |sum, phase| sum.saturating_add(phase.intervals));
+        require(
+            total == self.intervals() && total > 0,
+            "reference: must have one entry per interval of the phases",
+        )?;
+        require(
+            self.landing_intervals < total,
+            "landing_intervals: must be fewer than all intervals",
+        )?;
+        let w = &self.weights;
+        require(positive(w.position), "weights.position: must be positive")?;
+        require(positive(w.effort), "weights.effort: must be positive")?;
+        require(positive(w.goal), "weights.goal: must be positive")?;
+        let inside = |point: &Point<T>| point.link < N && point.offset_l.iter().all(finite);
+        require(
+            self.feet.iter().all(|foot| inside(&foot.point)),
+            "feet.point: must be on a body of the robot",
+        )?;
+        require(
+            self.clearances.iter().all(|c| inside(&c.point)),
+            "clearances.point: must be on a body of the robot",
+        )?;
+        if let Some(edge) = &self.edge {
+            require(edge.axis < 2, "edge.axis: must be 0 or 1")?;
+            require(positive(edge.width), "edge.width: must be positive")?;
+        }
+        for limit in &self.robot.limits {
+            require(
+                limit.lower <= limit.upper,
+                "robot.limits.lower: must not be above upper",
+            )?;
+            require(
+                limit.speed > T::ZERO && limit.effort > T::ZERO,
+                "robot.limits.speed, effort: must be positive",
+            )?;
+        }
+        Ok(())
+    }
+}

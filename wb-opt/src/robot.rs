@@ -1,0 +1,133 @@
+//! A robot whose base is a chain of joints.
+
+use nalgebra::{Matrix3, Vector3};
+use rbd_core::Model;
+use rbd_core::joint::Kind;
+use rbd_core::model::{Body, Frame, JointLimits, Link};
+use so3::Scalar;
+
+/// Coordinates of the base: three prismatic and three revolute joints.
+pub const BASE: usize = 6;
+
+/// Which angle turns first, seen from the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EulerOrder {
+    /// R = Rz(yaw) Ry(pitch) Rx(roll); coordinates x, y, z, yaw, pitch, roll. Singular at pitch ±90°.
+    Zyx,
+    /// R = Rz(yaw) Rx(roll) Ry(pitch); coordinates x, y, z, yaw, roll, pitch. Singular at roll ±90°.
+    Zxy,
+}
+
+impl EulerOrder {
+    /// For each coordinate of the chain, its index in x, y, z, roll, pitch, yaw.
+    #[must_use]
+    pub const fn columns(self) -> [usize; BASE] {
+        match self {
+            Self::Zyx => [0, 1, 2, 5, 4, 3],
+            Self::Zxy => [0, 1, 2, 5, 3, 4],
+        }
+    }
+
+    const fn kinds(self) -> [Kind; BASE] {
+        let (second, third) = match self {
+            Self::Zyx => (Kind::RevoluteY, Kind::RevoluteX),
+            Self::Zxy => (Kind::RevoluteX, Kind::RevoluteY),
+        };
+        [
+            Kind::PrismaticX,
+            Kind::PrismaticY,
+            Kind::PrismaticZ,
+            Kind::RevoluteZ,
+            second,
+            third,
+        ]
+    }
+
+    /// The two angles `[second, third]` and the first, `[yaw, second, third]`, of a rotation from base to
+    /// world, each within its principal range.
+    #[must_use]
+    pub fn angles<T: Scalar>(self, rot_wb: &Matrix3<T>) -> [T; 3] {
+        let r = rot_wb;
+        let clamped = |x: T| so3::math::min(so3::math::max(x, -T::ONE), T::ONE);
+        match self {
+            Self::Zyx => [
+                so3::math::atan2(r.m21, r.m11),
+                -so3::math::asin(clamped(r.m31)),
+                so3::math::atan2(r.m32, r.m33),
+            ],
+            Self::Zxy => [
+                so3::math::atan2(-r.m12, r.m22),
+                so3::math::asin(clamped(r.m32)),
+                so3::math::atan2(-r.m31, r.m33),
+            ],
+        }
+    }
+}
+
+/// A robot of `N` coordinates as one chain of joints per limb: base first (x, y, z and three angles), then
+/// the joints of the model it was made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Robot<T, const N: usize> {
+    /// Bodies in depth-first order; the sixth is the trunk, the five before it have no mass.
+    pub bodies: [Body<T>; N],
+    /// Limits; none on the base.
+    pub limits: [JointLimits<T>; N],
+}
+
+impl<T: Scalar, const N: usize> Robot<T, N> {
+    /// The robot of a floating-base model with `J` joints; `N` must be `J + 6`, other sizes do not compile.
+    #[must_use]
+    pub fn on_euler_base<M: Model<T, J>, const J: usize>(model: &M, order: EulerOrder) -> Self {
+        const { assert!(N == J + BASE, "an Euler base adds six coordinates") };
+        let mut bodies = [Body::EMPTY; N];
+        let mut limits = [JointLimits::NONE; N];
+        for (i, (body, kind)) in bodies.iter_mut().zip(order.kinds()).enumerate() {
+            body.kind = kind;
+            body.parent = i.checked_sub(1).map_or(Link::Base, Link::Joint);
+            body.subtree_end = N;
+        }
+        if let Some(trunk) = bodies.get_mut(BASE - 1) {
+            let base = model.base();
+            (trunk.mass, trunk.first, trunk.second) = (base.mass, base.first, base.second);
+        }
+        let joints = model.bodies().iter().zip(model.limits());
+        let slots = bodies.iter_mut().zip(&mut limits).skip(BASE);
+        for ((slot, limit), (body, from)) in slots.zip(joints) {
+            *slot = *body;
+            slot.parent = Self::link(body.parent);
+            slot.subtree_end = body.subtree_end.saturating_add(BASE);
+            *limit = *from;
+        }
+        Self { bodies, limits }
+    }
+
+    /// Where a link of the model is in this robot.
+    #[must_use]
+    pub const fn link(link: Link) -> Link {
+        match link {
+            Link::Base => Link::Joint(BASE - 1),
+            Link::Joint(i) => Link::Joint(i.saturating_add(BASE)),
+        }
+    }
+
+    /// The point at the origin of a frame of the model.
+    #[must_use]
+    pub fn point(frame: &Frame<T>) -> Point<T> {
+        Point {
+            link: match Self::link(frame.link) {
+                Link::Joint(i) => i,
+                Link::Base => 0,
+            },
+            offset_l: Vector3::from(frame.offset),
+        }
+    }
+}
+
+/// A point fixed to a body of a [`Robot`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point<T: Scalar> {
+    /// Index of the body.
+    pub link: usize,
+    /// Where it is in the body's frame, m.
+    pub offset_l: Vector3<T>,
+}

@@ -1,0 +1,151 @@
+//! Which constraint rows a node has, in which order, and their bounds.
+//!
+//! State rows: at the first landing node, joints at the goal and their speeds zero; at the last node, the
+//! base near the goal. Control rows: per foot in contact four sides of the friction pyramid and the normal
+//! force. Mixed rows, all at the midpoint: effort on the base (zero), acceleration of the feet in contact
+//! (zero), joint efforts, drift of the feet in contact, clearances, heights of the other feet, and, where
+//! joints move, their positions and speeds. Rows are in the units of [`crate::state::Units`].
+
+use crate::problem::Problem;
+use crate::robot::BASE;
+use crate::state::Units;
+use ocp_solver::Dims;
+use so3::Scalar;
+
+/// Rows a node can have at most: the least `NI` for `coordinates` coordinates, `feet` feet and a number of
+/// clearances.
+#[must_use]
+pub const fn row_capacity(coordinates: usize, feet: usize, clearances: usize) -> usize {
+    let joints = coordinates.saturating_sub(BASE);
+    // Contact: pyramid and normal force, acceleration, drift. The landing rows come instead of limits.
+    let contacts = feet.saturating_mul(5 + 3 + 3);
+    let middle = BASE
+        .saturating_add(contacts)
+        .saturating_add(joints.saturating_mul(3));
+    middle.saturating_add(clearances)
+}
+
+/// Numbers of rows of an interval, group by group.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Groups {
+    /// Landing rows of the state.
+    pub(crate) landing: usize,
+    /// Feet in contact.
+    pub(crate) feet: usize,
+    /// Joints.
+    pub(crate) joints: usize,
+    pub(crate) clearances: usize,
+    /// Feet in the air.
+    pub(crate) swing: usize,
+    /// Joints that move.
+    pub(crate) limited: usize,
+}
+
+impl Groups {
+    /// First mixed row.
+    pub(crate) const fn first_mixed(&self) -> usize {
+        self.landing.saturating_add(self.feet.saturating_mul(5))
+    }
+
+    const fn mixed(&self) -> usize {
+        BASE.saturating_add(self.feet.saturating_mul(6))
+            .saturating_add(self.joints)
+            .saturating_add(self.clearances)
+            .saturating_add(self.swing)
+            .saturating_add(self.limited.saturating_mul(2))
+    }
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
+    pub(crate) fn groups(&self, k: usize) -> Groups {
+        let layout = self.layout(k);
+        let joints = N.saturating_sub(BASE);
+        Groups {
+            landing: if k == self.landing_node() {
+                joints.saturating_mul(2)
+            } else {
+                0
+            },
+            feet: layout.feet,
+            joints,
+            clearances: self.clearances.len(),
+            swing: FEET.saturating_sub(layout.feet),
+            limited: layout.joints,
+        }
+    }
+
+    pub(crate) fn row_dims(&self, k: usize) -> Dims {
+        if k >= self.intervals() {
+            return Dims {
+                state_rows: BASE,
+                ..Dims::default()
+            };
+        }
+        let groups = self.groups(k);
+        Dims {
+            controls: self.layout(k).controls(),
+            state_rows: groups.landing,
+            control_rows: groups.feet.saturating_mul(5),
+            mixed_rows: groups.mixed(),
+        }
+    }
+
+    pub(crate) fn row_bounds<const NI: usize>(
+        &self,
+        k: usize,
+        lower: &mut [T; NI],
+        upper: &mut [T; NI],
+    ) {
+        let units = Units::new();
+        let mut rows = lower.iter_mut().zip(upper.iter_mut());
+        let mut push = |l: T, h: T, unit: T| {
+            if let Some((lower, upper)) = rows.next() {
+                (*lower, *upper) = (l / unit, h / unit);
+            }
+        };
+        if k >= self.intervals() {
+            for (goal, tolerance) in self.goal.iter().zip(&self.goal_tolerance) {
+                push(*goal - *tolerance, *goal + *tolerance, T::ONE);
+            }
+            return;
+        }
+        let groups = self.groups(k);
+        if groups.landing > 0 {
+            for goal in self.goal.iter().skip(BASE) {
+                push(*goal, *goal, T::ONE);
+            }
+            for _ in 0..groups.joints {
+                push(T::ZERO, T::ZERO, units.speed);
+            }
+        }
+        for _ in 0..groups.feet.saturating_mul(5) {
+            push(T::ZERO, T::INFINITY, T::ONE);
+        }
+        for _ in 0..BASE.saturating_add(groups.feet.saturating_mul(3)) {
+            push(T::ZERO, T::ZERO, T::ONE);
+        }
+        let limits = || self.robot.limits.iter().skip(BASE);
+        for limit in limits() {
+            push(-limit.effort, limit.effort, units.moment);
+        }
+        for (foot, _) in self.feet.iter().zip(self.contacts(k)).filter(|(_, on)| *on) {
+            for place in &foot.pos_wf {
+                push(*place - self.drift, *place + self.drift, units.position);
+            }
+        }
+        for clearance in self.clearances {
+            push(clearance.height, T::INFINITY, units.position);
+        }
+        for _ in 0..groups.swing {
+            push(self.swing_height, T::INFINITY, units.position);
+        }
+        if groups.limited > 0 {
+            for limit in limits() {
+                push(limit.lower, limit.upper, T::ONE);
+            }
+            for limit in limits() {
+                push(-limit.speed, limit.speed, units.speed);
+            }
+        }
+    }
+}
