@@ -102,6 +102,14 @@ fn the_same_seed_gives_the_same_run_and_noise_does_not_throw_it() {
     let (_, nominal) = run("a1/lateral", "0", "seed-0");
     assert!(read(&a) != read(&nominal), "the seed has no effect");
     assert!(on_target(&first), "{first}");
+    // The controller saw an estimate, and a good one.
+    let error = |name: &str| first["estimate"][name].as_f64().unwrap();
+    let (place, turn) = (
+        error("max_position_error_m"),
+        error("max_rotation_error_deg"),
+    );
+    assert!(0.0 < place && place < 0.05, "{place} m");
+    assert!(0.0 < turn && turn < 3.0, "{turn} deg");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! One step of the estimator.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use rbd_core::{
     Axes, Configuration, Contact, ContactShape, Frame, FrameJacobian, GRAVITY, Kinematics, Motion,
     Posture, Tangent, Transform, Tree, forward_kinematics, frame_jacobian,
@@ -178,7 +178,7 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
                 let (seen, wrong) = self.look(model, state, sample);
                 fault = fault.or(wrong);
                 self.correct(state, &seen, dt);
-                self.level(state, sample, dt);
+                self.level(state, &seen, dt);
             }
             None => state.confidence = [T::ZERO; F],
         }
@@ -344,26 +344,25 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
         }
     }
 
-    /// Gravity for the tilt while quasi-static; standing still for the bias.
-    fn level(&self, state: &mut State<T, F, S>, sample: &Sample<T, N, F>, dt: T) {
+    /// While quasi-static, gravity corrects the tilt, and feet that stand correct the gyroscope's bias.
+    fn level(&self, state: &mut State<T, F, S>, seen: &[Seen<T>; F], dt: T) {
         let s = &self.settings;
         let size = state.force_b.norm();
-        let stands = state.confidence.iter().filter(|c| **c > T::HALF).count();
-        let rate = state.rate_b - state.bias_b;
+        let rate_b = state.rate_b - state.bias_b;
         let quiet = |x: T, limit: f64| math::abs(x) < T::of(limit);
-        let steady = quiet(size - T::of(9.81), 1.0) && quiet(rate.norm(), 0.3);
-        if !steady || stands == 0 || state.coasting > T::ZERO {
+        let steady = quiet(size - T::of(9.81), 1.0) && quiet(rate_b.norm(), 0.5);
+        let stands = state.confidence.iter().any(|c| *c > T::HALF);
+        if !steady || !stands || state.coasting > T::ZERO {
             return;
         }
-        // Turning the estimate by up × f brings its vertical to the force.
+        // Turning the estimate by f × up brings its vertical to the force.
         let up_b = state.rot_wb.inverse() * Vector3::z();
         let error = (state.force_b / size).cross(&up_b);
+        let missing_w = turn_of_feet(seen, &state.confidence);
+        let missing_b = state.rot_wb.inverse() * missing_w;
         state.rot_wb *= so3::exp(&(error * (s.tilt_gain * dt)));
-        let still = sample.joint_velocities.iter().all(|qd| quiet(*qd, 0.3));
-        if still && stands == F {
-            let bias = state.bias_b + rate * (s.bias_gain * dt);
-            state.bias_b = bias.map(|x| math::clamp(x, -s.max_bias, s.max_bias));
-        }
+        let bias = state.bias_b - missing_b * (s.bias_gain * dt);
+        state.bias_b = bias.map(|x| math::clamp(x, -s.max_bias, s.max_bias));
     }
 
     /// The estimate for the outside: the base instead of the IMU.
@@ -403,6 +402,33 @@ fn consensus<T: Scalar, const F: usize>(
     let mean = sum / T::of(count as f64);
     let agree = standing().all(|foot| (foot.velocity_w - mean).norm() < settings.slip_gate);
     agree.then_some(mean)
+}
+
+/// Angular velocity, world axes, that the feet in contact miss in the gyroscope's: with it, they would all stand.
+///
+/// With d_i from the middle of these feet and V_i the velocity that foot i gives the body, δ × d_i = V_i − V̄ in the sense
+/// of least squares: (Σ |d|² 1 − d dᵀ + λ 1) δ = Σ d × (V_i − V̄). Two feet say nothing about the axis through them, and λ
+/// leaves it at zero.
+fn turn_of_feet<T: Scalar, const F: usize>(seen: &[Seen<T>; F], confidence: &[T; F]) -> Vector3<T> {
+    let standing = || {
+        let feet = seen.iter().zip(confidence);
+        feet.filter(|(_, c)| **c > T::HALF).map(|(foot, _)| foot)
+    };
+    let share = T::ONE / T::of(standing().count().max(1) as f64);
+    let zero = (Vector3::zeros(), Vector3::zeros());
+    let (arm, velocity) = standing().fold(zero, |(arm, velocity), foot| {
+        (arm + foot.arm_w * share, velocity + foot.velocity_w * share)
+    });
+    let mut square = Matrix3::from_diagonal_element(T::of(0.01));
+    let mut moment = Vector3::zeros();
+    for foot in standing() {
+        let d = foot.arm_w - arm;
+        square += Matrix3::from_diagonal_element(d.norm_squared()) - d * d.transpose();
+        moment += d.cross(&(foot.velocity_w - velocity));
+    }
+    square
+        .try_inverse()
+        .map_or_else(Vector3::zeros, |inverse| inverse * moment)
 }
 
 fn gravity<T: Scalar>() -> Vector3<T> {

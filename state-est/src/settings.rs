@@ -19,7 +19,7 @@ pub struct Settings<T> {
     pub least_confidence: T,
     /// Rate at which gravity corrects the tilt while quasi-static, 1/s.
     pub tilt_gain: T,
-    /// Rate at which standing still corrects the gyroscope's bias, 1/s.
+    /// Rate at which feet that stand correct the gyroscope's bias, 1/s.
     pub bias_gain: T,
     /// Largest bias that is believed, rad/s.
     pub max_bias: T,
@@ -45,8 +45,8 @@ impl<T: Scalar> Settings<T> {
             foot_speed: of(0.1),
             slip_gate: of(0.3),
             least_confidence: of(0.1),
-            tilt_gain: of(0.3),
-            bias_gain: of(2.0),
+            tilt_gain: of(0.5),
+            bias_gain: of(1.0),
             max_bias: of(0.1),
             max_specific_force: of(320.0),
             max_angular_velocity: of(70.0),

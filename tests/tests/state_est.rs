@@ -259,7 +259,7 @@ fn ideal_sensors_follow_a1_through_flight_and_impact() {
     for imu in [Transform::IDENTITY, mounted()] {
         let [stand, air, end] = fly_a1(1, 0.0, None, imu);
         println!("{stand:?}\n{air:?}\n{end:?}");
-        assert!(stand.position < 3e-3 && stand.velocity < 0.03 && stand.tilt < 6e-3);
+        assert!(stand.position < 3e-3 && stand.velocity < 0.03 && stand.tilt < 0.012);
         assert!(air.position < 6e-3 && air.velocity < 0.03 && air.tilt < 8e-3);
         assert!(end.position < 0.015 && end.velocity < 0.01 && end.tilt < 6e-3);
     }

@@ -43,6 +43,8 @@ pub(crate) struct Run {
     pub(crate) qp_solves: u64,
     pub(crate) qp_failures: u64,
     pub(crate) qp_max_iterations: u32,
+    /// Largest errors of the estimated base: m, rad; zero where the controller was told the truth.
+    pub(crate) estimate_errors: [f64; 2],
 }
 
 /// The controller's memory.
@@ -185,7 +187,7 @@ pub(crate) fn run(
     mut progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let disturbance = Disturbance::draw(seed);
-    let mut sensors = Sensors::new(&disturbance, seed);
+    let mut sensors = Sensors::new(&disturbance, seed, &task.start);
     let mut plant = plant(sim, task, &disturbance)?;
     let plan = Plan::new(
         &reference.nodes,
@@ -238,6 +240,7 @@ pub(crate) fn run(
         qp_solves: 0,
         qp_failures: 0,
         qp_max_iterations: 0,
+        estimate_errors: [0.0; 2],
     };
     let end = reference.touchdown + SETTLE + 0.5;
     let mut k = 0_u64;
@@ -263,6 +266,7 @@ pub(crate) fn run(
     }
     run.final_phase = controller.phase;
     run.fault = controller.fault;
+    run.estimate_errors = sensors.worst;
     Ok(run)
 }
 

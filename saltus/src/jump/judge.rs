@@ -109,6 +109,10 @@ impl Verdict {
             "peak_foot_force_n": run.peak_foot_force,
             "trunk_contact": run.trunk_contact,
             "fault": run.fault.map(|fault| fault.to_string()),
+            "estimate": {
+                "max_position_error_m": run.estimate_errors[0],
+                "max_rotation_error_deg": run.estimate_errors[1].to_degrees(),
+            },
             "ticks": { "joint": run.ticks[0], "cartesian": run.ticks[1], "landing": run.ticks[2] },
             "qp": {
                 "solves": run.qp_solves,

@@ -44,6 +44,17 @@ pub(crate) struct Disturbance {
     pub(crate) latency_ms: usize,
     /// Standard deviations of encoder position and speed noise, rad and rad/s.
     pub(crate) encoder: (f64, f64),
+    /// The IMU's noise; without it the controller is told the truth about the base.
+    pub(crate) imu: Option<Imu>,
+}
+
+/// Standard deviations of an IMU's samples at 1 kHz and of its biases: rad/s and m/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Imu {
+    pub(crate) gyroscope: f64,
+    pub(crate) gyroscope_bias: f64,
+    pub(crate) accelerometer: f64,
+    pub(crate) accelerometer_bias: f64,
 }
 
 impl Disturbance {
@@ -55,9 +66,11 @@ impl Disturbance {
         joint_friction: 1.0,
         latency_ms: 0,
         encoder: (0.0, 0.0),
+        imu: None,
     };
 
-    /// Seed 0: none. Others: friction ± 20 %, mass ± 5 %, rotors and joint friction ± 30 %, 2 ms of latency, encoder noise.
+    /// Seed 0: none. Others: friction ± 20 %, mass ± 5 %, rotors and joint friction ± 30 %, 2 ms of latency, noisy
+    /// encoders, and an IMU of which `state-est` makes the base.
     pub(crate) fn draw(seed: u64) -> Self {
         if seed == 0 {
             return Self::NOMINAL;
@@ -71,6 +84,12 @@ impl Disturbance {
             joint_friction: around(0.3),
             latency_ms: 2,
             encoder: (1e-3, 0.05),
+            imu: Some(Imu {
+                gyroscope: 0.01,
+                gyroscope_bias: 0.01,
+                accelerometer: 0.1,
+                accelerometer_bias: 0.05,
+            }),
         }
     }
 
