@@ -40,6 +40,27 @@ impl<T: Scalar> ContactSphere<T> {
             ContactShape::Rectangle { .. } => None,
         }
     }
+
+    /// A robot's rectangular sole as four balls inside its corners that touch the sole's plane from above, in the order
+    /// (x⁻, y⁻), (x⁻, y⁺), (x⁺, y⁻), (x⁺, y⁺); `None` for other shapes. Several points of friction resist a turn about
+    /// the normal, so a sole needs no torsional friction of its own.
+    #[must_use]
+    pub fn corners(contact: &Contact<T>, radius: T) -> Option<[Self; 4]> {
+        let ContactShape::Rectangle {
+            x: [xl, xh],
+            y: [yl, yh],
+        } = contact.shape
+        else {
+            return None;
+        };
+        let (xl, xh, yl, yh) = (xl + radius, xh - radius, yl + radius, yh - radius);
+        let placement = contact.frame.placement();
+        Some([(xl, yl), (xl, yh), (xh, yl), (xh, yh)].map(|(x, y)| Self {
+            link: contact.frame.link,
+            offset: placement.point(&Vector3::new(x, y, radius)).into(),
+            radius,
+        }))
+    }
 }
 
 /// Stiffness, dissipation and friction of the ground.

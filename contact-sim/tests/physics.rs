@@ -8,7 +8,8 @@ use contact_sim::{
 };
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
-    Configuration, JointLimits, Link, Motion, Posture, Tangent, Tree, centroidal_state,
+    Configuration, Contact, ContactShape, Frame, JointLimits, Link, Motion, Posture, Tangent, Tree,
+    centroidal_state,
 };
 
 type Plant = NativeSimulator<f64, A1Geared, 12, 12>;
@@ -338,4 +339,30 @@ fn a_torque_that_is_not_finite_is_refused() {
     torque[7] = f64::NAN;
     assert_eq!(sim.step(&torque), Err(Error::TorqueNotFinite(7)));
     assert_eq!(*sim.configuration(), before);
+}
+
+/// The corners of a sole touch its plane, inside its edges, on its side of the plane.
+#[test]
+fn the_corners_of_a_sole_lie_in_its_plane() {
+    let shape = ContactShape::Rectangle {
+        x: [-0.05, 0.1],
+        y: [-0.03, 0.04],
+    };
+    let sole = Contact {
+        name: "sole",
+        frame: Frame {
+            offset: [0.1, 0.2, 0.3],
+            rotation: [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]],
+            ..Frame::IDENTITY
+        },
+        shape,
+    };
+    let corners = ContactSphere::corners(&sole, 0.005).unwrap();
+    let heels = [[0.145, 0.225, 0.305], [0.145, 0.165, 0.305]];
+    let toes = [[0.005, 0.225, 0.305], [0.005, 0.165, 0.305]];
+    for (corner, wanted) in corners.iter().zip(heels.iter().chain(&toes)) {
+        let apart = Vector3::from(corner.offset) - Vector3::from(*wanted);
+        assert!(apart.norm() < 1e-12, "{corner:?}");
+    }
+    assert_eq!(ContactSphere::corners(&FEET[0], 0.005), None);
 }

@@ -2,14 +2,18 @@
 #![no_std]
 
 pub mod cartesian;
+pub mod com_profile;
 pub mod joint;
+pub mod minimum_jerk;
 pub mod phase;
 pub mod plan;
 pub mod sample;
 pub mod watch;
 
 pub use cartesian::{CartesianGains, CartesianPd};
+pub use com_profile::{ComPoint, ComProfile, Curve, takeoff_speed};
 pub use joint::{JointCommand, JointGains};
+pub use minimum_jerk::MinimumJerk;
 pub use phase::{Event, Phase, TRANSITIONS, next_phase};
 pub use plan::{Node, Plan, PlanError};
 pub use sample::{Reference, Torques, sample};

@@ -1,6 +1,7 @@
 //! Plans jumps of legged robots.
 
 mod cmd;
+mod humanoid;
 mod jump;
 mod noise;
 mod reference;

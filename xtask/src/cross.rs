@@ -8,7 +8,7 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 12] = [
+const CRATES: [&str; 13] = [
     "so3",
     "rbd-core",
     "a1-model",
@@ -18,6 +18,7 @@ const CRATES: [&str; 12] = [
     "srb-opt",
     "wb-opt",
     "landing",
+    "wbc-qp",
     "jump-control",
     "state-est",
     "contact-sim",

@@ -1,5 +1,6 @@
 //! `saltus run`: plan a jump, execute it in simulation, report.
 
+use crate::humanoid;
 use crate::jump::judge::Verdict;
 use crate::jump::plant::Sim;
 use crate::jump::task::{SrbPlan, Task};
@@ -20,6 +21,12 @@ pub(crate) struct Args {
     /// Seed of the disturbances: 0 is the nominal run, others draw masses, friction, rotor inertia, latency and noise.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Humanoid tasks: height to gain in flight, m.
+    #[arg(long, default_value_t = 0.04)]
+    height: f64,
+    /// Humanoid tasks: leave the angular momentum alone.
+    #[arg(long)]
+    no_momentum: bool,
     /// Print one JSON object instead of text.
     #[arg(long)]
     json: bool,
@@ -30,6 +37,9 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    if let Some(task) = humanoid::Task::named(&args.task, args.height, !args.no_momentum) {
+        return run_humanoid(args, &task);
+    }
     let task = Task::load(&args.task)?;
     if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
         return Err(taken(path));
@@ -76,6 +86,33 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         println!("report: {}", folder.join("report.html").display());
     }
     Ok(if verdict.on_target() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    })
+}
+
+/// Runs a jump of paper B.
+fn run_humanoid(args: &Args, task: &humanoid::Task) -> Result<ExitCode, String> {
+    if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
+        return Err(taken(path));
+    }
+    if args.sim != Sim::Native {
+        return Err("humanoid tasks run in the native simulator only, so far".into());
+    }
+    let mut plant = humanoid::plant(0.6);
+    let run = humanoid::execute::run(task, &mut plant, |_, _| {})?;
+    let verdict = humanoid::judge::Verdict::of(&run);
+    let json = verdict.json(task, &run, args.seed, "native");
+    let folder = new_folder(args.out.as_deref(), task.name())?;
+    write(&folder, "log.csv", &humanoid::log::csv(&run.samples))?;
+    write(&folder, "result.json", &format!("{json:#}\n"))?;
+    if args.json {
+        println!("{json}");
+    } else {
+        println!("{json:#}");
+    }
+    Ok(if verdict.on_target(task) {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(2)

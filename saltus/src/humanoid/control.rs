@@ -1,0 +1,252 @@
+//! The controller of a humanoid jump: push-off by a program, flight by minimum jerk, landing by a hold. 1 kHz.
+
+use super::{GRAVITY, JOINTS, ROBOT, State, Task, Velocity, landing_posture};
+use icub_model::gazebo::joint;
+use icub_model::{LIMITS, SOLES};
+use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
+use nalgebra::Vector3;
+use rbd_core::{JointLimits, Transform};
+use wbc_qp::jump::{ComReference, Residuals, VelocityJump, VelocityJumpSettings};
+use wbc_qp::{Contact, Snapshot, anchored};
+
+/// Length of a tick, s.
+pub(crate) const TICK: f64 = 1e-3;
+/// Duration of the aerial motion, s: a flight of 4 cm takes 0.18 s.
+const AERIAL: f64 = 0.12;
+/// Factors on the servos' gains of legs and torso once the ground is there: the hold of paper B, but compliant, since the
+/// stiff one throws the robot back into the air.
+const LANDING_STIFFNESS: f64 = 0.2;
+const LANDING_DAMPING: f64 = 2.0;
+/// Force on both soles that counts as touchdown, N.
+const TOUCH: f64 = 20.0;
+/// Ground friction that the controller counts on.
+const FRICTION: f64 = 0.5;
+/// Share of the joints' speed limits that the program may use.
+const SPEED_MARGIN: f64 = 0.96;
+/// Residuals up to which an equality of the paper counts as held.
+const HELD: Residuals<f64> = Residuals {
+    com: 0.02,
+    momentum: 0.05,
+};
+
+/// What the programs did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct QpLog {
+    pub(crate) solves: u64,
+    pub(crate) failures: u64,
+    pub(crate) max_iterations: u32,
+    pub(crate) relaxed_ticks: u64,
+    /// Largest residuals in the push-off.
+    pub(crate) residuals: Residuals<f64>,
+}
+
+/// The controller with its memory.
+pub(crate) struct Controller {
+    task: Task,
+    profile: ComProfile<f64>,
+    pub(crate) phase: Phase,
+    pub(crate) qp: QpLog,
+    pub(crate) reference: ComReference<f64>,
+    snapshot: Snapshot<f64, JOINTS>,
+    contacts: [Contact<f64>; 2],
+    velocity: Box<VelocityJump<f64, JOINTS, 29, 12>>,
+    start_com: Vector3<f64>,
+    /// Where the left sole stands.
+    anchor: Transform<f64>,
+    /// Positions that the servos track.
+    servo: [f64; JOINTS],
+    /// Velocities last asked of them.
+    commanded: [f64; JOINTS],
+    aerial: MinimumJerk<f64, JOINTS>,
+    took_off: f64,
+    calm: f64,
+}
+
+/// Gains of the joints' servos, by joint: hips and knees, ankles, torso, arms.
+fn servo_gains() -> [JointGains<f64>; JOINTS] {
+    core::array::from_fn(|i| {
+        let (stiffness, damping) = match i {
+            0..12 if i % 6 == 4 || i % 6 == 5 => (1500.0, 15.0),
+            0..12 => (3000.0, 40.0),
+            12..15 => (2000.0, 30.0),
+            _ => (300.0, 5.0),
+        };
+        JointGains { stiffness, damping }
+    })
+}
+
+/// The joints' limits with a margin on speed: a servo overshoots its command by a per cent.
+fn guarded_limits() -> [JointLimits<f64>; JOINTS] {
+    LIMITS.map(|limits| JointLimits {
+        speed: SPEED_MARGIN * limits.speed,
+        ..limits
+    })
+}
+
+impl Controller {
+    /// At rest in this state.
+    pub(crate) fn new(task: Task, start: &State) -> Result<Self, String> {
+        let mut settings = VelocityJumpSettings::icub();
+        settings.posture_weight = core::array::from_fn(|i| match i {
+            joint::L_KNEE | joint::R_KNEE => 3.0,
+            joint::L_HIP_PITCH | joint::R_HIP_PITCH => 0.7,
+            joint::L_SHOULDER_PITCH.. => 0.3,
+            _ => 1.0,
+        });
+        if !task.momentum {
+            settings.momentum_weight = 0.0;
+        }
+        let start_com = super::com(start);
+        Ok(Self {
+            task,
+            profile: task.profile()?,
+            phase: Phase::Hold,
+            qp: QpLog::default(),
+            reference: ComReference {
+                position_w: start_com,
+                velocity_w: Vector3::zeros(),
+                acceleration_w: Vector3::zeros(),
+            },
+            snapshot: Snapshot::ZERO,
+            contacts: SOLES.map(|sole| Contact::new(&sole, FRICTION, 1000.0)),
+            velocity: Box::new(VelocityJump::new(settings, start.joints)),
+            start_com,
+            anchor: super::poses(start).frame(&SOLES[0].frame),
+            servo: start.joints,
+            commanded: [0.0; JOINTS],
+            aerial: MinimumJerk {
+                from: start.joints,
+                velocity: [0.0; JOINTS],
+                to: landing_posture(),
+                duration: AERIAL,
+            },
+            took_off: f64::INFINITY,
+            calm: 0.0,
+        })
+    }
+
+    /// Planned time of take-off, s.
+    pub(crate) const fn takeoff(&self) -> f64 {
+        self.profile.duration
+    }
+
+    fn event(&mut self, t: f64, v: &Velocity, sole_force: f64) -> Option<Event> {
+        let moving = v.base.linear.norm() > 0.05 || v.base.angular.norm() > 0.2;
+        self.calm = if moving { 0.0 } else { self.calm + TICK };
+        match self.phase {
+            Phase::Hold => (t >= 0.0).then_some(Event::Start),
+            Phase::Stance => (t >= self.profile.duration).then_some(Event::Takeoff),
+            Phase::Flight => (t >= self.took_off + AERIAL).then_some(Event::Posing),
+            Phase::PreLanding if sole_force > TOUCH => Some(Event::Touchdown),
+            Phase::PreLanding => (t > self.took_off + 1.0).then_some(Event::Overdue),
+            Phase::Landing => (self.calm > 0.2).then_some(Event::Settled),
+            Phase::Stand => (self.calm == 0.0).then_some(Event::Disturbed),
+            Phase::Abort => None,
+        }
+    }
+
+    /// One tick at time `t` since the start of the push-off.
+    pub(crate) fn tick(
+        &mut self,
+        t: f64,
+        q: &State,
+        v: &Velocity,
+        sole_force: f64,
+    ) -> JointCommand<f64, JOINTS> {
+        if let Some(event) = self.event(t, v, sole_force) {
+            let before = self.phase;
+            self.phase = next_phase(self.phase, event);
+            if before == Phase::Stance {
+                self.took_off = t;
+                self.aerial.from = self.servo;
+            }
+        }
+        match self.phase {
+            Phase::Hold | Phase::Stance => self.push(t, q, v),
+            Phase::Flight | Phase::PreLanding | Phase::Landing | Phase::Stand => {
+                let (position, velocity) = self.aerial.at(t - self.took_off);
+                self.servo = position;
+                let mut command = self.track(velocity);
+                if matches!(self.phase, Phase::Landing | Phase::Stand) {
+                    for gains in &mut command.gains[..joint::L_SHOULDER_PITCH] {
+                        gains.stiffness *= LANDING_STIFFNESS;
+                        gains.damping *= LANDING_DAMPING;
+                    }
+                }
+                command
+            }
+            Phase::Abort => JointCommand::damp(5.0),
+        }
+    }
+
+    fn track(&self, velocity: [f64; JOINTS]) -> JointCommand<f64, JOINTS> {
+        JointCommand {
+            position: self.servo,
+            velocity,
+            feed_forward: [0.0; JOINTS],
+            gains: servo_gains(),
+        }
+    }
+
+    fn push(&mut self, t: f64, q: &State, v: &Velocity) -> JointCommand<f64, JOINTS> {
+        let sole = &SOLES[0].frame;
+        let (q, v) = anchored(&ROBOT, &q.joints, &v.joints, sole, &self.anchor);
+        self.snapshot.update(&ROBOT, &q, &v);
+        let point = self.profile.at(t);
+        let up = Vector3::z();
+        self.reference = ComReference {
+            position_w: self.start_com + up * point.rise,
+            velocity_w: up * point.speed,
+            acceleration_w: up * point.acceleration,
+        };
+        self.qp.solves += 1;
+        let tick = self.velocity.tick(
+            &ROBOT,
+            &self.snapshot,
+            &self.contacts,
+            &guarded_limits(),
+            &self.reference,
+            TICK,
+        );
+        let velocities = match tick {
+            Ok(tick) => {
+                self.note(tick.iterations, &tick.residuals);
+                tick.velocities
+            }
+            Err(_) => {
+                self.qp.failures += 1;
+                [0.0; JOINTS]
+            }
+        };
+        self.commanded = velocities;
+        for (servo, qd) in self.servo.iter_mut().zip(velocities) {
+            *servo += TICK * qd;
+        }
+        self.track(velocities)
+    }
+
+    fn note(&mut self, iterations: u32, residuals: &Residuals<f64>) {
+        let log = &mut self.qp;
+        log.max_iterations = log.max_iterations.max(iterations);
+        let momentum = if self.task.momentum {
+            residuals.momentum
+        } else {
+            0.0
+        };
+        if residuals.com > HELD.com || momentum > HELD.momentum {
+            log.relaxed_ticks += 1;
+        }
+        log.residuals.com = log.residuals.com.max(residuals.com);
+        log.residuals.momentum = log.residuals.momentum.max(momentum);
+    }
+
+    /// Height that the push-off's reference asks for now, m.
+    pub(crate) fn wanted_height(&self, t: f64) -> f64 {
+        self.start_com.z + self.profile.at(t).rise
+    }
+
+    /// Speed that a jump of the task's height needs, m/s.
+    pub(crate) fn wanted_speed(&self) -> f64 {
+        jump_control::takeoff_speed(self.task.height, GRAVITY)
+    }
+}

@@ -1,0 +1,167 @@
+//! The closed loop: plant and servos at 10 kHz, controller at 1 kHz.
+
+use super::control::{Controller, QpLog, TICK};
+use super::log::Sample;
+use super::{JOINTS, ROBOT, SPHERES, State, Task, Velocity, on_the_floor, poses, spheres, squat};
+use contact_sim::Simulator;
+use icub_model::{LIMITS, MOTORS};
+use jump_control::Phase;
+use nalgebra::Vector3;
+use rbd_core::{CentroidalMap, Posture, Tangent, centroidal_map, centroidal_state};
+
+/// Time of standing in the squat before the push-off, s.
+pub(crate) const HOLD: f64 = 0.5;
+/// Time after touchdown at which the robot must stand, s.
+pub(crate) const SETTLE: f64 = 2.0;
+/// Force on a sole below which it counts as off the ground, N.
+const LIFTED: f64 = 1.0;
+
+/// How close the push-off came to the joints' limits: 1 is the limit.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Usage {
+    /// Position: share of the half range, from its middle.
+    pub(crate) position: f64,
+    pub(crate) speed: f64,
+    pub(crate) torque: f64,
+}
+
+/// Everything a run leaves behind.
+pub(crate) struct Run {
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) final_phase: Phase,
+    pub(crate) takeoff: f64,
+    pub(crate) wanted_speed: f64,
+    pub(crate) contact_loss: Option<f64>,
+    pub(crate) touchdown: Option<f64>,
+    pub(crate) launch: Usage,
+    pub(crate) landing_torque: f64,
+    pub(crate) peak_torque: f64,
+    pub(crate) peak_force: f64,
+    pub(crate) qp: QpLog,
+}
+
+/// Runs the jump; `progress` hears time and phase once per simulated 10 ms.
+pub(crate) fn run<P: Simulator<f64, JOINTS, SPHERES>>(
+    task: &Task,
+    plant: &mut P,
+    mut progress: impl FnMut(f64, Phase),
+) -> Result<Run, String>
+where
+    P::Error: core::fmt::Display,
+{
+    let start = on_the_floor(squat());
+    plant.reset(&start, &Tangent::ZERO);
+    let mut controller = Controller::new(*task, &start)?;
+    let mut run = Run {
+        samples: Vec::new(),
+        final_phase: Phase::Hold,
+        takeoff: controller.takeoff(),
+        wanted_speed: controller.wanted_speed(),
+        contact_loss: None,
+        touchdown: None,
+        launch: Usage::default(),
+        landing_torque: 0.0,
+        peak_torque: 0.0,
+        peak_force: 0.0,
+        qp: QpLog::default(),
+    };
+    let substeps = (TICK / plant.tick()).round() as usize;
+    for k in 0_u64.. {
+        let t = k as f64 * TICK - HOLD;
+        if t > run.takeoff + SETTLE + 0.7 {
+            break;
+        }
+        let (q, v) = (*plant.configuration(), *plant.velocity());
+        let forces = sole_forces(plant);
+        let command = controller.tick(t, &q, &v, forces[0].norm() + forces[1].norm());
+        let sample = record(plant, &controller, t);
+        observe(&mut run, &sample);
+        run.samples.push(sample);
+        for _ in 0..substeps {
+            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+            let torques = command.torques(&q, &v, &MOTORS);
+            plant.step(&torques).map_err(|error| error.to_string())?;
+        }
+        if k.is_multiple_of(10) {
+            progress(t, controller.phase);
+        }
+    }
+    run.final_phase = controller.phase;
+    run.qp = controller.qp;
+    Ok(run)
+}
+
+/// Force of the ground on each sole.
+fn sole_forces<P: Simulator<f64, JOINTS, SPHERES>>(plant: &P) -> [Vector3<f64>; 2] {
+    let f = plant.contact_forces_w();
+    [f[..4].iter().sum(), f[4..].iter().sum()]
+}
+
+fn record<P: Simulator<f64, JOINTS, SPHERES>>(
+    plant: &P,
+    controller: &Controller,
+    time: f64,
+) -> Sample {
+    let (q, v): (&State, &Velocity) = (plant.configuration(), plant.velocity());
+    let posture = Posture::new(&ROBOT, q);
+    let state = centroidal_state(&ROBOT, &posture, v);
+    let mut map = CentroidalMap::ZERO;
+    centroidal_map(&ROBOT, &posture, &mut map);
+    let poses = poses(q);
+    let heights = spheres()
+        .map(|ball| poses.link(ball.link).point(&Vector3::from(ball.offset)).z - ball.radius);
+    Sample {
+        time,
+        phase: controller.phase,
+        position: q.base.translation,
+        orientation: so3::quat::from_rotation(&q.base.rotation),
+        com: state.com_w,
+        com_velocity: state.com_velocity_w,
+        wanted_height: controller.wanted_height(time),
+        momentum: state.momentum_w.angular,
+        locked: map.locked_angular_velocity(&state.momentum_w),
+        joints: q.joints,
+        joint_velocities: v.joints,
+        torques: *plant.delivered(),
+        forces_w: sole_forces(plant),
+        clearance: heights.into_iter().fold(f64::INFINITY, f64::min),
+    }
+}
+
+/// Events and extremes of one tick.
+fn observe(run: &mut Run, s: &Sample) {
+    let off = s.forces_w.iter().all(|f| f.norm() < LIFTED);
+    let pushed = matches!(s.phase, Phase::Stance | Phase::Flight | Phase::PreLanding);
+    if run.contact_loss.is_none() && pushed && s.time > 0.5 * run.takeoff && off {
+        run.contact_loss = Some(s.time);
+    }
+    // The soles part a millimetre or two before they come back within the same push-off; that is no touchdown.
+    let in_air = run.contact_loss.is_some_and(|t| s.time > t + 0.03);
+    if run.touchdown.is_none() && in_air && !off {
+        run.touchdown = Some(s.time);
+    }
+    let shares = s
+        .torques
+        .iter()
+        .zip(&LIMITS)
+        .map(|(tau, l)| tau.abs() / l.effort);
+    let torque = shares.fold(0.0, f64::max);
+    run.peak_torque = s
+        .torques
+        .iter()
+        .fold(run.peak_torque, |m, x| m.max(x.abs()));
+    let total = s.forces_w.iter().map(|f| f.norm()).sum::<f64>();
+    run.peak_force = run.peak_force.max(total);
+    if run.contact_loss.is_none() && s.phase == Phase::Stance {
+        let joints = s.joints.iter().zip(&s.joint_velocities).zip(&LIMITS);
+        for ((q, qd), l) in joints {
+            let middle = 0.5 * (l.lower + l.upper);
+            let position = (q - middle).abs() / (0.5 * (l.upper - l.lower));
+            run.launch.position = run.launch.position.max(position);
+            run.launch.speed = run.launch.speed.max(qd.abs() / l.speed);
+        }
+        run.launch.torque = run.launch.torque.max(torque);
+    } else if run.touchdown.is_some() {
+        run.landing_torque = run.landing_torque.max(torque);
+    }
+}

@@ -1,0 +1,119 @@
+//! What a run achieved, as numbers.
+
+use super::Task;
+use super::execute::{Run, SETTLE};
+use super::log::Sample;
+use jump_control::Phase;
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+/// Tilt of the base up to which the robot counts as upright, degrees: the squat itself leans by 17°.
+const UPRIGHT: f64 = 30.0;
+
+/// The verdict on one run.
+pub(crate) struct Verdict {
+    pub(crate) landed: bool,
+    pub(crate) upright: bool,
+    /// Apex of the centre of mass less its height at the loss of contact, m.
+    pub(crate) com_gain: f64,
+    /// The same less its height at the planned take-off.
+    pub(crate) com_gain_nominal: f64,
+    /// Largest height of the lowest corner of the soles, m.
+    pub(crate) sole_clearance: f64,
+    /// Integral of the locked angular velocity in flight, degrees.
+    pub(crate) locked_rotation: f64,
+    /// Change of the base's pitch from the loss of contact to the touchdown, degrees.
+    pub(crate) pitch_change: f64,
+    /// Vertical speed of the centre of mass at the loss of contact, m/s.
+    pub(crate) takeoff_speed: f64,
+    /// No joint beyond its position, speed or torque limit in the push-off.
+    pub(crate) within_limits: bool,
+}
+
+impl Verdict {
+    /// Judges a run.
+    pub(crate) fn of(run: &Run) -> Self {
+        let samples = &run.samples;
+        let at = |time: f64| samples.iter().find(|s| s.time >= time - 1e-9);
+        let loss = run.contact_loss.unwrap_or(f64::NAN);
+        let end = run.touchdown.unwrap_or(loss);
+        let flight: Vec<&Sample> = samples
+            .iter()
+            .filter(|s| s.time >= loss && s.time <= end)
+            .collect();
+        let highest = |f: &dyn Fn(&Sample) -> f64| flight.iter().map(|s| f(s)).fold(0.0, f64::max);
+        let apex = highest(&|s| s.com.z);
+        let height = |time| at(time).map_or(f64::NAN, |s: &Sample| s.com.z);
+        let turned: Vector3<f64> = flight.iter().map(|s| s.locked * 1e-3).sum();
+        let pitch = |time| at(time).map_or(f64::NAN, Sample::pitch_deg);
+        let later = run.touchdown.and_then(|t| at(t + SETTLE));
+        let upright = later.is_some_and(|s| {
+            let up = s.orientation * Vector3::z();
+            let tilt = so3::math::atan2(so3::math::hypot(up.x, up.y), up.z).to_degrees();
+            tilt < UPRIGHT && s.forces_w.iter().all(|f| f.z > 20.0) && s.com_velocity.norm() < 0.1
+        });
+        Self {
+            landed: run.touchdown.is_some()
+                && matches!(run.final_phase, Phase::Landing | Phase::Stand),
+            upright,
+            com_gain: apex - height(loss),
+            com_gain_nominal: apex - height(run.takeoff),
+            sole_clearance: highest(&|s| s.clearance),
+            locked_rotation: turned.norm().to_degrees(),
+            pitch_change: pitch(end) - pitch(loss),
+            takeoff_speed: at(loss).map_or(f64::NAN, |s| s.com_velocity.z),
+            within_limits: run.launch.position <= 1.0
+                && run.launch.speed <= 1.0
+                && run.launch.torque <= 1.0 + 1e-9,
+        }
+    }
+
+    /// Within half a centimetre of the height asked for (at 4 cm: 3.5 to 4.5), soles likewise up, upright, within limits.
+    pub(crate) fn on_target(&self, task: &Task) -> bool {
+        self.landed
+            && self.upright
+            && self.within_limits
+            && (self.com_gain - task.height).abs() <= 0.005
+            && self.sole_clearance >= task.height - 0.005
+    }
+
+    /// The object of `--json`.
+    pub(crate) fn json(&self, task: &Task, run: &Run, seed: u64, sim: &str) -> Value {
+        json!({
+            "task": task.name(),
+            "sim": sim,
+            "seed": seed,
+            "momentum_control": task.momentum,
+            "height_m": task.height,
+            "landed": self.landed,
+            "upright": self.upright,
+            "com_gain_m": self.com_gain,
+            "com_gain_nominal_m": self.com_gain_nominal,
+            "sole_clearance_m": self.sole_clearance,
+            "takeoff_speed_m_s": self.takeoff_speed,
+            "takeoff_speed_wanted_m_s": run.wanted_speed,
+            "locked_rotation_deg": self.locked_rotation,
+            "pitch_change_deg": self.pitch_change,
+            "planned_takeoff_s": run.takeoff,
+            "contact_loss_s": run.contact_loss,
+            "first_contact_s": run.touchdown,
+            "within_limits_in_launch": self.within_limits,
+            "launch_usage": {
+                "position": run.launch.position,
+                "speed": run.launch.speed,
+                "torque": run.launch.torque,
+            },
+            "landing_torque_usage": run.landing_torque,
+            "peak_torque_nm": run.peak_torque,
+            "peak_foot_force_n": run.peak_force,
+            "qp": {
+                "solves": run.qp.solves,
+                "failures": run.qp.failures,
+                "max_iterations": run.qp.max_iterations,
+                "relaxed_ticks": run.qp.relaxed_ticks,
+                "max_com_residual": run.qp.residuals.com,
+                "max_momentum_residual": run.qp.residuals.momentum,
+            },
+        })
+    }
+}

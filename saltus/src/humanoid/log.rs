@@ -1,0 +1,76 @@
+//! What is kept of a run: one sample per millisecond.
+
+use super::{JOINTS, ROBOT};
+use core::fmt::Write;
+use jump_control::Phase;
+use nalgebra::{UnitQuaternion, Vector3};
+use rbd_core::Model;
+
+/// One sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Sample {
+    pub(crate) time: f64,
+    pub(crate) phase: Phase,
+    pub(crate) position: Vector3<f64>,
+    pub(crate) orientation: UnitQuaternion<f64>,
+    pub(crate) com: Vector3<f64>,
+    pub(crate) com_velocity: Vector3<f64>,
+    /// Height that the push-off's reference asks for.
+    pub(crate) wanted_height: f64,
+    /// Angular momentum about the centre of mass.
+    pub(crate) momentum: Vector3<f64>,
+    /// Angular velocity of the locked robot.
+    pub(crate) locked: Vector3<f64>,
+    pub(crate) joints: [f64; JOINTS],
+    pub(crate) joint_velocities: [f64; JOINTS],
+    pub(crate) torques: [f64; JOINTS],
+    /// Force on each sole.
+    pub(crate) forces_w: [Vector3<f64>; 2],
+    /// Height of the lowest corner of both soles.
+    pub(crate) clearance: f64,
+}
+
+impl Sample {
+    /// Pitch of the base, degrees: positive when it leans forward.
+    pub(crate) fn pitch_deg(&self) -> f64 {
+        // The base's x axis points backwards: it rises when the robot leans forward.
+        let back = self.orientation * Vector3::x();
+        so3::math::atan2(back.z, so3::math::hypot(back.x, back.y)).to_degrees()
+    }
+}
+
+/// The samples as CSV.
+pub(crate) fn csv(samples: &[Sample]) -> String {
+    let mut out = String::from(
+        "time,phase,x,y,z,qx,qy,qz,qw,com_x,com_y,com_z,com_vx,com_vy,com_vz,com_z_plan,h_x,h_y,h_z,\
+         locked_x,locked_y,locked_z",
+    );
+    for kind in ["q", "qd", "tau"] {
+        for name in Model::<f64, JOINTS>::joint_names(&ROBOT) {
+            let _ = write!(out, ",{kind}_{name}");
+        }
+    }
+    out.push_str(",f_left_x,f_left_y,f_left_z,f_right_x,f_right_y,f_right_z,clearance\n");
+    for s in samples {
+        let _ = write!(out, "{:.4},{:?}", s.time, s.phase);
+        let numbers = s
+            .position
+            .iter()
+            .chain(s.orientation.coords.iter())
+            .chain(s.com.iter())
+            .chain(s.com_velocity.iter())
+            .chain(core::iter::once(&s.wanted_height))
+            .chain(s.momentum.iter())
+            .chain(s.locked.iter())
+            .chain(&s.joints)
+            .chain(&s.joint_velocities)
+            .chain(&s.torques)
+            .chain(s.forces_w.iter().flat_map(|f| f.iter()))
+            .chain(core::iter::once(&s.clearance));
+        for x in numbers {
+            let _ = write!(out, ",{x:.6}");
+        }
+        out.push('\n');
+    }
+    out
+}

@@ -1,0 +1,153 @@
+//! The jumps of paper B: iCub pushes off by the velocity program, flies and lands.
+
+pub(crate) mod control;
+pub(crate) mod execute;
+pub(crate) mod judge;
+pub(crate) mod log;
+
+use contact_sim::{ContactSphere, NativeSimulator, Settings, Terrain};
+use icub_model::gazebo::joint;
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use jump_control::{ComProfile, Curve, takeoff_speed};
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Posture, Tangent, center_of_mass};
+use rbd_core::{Kinematics, forward_kinematics};
+
+/// Joints of the robot.
+pub(crate) const JOINTS: usize = 23;
+/// Balls in the corners of its two soles.
+pub(crate) const SPHERES: usize = 8;
+/// The robot, with the inertias of the Gazebo model that the paper simulated.
+pub(crate) const ROBOT: Icub23 = Icub23;
+/// Radius of the balls in the corners of the soles, m.
+const CORNER_RADIUS: f64 = 0.005;
+/// Magnitude of gravity, m/s².
+pub(crate) const GRAVITY: f64 = 9.81;
+
+pub(crate) type State = Configuration<f64, JOINTS>;
+pub(crate) type Velocity = Tangent<f64, JOINTS>;
+pub(crate) type Plant = NativeSimulator<f64, Icub23, JOINTS, SPHERES>;
+
+/// A humanoid task.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Task {
+    /// Height to gain in flight, m.
+    pub(crate) height: f64,
+    /// Whether the angular momentum is controlled.
+    pub(crate) momentum: bool,
+}
+
+impl Task {
+    /// The task of this name, `None` if it is none of a humanoid.
+    pub(crate) fn named(name: &str, height: f64, momentum: bool) -> Option<Self> {
+        (name == "icub/velocity").then_some(Self { height, momentum })
+    }
+
+    /// Its name.
+    pub(crate) fn name(&self) -> &'static str {
+        "icub/velocity"
+    }
+
+    /// The push-off of the paper: a displacement of 11 cm.
+    pub(crate) fn profile(&self) -> Result<ComProfile<f64>, String> {
+        let speed = takeoff_speed(self.height, GRAVITY);
+        ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY)
+            .ok_or_else(|| format!("height {} m: a positive height is needed", self.height))
+    }
+}
+
+/// A posture with both legs alike: hip, knee and ankle pitch and torso pitch, the arms half bent at the sides.
+pub(crate) fn posture(hip: f64, knee: f64, ankle: f64, torso: f64) -> [f64; JOINTS] {
+    let mut q = [0.0; JOINTS];
+    for (leg, x) in [
+        (joint::L_HIP_PITCH, hip),
+        (joint::L_KNEE, knee),
+        (joint::L_ANKLE_PITCH, ankle),
+        (joint::R_HIP_PITCH, hip),
+        (joint::R_KNEE, knee),
+        (joint::R_ANKLE_PITCH, ankle),
+        (joint::TORSO_PITCH, torso),
+    ] {
+        q[leg] = x;
+    }
+    for (shoulder, x) in [(0, -0.5), (1, 0.4), (3, 0.8)] {
+        q[joint::L_SHOULDER_PITCH + shoulder] = x;
+        q[joint::R_SHOULDER_PITCH + shoulder] = x;
+    }
+    q
+}
+
+/// Poses of all bodies.
+pub(crate) fn poses(q: &State) -> Kinematics<f64, JOINTS> {
+    let mut kinematics = Kinematics::IDENTITY;
+    forward_kinematics(&ROBOT, &Posture::new(&ROBOT, q), &mut kinematics);
+    kinematics
+}
+
+/// Centre of mass in the world.
+pub(crate) fn com(q: &State) -> Vector3<f64> {
+    center_of_mass(&ROBOT, &Posture::new(&ROBOT, q)).position_w
+}
+
+/// The robot with these joints and its left sole flat on the floor, toes along x, the middle between the soles' frames at
+/// the origin.
+pub(crate) fn on_the_floor(joints: [f64; JOINTS]) -> State {
+    let mut q = State {
+        joints,
+        ..State::NEUTRAL
+    };
+    q.base.rotation = poses(&q).frame(&SOLES[0].frame).rotation.inverse();
+    let poses = poses(&q);
+    let [left, right] = SOLES.map(|sole| poses.frame(&sole.frame).translation);
+    q.base.translation = -(left + right) * 0.5;
+    q
+}
+
+/// The squat that the jump starts from.
+pub(crate) fn squat() -> [f64; JOINTS] {
+    posture(1.496, -2.013, -0.817, 0.2)
+}
+
+/// The posture in which the robot lands: legs drawn up a little from the take-off, soles level.
+pub(crate) fn landing_posture() -> [f64; JOINTS] {
+    posture(1.08, -1.35, -0.5, 0.2)
+}
+
+/// The corners of the soles.
+pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
+    let corners = SOLES.map(|sole| ContactSphere::corners(&sole, CORNER_RADIUS));
+    core::array::from_fn(|i| match &corners[i / 4] {
+        Some(balls) => balls[i % 4],
+        None => unreachable!("the soles are rectangles"),
+    })
+}
+
+/// The embedded simulator of the robot.
+pub(crate) fn plant(friction: f64) -> Plant {
+    let mut settings = Settings::new(&LIMITS, &MOTORS);
+    settings.contact.friction = friction;
+    Plant::new(ROBOT, spheres(), Terrain::FLAT, settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{com, on_the_floor, poses, squat};
+    use icub_model::{LIMITS, SOLES};
+
+    #[test]
+    fn the_squat_stands_on_both_soles_inside_its_limits() {
+        let q = on_the_floor(squat());
+        let poses = poses(&q);
+        for sole in SOLES {
+            let pose = poses.frame(&sole.frame);
+            assert!(pose.translation.z.abs() < 1e-4);
+            assert!((pose.rotation.matrix()[(2, 2)] - 1.0).abs() < 1e-6);
+        }
+        let c = com(&q);
+        assert!((c.z - 0.38).abs() < 0.015, "{c:?}");
+        assert!(c.x > -0.03 && c.x < 0.08, "{c:?}");
+        for (q, limits) in q.joints.iter().zip(&LIMITS) {
+            assert!(*q > limits.lower && *q < limits.upper);
+        }
+    }
+}

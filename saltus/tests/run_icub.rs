@@ -1,0 +1,52 @@
+//! The humanoid's jumps, end to end.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+fn run(task: &str, name: &str, more: &[&str]) -> (Value, bool) {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&out);
+    let result = Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["run", task, "--json", "--out", out.to_str().unwrap()])
+        .args(more)
+        .output()
+        .unwrap();
+    let json = serde_json::from_slice(&result.stdout)
+        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&result.stderr)));
+    (json, result.status.success())
+}
+
+fn number(json: &Value, name: &str) -> f64 {
+    json[name].as_f64().unwrap()
+}
+
+#[test]
+fn the_velocity_program_jumps_four_centimetres_and_stands() {
+    let (json, good) = run("icub/velocity", "icub-velocity", &[]);
+    assert!(good, "{json}");
+    assert!(
+        (0.035..=0.045).contains(&number(&json, "com_gain_m")),
+        "{json}"
+    );
+    assert!(number(&json, "sole_clearance_m") >= 0.035, "{json}");
+    assert_eq!(json["upright"], true);
+    assert_eq!(json["within_limits_in_launch"], true);
+    assert_eq!(json["qp"]["failures"], 0);
+    let with = number(&json, "locked_rotation_deg");
+    assert!(with < 1.5, "{json}");
+    // The gain follows from the speed at the loss of contact.
+    let speed = number(&json, "takeoff_speed_m_s");
+    let ballistic = speed * speed / (2.0 * 9.81);
+    assert!(
+        (number(&json, "com_gain_m") - ballistic).abs() < 1e-3,
+        "{json}"
+    );
+
+    let (json, good) = run("icub/velocity", "icub-velocity-free", &["--no-momentum"]);
+    assert!(
+        !good && number(&json, "locked_rotation_deg") > 4.0 * with,
+        "{json}"
+    );
+}

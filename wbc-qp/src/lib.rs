@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+
+mod anchor;
+mod contact;
+mod error;
+pub mod jump;
+mod limits;
+mod program;
+mod snapshot;
+pub mod task;
+mod velocity;
+
+pub use anchor::anchored;
+pub use contact::Contact;
+pub use error::Error;
+pub use limits::{Horizon, torque_range};
+pub use snapshot::Snapshot;
+pub use task::{Gains, Task};
+pub use velocity::{VelocityAnswer, VelocityQp};

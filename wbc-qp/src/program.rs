@@ -1,0 +1,105 @@
+//! The arrays of one quadratic program, filled term by term.
+
+use so3::Scalar;
+
+use crate::Error;
+
+/// A program with V variables and room for M rows:
+/// minimise Σ w (aᵀz − b)² / 2 subject to l ≤ A z ≤ u and lb ≤ z ≤ ub.
+#[derive(Clone, Debug)]
+pub(crate) struct Program<T, const V: usize, const M: usize> {
+    pub(crate) hessian: [[T; V]; V],
+    pub(crate) gradient: [T; V],
+    pub(crate) rows: [[T; V]; M],
+    pub(crate) row_lower: [T; M],
+    pub(crate) row_upper: [T; M],
+    pub(crate) lower: [T; V],
+    pub(crate) upper: [T; V],
+    used: usize,
+}
+
+impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
+    /// No cost, no row, no bound.
+    pub(crate) const fn new() -> Self {
+        Self {
+            hessian: [[T::ZERO; V]; V],
+            gradient: [T::ZERO; V],
+            rows: [[T::ZERO; V]; M],
+            row_lower: [T::NEG_INFINITY; M],
+            row_upper: [T::INFINITY; M],
+            lower: [T::NEG_INFINITY; V],
+            upper: [T::INFINITY; V],
+            used: 0,
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.hessian = [[T::ZERO; V]; V];
+        self.gradient = [T::ZERO; V];
+        for row in self.rows.iter_mut().take(self.used) {
+            *row = [T::ZERO; V];
+        }
+        self.row_lower = [T::NEG_INFINITY; M];
+        self.row_upper = [T::INFINITY; M];
+        self.lower = [T::NEG_INFINITY; V];
+        self.upper = [T::INFINITY; V];
+        self.used = 0;
+    }
+
+    /// Adds ½ w (aᵀz − b)² to the cost.
+    pub(crate) fn minimise(&mut self, a: &[T; V], b: T, weight: T) {
+        for ((h, g), &x) in self.hessian.iter_mut().zip(&mut self.gradient).zip(a) {
+            if x == T::ZERO {
+                continue;
+            }
+            let scaled = weight * x;
+            *g -= scaled * b;
+            for (h, &y) in h.iter_mut().zip(a) {
+                *h += scaled * y;
+            }
+        }
+    }
+
+    /// Adds ½ w (zᵢ − b)² to the cost.
+    pub(crate) fn minimise_variable(&mut self, i: usize, b: T, weight: T) {
+        if let (Some(g), Some(h)) = (
+            self.gradient.get_mut(i),
+            self.hessian.get_mut(i).and_then(|row| row.get_mut(i)),
+        ) {
+            *h += weight;
+            *g -= weight * b;
+        }
+    }
+
+    /// Adds l ≤ aᵀz ≤ u; the row's index.
+    pub(crate) fn constrain(&mut self, a: &[T; V], lower: T, upper: T) -> Result<usize, Error> {
+        let index = self.used;
+        let limits = self.row_lower.iter_mut().zip(&mut self.row_upper);
+        let Some((row, (l, u))) = self.rows.iter_mut().zip(limits).nth(index) else {
+            return Err(Error::NoRoomForRows);
+        };
+        *row = *a;
+        (*l, *u) = (lower, upper);
+        self.used = index + 1;
+        Ok(index)
+    }
+
+    /// Sets the bounds of a variable.
+    pub(crate) fn bound(&mut self, i: usize, lower: T, upper: T) {
+        if let (Some(l), Some(u)) = (self.lower.get_mut(i), self.upper.get_mut(i)) {
+            (*l, *u) = (lower, upper);
+        }
+    }
+
+    /// The program as the solver takes it.
+    pub(crate) fn problem(&self) -> dense_qp::Problem<'_, T, V, M> {
+        dense_qp::Problem::new(
+            &self.hessian,
+            &self.gradient,
+            &self.rows,
+            &self.row_lower,
+            &self.row_upper,
+        )
+        .with_bounds(&self.lower, &self.upper)
+    }
+}
