@@ -266,7 +266,6 @@ pub(crate) fn accept<T: Scalar, X: Copy, const NX: usize, const NU: usize, const
     stages: &mut [Stage<T, X, NX, NU, NI>],
     primal: T,
     dual: T,
-    rho: T,
     mu: T,
 ) {
     for stage in stages.iter_mut() {
@@ -276,6 +275,6 @@ pub(crate) fn accept<T: Scalar, X: Copy, const NX: usize, const NU: usize, const
         for (costate, full) in stage.costate.iter_mut().zip(&stage.step.costate) {
             *costate += primal * (*full - *costate);
         }
-        stage.accept_rows(primal, dual, rho, mu);
+        stage.accept_rows(primal, dual, mu);
     }
 }

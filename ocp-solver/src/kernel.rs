@@ -5,6 +5,7 @@
 //! zero multipliers, which is how the sparsity of a stage is exploited without describing it.
 
 use so3::Scalar;
+use so3::math::{abs, max};
 
 /// `y += factor · x`.
 #[inline(always)]
@@ -118,10 +119,26 @@ pub(crate) fn add_outer<T: Scalar, const N: usize>(
     }
 }
 
+/// The largest magnitude, found in eight lanes.
+#[inline(always)]
+pub(crate) fn largest<T: Scalar, const N: usize>(values: &[T; N]) -> T {
+    let mut lanes = [T::ZERO; 8];
+    let (eights, rest) = values.as_chunks::<8>();
+    for chunk in eights {
+        for (lane, x) in lanes.iter_mut().zip(chunk) {
+            *lane = max(*lane, abs(*x));
+        }
+    }
+    for (lane, x) in lanes.iter_mut().zip(rest) {
+        *lane = max(*lane, abs(*x));
+    }
+    lanes.iter().fold(T::ZERO, |most, lane| max(most, *lane))
+}
+
 /// `max(largest, |x|)` where a NaN wins, so that no broken number passes as small.
 #[inline(always)]
 pub(crate) fn larger<T: Scalar>(largest: T, x: T) -> T {
-    let magnitude = so3::math::abs(x);
+    let magnitude = abs(x);
     if magnitude <= largest {
         largest
     } else {

@@ -2,9 +2,12 @@
 #![no_std]
 
 mod check;
+mod eliminate;
+mod equalities;
 mod iterate;
 mod kernel;
 mod problem;
+mod project;
 mod riccati;
 mod rows;
 mod settings;

@@ -13,13 +13,16 @@
 //! L D Lᵀ = Q_uu,   Z = L⁻¹ Q_ux,   P⁻ = Q_xx − Zᵀ D⁻¹ Z,   K = −L⁻ᵀ D⁻¹ Z
 //! ```
 //!
-//! The reduced Hessian is positive definite exactly if every `Q_uu` is, and the block of the free
-//! coordinates of `P_0` is; otherwise the caller adds a multiple of the identity to `H` and repeats.
+//! after the equalities of the stage are eliminated (see [`crate::eliminate`] and [`crate::project`]), so
+//! `u` above are the controls they leave free. The reduced Hessian is positive definite exactly if every
+//! `Q_uu` is, and `P_0` in the free coordinates of the start; otherwise the caller adds a multiple of the
+//! identity to `H` and repeats. With `H_k dx + h_k = 0` the rows a node hands back and `ν` their
+//! multipliers, the costate of a node is `P dx + p + H_kᵀ ν`.
 
 use crate::kernel::{
-    add_outer, add_outer_products, add_product, add_scaled, add_transposed_product, factor,
-    mirror_lower, solve_lower, solve_upper, transpose,
+    add_outer, add_product, add_scaled, add_transposed_product, dot, mirror_lower, transpose,
 };
+use crate::project::Quadratic;
 use crate::rows::RowBarrier;
 use crate::stage::{Riccati, Stage};
 use so3::Scalar;
@@ -37,8 +40,9 @@ pub(crate) fn factorise<T: Scalar, X: Copy, const NX: usize, const NU: usize, co
     let mut k = stages.len();
     while let Some((head, tail)) = stages.split_at_mut_checked(k) {
         let Some(stage) = head.last_mut() else { break };
-        stage.condense_rows(barrier);
-        if !stage.factorise(tail.first().map(|next| &next.riccati), shift) {
+        stage.condense_rows(barrier.mu);
+        let next = tail.first().map(|next| &next.riccati);
+        if !stage.factorise(next, barrier.rank_tolerance, shift) {
             return false;
         }
         k = k.wrapping_sub(1);
@@ -51,94 +55,77 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 {
     /// One step of the backward recursion.
     #[inline(always)]
-    fn factorise(&mut self, next: Option<&Riccati<T, NX, NU>>, shift: T) -> bool {
+    fn factorise(
+        &mut self,
+        next: Option<&Riccati<T, NX, NU>>,
+        rank_tolerance: T,
+        shift: T,
+    ) -> bool {
         let n = self.dims.controls.min(NU);
         let d = &self.derivatives;
-        let (mut q_xx, mut q_x) = (d.hessian_xx, d.cost_x);
-        let (mut q_xu, mut q_uu, mut q_u) = (d.hessian_xu, d.hessian_uu, [[T::ZERO; 1]; NU]);
-        for (q, g) in q_u.iter_mut().zip(&d.cost_u) {
-            q[0] = *g;
-        }
-        for (i, column) in q_xx.iter_mut().enumerate() {
+        let mut q = Quadratic {
+            xx: d.hessian_xx,
+            x: d.cost_x,
+            xu: d.hessian_xu,
+            uu: d.hessian_uu,
+            u: d.cost_u.map(|g| [g]),
+        };
+        for (i, column) in q.xx.iter_mut().enumerate() {
             column[i] += shift;
         }
-        for (i, column) in q_uu.iter_mut().enumerate() {
+        for (i, column) in q.uu.iter_mut().enumerate() {
             column[i] += shift;
         }
-        self.add_rows(&mut q_xx, &mut q_x, &mut q_xu, &mut q_uu, &mut q_u);
+        self.add_rows(&mut q);
 
         if let Some(next) = next {
             // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
             let mut v = next.gradient;
             add_product(&mut v, &next.hessian, &self.values.gap);
-            add_transposed_product(&mut q_x, &d.dynamics_x, &v);
+            add_transposed_product(&mut q.x, &d.dynamics_x, &v);
             let mut w = [[T::ZERO; NX]; NX];
             for (w, a) in w.iter_mut().zip(&d.dynamics_x) {
                 add_product(w, &next.hessian, a);
             }
             let w = transpose(&w);
-            for (q, a) in q_xx.iter_mut().zip(&d.dynamics_x) {
+            for (q, a) in q.xx.iter_mut().zip(&d.dynamics_x) {
                 add_product(q, &w, a);
             }
             if n > 0 {
                 let mut v_u = [[T::ZERO; NX]; NU];
                 for ((((v_u, q_xu), q_u), b), _) in v_u
                     .iter_mut()
-                    .zip(&mut q_xu)
-                    .zip(&mut q_u)
+                    .zip(&mut q.xu)
+                    .zip(&mut q.u)
                     .zip(&d.dynamics_u)
                     .zip(0..n)
                 {
                     add_product(v_u, &next.hessian, b);
                     add_product(q_xu, &w, b);
-                    q_u[0] += crate::kernel::dot(b, &v);
+                    q_u[0] += dot(b, &v);
                 }
                 let v_u = transpose(&v_u);
-                for (q, b) in q_uu.iter_mut().zip(&d.dynamics_u).take(n) {
+                for (q, b) in q.uu.iter_mut().zip(&d.dynamics_u).take(n) {
                     add_product(q, &v_u, b);
                 }
             }
         }
-
-        if n > 0 {
-            let mut inverse = [T::ZERO; NU];
-            if !factor(&mut q_uu, &mut inverse, n, T::ZERO) {
-                return false;
-            }
-            solve_lower(&q_uu, &mut q_xu, n);
-            solve_lower(&q_uu, &mut q_u, n);
-            let z = q_xu;
-            let scaled = q_xu.iter_mut().zip(&mut q_u).zip(&inverse).zip(&z).take(n);
-            for (((column, y), inverse), z) in scaled {
-                for value in column.iter_mut() {
-                    *value *= -*inverse;
-                }
-                y[0] *= -*inverse;
-                add_scaled(&mut q_x, y[0], z);
-            }
-            add_outer_products(&mut q_xx, &q_xu, &z, n);
-            solve_upper(&q_uu, &mut q_xu, n);
-            solve_upper(&q_uu, &mut q_u, n);
-            self.riccati.gain = q_xu;
-            self.riccati.feedforward = q_u;
-        }
+        let carried = next.map(|next| &next.carried);
+        let Some(law) = self.minimise(&mut q, carried, rank_tolerance) else {
+            return false;
+        };
+        self.riccati.gain = law.gain;
+        self.riccati.feedforward = law.feedforward;
         // Rounding makes the two triangles differ, and an unstable motion would amplify that.
-        mirror_lower(&mut q_xx);
-        self.riccati.hessian = q_xx;
-        self.riccati.gradient = q_x;
+        mirror_lower(&mut q.xx);
+        self.riccati.hessian = q.xx;
+        self.riccati.gradient = q.x;
         true
     }
 
     /// Adds the condensed rows to the stage Hessian and gradient.
     #[inline(never)]
-    fn add_rows(
-        &self,
-        q_xx: &mut [[T; NX]; NX],
-        q_x: &mut [T; NX],
-        q_xu: &mut [[T; NX]; NU],
-        q_uu: &mut [[T; NU]; NU],
-        q_u: &mut [[T; 1]; NU],
-    ) {
+    fn add_rows(&self, q: &mut Quadratic<T, NX, NU>) {
         let d = &self.derivatives;
         let state_rows = self.dims.state_rows;
         let before_mixed = state_rows.saturating_add(self.dims.control_rows);
@@ -148,19 +135,22 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             .zip(&d.rows_u)
             .zip(self.step.weight.iter().zip(&self.step.target));
         for (i, ((row_x, row_u), (weight, target))) in rows.enumerate().take(self.row_count()) {
+            if self.is_equality(i) {
+                continue;
+            }
             let (in_state, in_control) = (i < state_rows || i >= before_mixed, i >= state_rows);
             if in_state {
-                add_outer(q_xx, *weight, row_x);
-                add_scaled(q_x, *target, row_x);
+                add_outer(&mut q.xx, *weight, row_x);
+                add_scaled(&mut q.x, *target, row_x);
             }
             if in_control {
-                add_outer(q_uu, *weight, row_u);
-                for (q, entry) in q_u.iter_mut().zip(row_u) {
+                add_outer(&mut q.uu, *weight, row_u);
+                for (q, entry) in q.u.iter_mut().zip(row_u) {
                     q[0] += *target * *entry;
                 }
             }
             if in_state && in_control {
-                for (column, entry) in q_xu.iter_mut().zip(row_u) {
+                for (column, entry) in q.xu.iter_mut().zip(row_u) {
                     if *entry != T::ZERO {
                         add_scaled(column, *weight * *entry, row_x);
                     }
@@ -170,47 +160,8 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     }
 }
 
-/// Solves for the free coordinates of the first state; `free[i]` marks them.
-///
-/// Returns false if the cost-to-go is not positive definite in them.
-#[must_use]
-pub(crate) fn solve_start<T: Scalar, const NX: usize>(
-    hessian: &[[T; NX]; NX],
-    gradient: &[T; NX],
-    free: &[bool; NX],
-    step: &mut [T; NX],
-) -> bool {
-    let mut block = [[T::ZERO; NX]; NX];
-    let mut right = [[T::ZERO; 1]; NX];
-    for i in 0..NX {
-        for j in 0..NX {
-            if free[i] && free[j] {
-                block[i][j] = hessian[i][j];
-            }
-        }
-        if free[i] {
-            right[i][0] = -gradient[i];
-        } else {
-            block[i][i] = T::ONE;
-        }
-    }
-    let mut inverse = [T::ZERO; NX];
-    if !factor(&mut block, &mut inverse, NX, T::ZERO) {
-        return false;
-    }
-    solve_lower(&block, &mut right, NX);
-    for (right, inverse) in right.iter_mut().zip(&inverse) {
-        right[0] *= *inverse;
-    }
-    solve_upper(&block, &mut right, NX);
-    for (step, right) in step.iter_mut().zip(&right) {
-        *step = right[0];
-    }
-    true
-}
-
-/// Forward substitution from the step of the first state: states, controls, full-step costates, slacks
-/// and bound multipliers.
+/// Forward substitution from the step of the first state: states, controls, slacks, bound multipliers, and
+/// the full-step costates and multipliers of equalities.
 ///
 /// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance to a
 /// bound and of every bound multiplier.
@@ -218,15 +169,18 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
 pub(crate) fn substitute<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
     stages: &mut [Stage<T, X, NX, NU, NI>],
     start: [T; NX],
+    shift: T,
     mu: T,
     fraction: T,
 ) -> (T, T) {
-    let mut step = start;
     let mut lengths = (T::ONE, T::ONE);
-    for stage in stages.iter_mut() {
-        stage.step.state = step;
-        stage.step.costate = stage.riccati.gradient;
-        add_product(&mut stage.step.costate, &stage.riccati.hessian, &step);
+    if let Some(first) = stages.first_mut() {
+        first.step.state = start;
+        first.step.costate = first.riccati.costate(&start);
+    }
+    let mut rest = stages;
+    while let Some((stage, tail)) = rest.split_first_mut() {
+        let step = stage.step.state;
         let n = stage.dims.controls.min(NU);
         stage.step.control = [T::ZERO; NU];
         for (((control, gain), feedforward), _) in stage
@@ -237,18 +191,46 @@ pub(crate) fn substitute<T: Scalar, X: Copy, const NX: usize, const NU: usize, c
             .zip(&stage.riccati.feedforward)
             .zip(0..n)
         {
-            *control = feedforward[0] + crate::kernel::dot(gain, &step);
+            *control = feedforward[0] + dot(gain, &step);
         }
-        let mut next = stage.values.gap;
-        add_product(&mut next, &stage.derivatives.dynamics_x, &step);
-        add_product(
-            &mut next,
-            &stage.derivatives.dynamics_u,
-            &stage.step.control,
-        );
-        step = next;
         let (primal, dual) = stage.step_rows(mu, fraction);
         lengths = (min(lengths.0, primal), min(lengths.1, dual));
+
+        // The costate of this node lacks its rows until here.
+        let carried = &stage.riccati.carried;
+        let own_rows = carried.rows.iter().zip(&carried.multiplier);
+        for (row, y) in own_rows.take(carried.count) {
+            add_scaled(&mut stage.step.costate, *y, row);
+        }
+        let mut costate = [T::ZERO; NX];
+        let mut carried = None;
+        if let Some(next) = tail.first_mut() {
+            let mut step_next = stage.values.gap;
+            add_product(&mut step_next, &stage.derivatives.dynamics_x, &step);
+            add_product(
+                &mut step_next,
+                &stage.derivatives.dynamics_u,
+                &stage.step.control,
+            );
+            next.step.state = step_next;
+            costate = next.riccati.costate(&step_next);
+            next.step.costate = costate;
+            carried = Some(&mut next.riccati.carried);
+        }
+        if stage.has_equalities(carried.as_deref()) {
+            stage.recover_multipliers(&costate, carried, shift);
+        }
+        rest = tail;
     }
     lengths
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize> Riccati<T, NX, NU> {
+    /// Gradient `P dx + p` of the cost-to-go.
+    #[inline(always)]
+    fn costate(&self, step: &[T; NX]) -> [T; NX] {
+        let mut costate = self.gradient;
+        add_product(&mut costate, &self.hessian, step);
+        costate
+    }
 }

@@ -9,20 +9,20 @@
 //! ```
 //!
 //! so a row adds `JᵀΣJ` to the stage Hessian and `Jᵀ (µ/(h−s) − µ/(s−l) + Σ(c − s))` to its gradient. A
-//! row with `l == h` is an equality: proximal multiplier step with weight ρ, `y⁺ = y + ρ (c − l + J d)`.
+//! row with `l == h` is an equality, see [`crate::eliminate`].
 
 use crate::kernel::{dot, larger};
 use crate::stage::{Side, Stage};
 use so3::Scalar;
 use so3::math::{max, min};
 
-/// Parameters of the condensed rows.
+/// Parameters of a factorisation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowBarrier<T> {
     /// Barrier parameter µ.
     pub(crate) mu: T,
-    /// Proximal weight ρ of equalities.
-    pub(crate) rho: T,
+    /// Entries below this share of their row count as zero in the elimination of equalities.
+    pub(crate) rank_tolerance: T,
 }
 
 /// Sums over the bounds of a problem.
@@ -138,13 +138,11 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     }
 
     /// Weights and targets of the condensed rows.
-    pub(crate) fn condense_rows(&mut self, barrier: RowBarrier<T>) {
-        let RowBarrier { mu, rho } = barrier;
+    pub(crate) fn condense_rows(&mut self, mu: T) {
         for i in 0..self.row_count() {
             let residual = self.values.rows[i] - self.slack[i];
             if self.is_equality(i) {
-                self.step.weight[i] = rho;
-                self.step.target[i] = self.row_multiplier[i] + rho * residual;
+                (self.step.weight[i], self.step.target[i]) = (T::ZERO, T::ZERO);
             } else {
                 let (below, above) = (
                     T::ONE / self.lower.distance[i],
@@ -221,12 +219,13 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
-    /// Moves slacks by `primal` and bound multipliers by `dual` of their steps.
-    pub(crate) fn accept_rows(&mut self, primal: T, dual: T, rho: T, mu: T) {
+    /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
+    pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T) {
         for i in 0..self.row_count() {
             let ds = self.step.slack[i];
             if self.is_equality(i) {
-                self.row_multiplier[i] += primal * rho * ds;
+                let full = self.step.target[i];
+                self.row_multiplier[i] += primal * (full - self.row_multiplier[i]);
                 continue;
             }
             let s = self.relaxed(i, self.slack[i] + primal * ds);

@@ -46,8 +46,9 @@ pub struct Settings<T> {
     pub initial_multiplier: T,
     /// Distance slacks keep from their bounds at the start.
     pub bound_push: T,
-    /// Proximal weight ρ of equality rows.
-    pub equality_weight: T,
+    /// An entry below this share of the largest that made it counts as zero when equalities are
+    /// eliminated: their row then holds no control, or depends on others.
+    pub rank_tolerance: T,
     /// The adaptive rule has stalled after this many steps in a row shorter than `stall_step`; the
     /// monotone rule after ten times as many.
     pub stall_count: usize,
@@ -73,7 +74,7 @@ impl<T: Scalar> Settings<T> {
             adaptive_factor: T::of(0.03),
             initial_multiplier: T::ONE,
             bound_push: T::of(0.2),
-            equality_weight: T::of(1e4),
+            rank_tolerance: T::of(0.007) * so3::math::sqrt(T::EPSILON),
             stall_count: 3,
             stall_step: T::of(0.03),
         }

@@ -1,8 +1,9 @@
 //! The interior-point iteration.
 
+use crate::equalities::solve_start;
 use crate::iterate::{self, Merit};
 use crate::problem::Problem;
-use crate::riccati::{factorise, solve_start, substitute};
+use crate::riccati::{factorise, substitute};
 use crate::rows::{Complementarity, RowBarrier};
 use crate::settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
 use crate::stage::Stage;
@@ -160,13 +161,7 @@ impl<T: Scalar> Solver<T> {
             }
             run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
             let floor = max(run.mu, settings.smallest_mu());
-            iterate::accept(
-                stages,
-                primal_step,
-                dual_step,
-                settings.equality_weight,
-                floor,
-            );
+            iterate::accept(stages, primal_step, dual_step, floor);
             point = trial;
             if primal_step < settings.stall_step {
                 run.short_steps = run.short_steps.saturating_add(1);
@@ -231,19 +226,25 @@ impl<T: Scalar> Solver<T> {
     ) -> Result<(T, T, T), Status> {
         let barrier = RowBarrier {
             mu: run.mu,
-            rho: self.settings.equality_weight,
+            rank_tolerance: self.settings.rank_tolerance,
         };
         let fraction = max(T::of(0.99), T::ONE - run.mu);
         let mut shift = T::ZERO;
         for _ in 0..40 {
             run.factorisations = run.factorisations.saturating_add(1);
             if factorise(stages, barrier, shift)
-                && let Some(first) = stages.first()
+                && let Some(first) = stages.first_mut()
             {
-                let mut start = [T::ZERO; NX];
-                let riccati = &first.riccati;
-                if solve_start(&riccati.hessian, &riccati.gradient, &run.free, &mut start) {
-                    let (primal, dual) = substitute(stages, start, run.mu, fraction);
+                let riccati = &mut first.riccati;
+                let start = solve_start(
+                    &riccati.hessian,
+                    &riccati.gradient,
+                    &mut riccati.carried,
+                    &run.free,
+                    barrier.rank_tolerance,
+                );
+                if let Some(start) = start {
+                    let (primal, dual) = substitute(stages, start, shift, run.mu, fraction);
                     if shift > T::ZERO {
                         run.shift = shift;
                     }
@@ -367,7 +368,7 @@ impl<T: Scalar> Settings<T> {
             (self.adaptive_factor, "adaptive_factor"),
             (self.initial_multiplier, "initial_multiplier"),
             (self.bound_push, "bound_push"),
-            (self.equality_weight, "equality_weight"),
+            (self.rank_tolerance, "rank_tolerance"),
             (self.stall_step, "stall_step"),
         ] {
             if !(value > T::ZERO && value.is_finite_number()) {

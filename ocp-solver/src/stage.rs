@@ -1,5 +1,6 @@
 //! Caller-owned storage of one node.
 
+use crate::eliminate::{Carried, Pivots};
 use crate::kernel::{factor, solve_lower, solve_upper};
 use crate::problem::{Derivatives, Dims, Values};
 use so3::Scalar;
@@ -76,7 +77,7 @@ pub(crate) struct Step<T, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) costate: [T; NX],
     /// Condensed weight of each row.
     pub(crate) weight: [T; NI],
-    /// Condensed multiplier target of each row before the step.
+    /// Condensed multiplier target of each row before the step; the full-step multiplier of an equality.
     pub(crate) target: [T; NI],
 }
 
@@ -90,6 +91,9 @@ pub(crate) struct Riccati<T, const NX: usize, const NU: usize> {
     pub(crate) hessian: [[T; NX]; NX],
     /// Cost-to-go gradient.
     pub(crate) gradient: [T; NX],
+    /// Rows that the controls from here on cannot meet.
+    pub(crate) carried: Carried<T, NX>,
+    pub(crate) pivots: Pivots<T, NU>,
 }
 
 impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
@@ -133,6 +137,8 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 feedforward: [[T::ZERO; 1]; NU],
                 hessian: [[T::ZERO; NX]; NX],
                 gradient: [T::ZERO; NX],
+                carried: Carried::new(),
+                pivots: Pivots::new(),
             },
             guess: (state, [T::ZERO; NU]),
             best: (state, [T::ZERO; NU]),

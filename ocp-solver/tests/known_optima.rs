@@ -164,11 +164,11 @@ fn bad_data_is_refused_by_name() {
         Err(Error::Guess { .. })
     ));
     let mut settings = Settings::new();
-    settings.equality_weight = f64::NAN;
+    settings.rank_tolerance = f64::NAN;
     let error = Solver::new(settings)
         .solve(&problem, &mut least_time(20), go)
         .unwrap_err();
-    assert_eq!(error, Error::Setting("equality_weight"));
+    assert_eq!(error, Error::Setting("rank_tolerance"));
 }
 
 #[test]

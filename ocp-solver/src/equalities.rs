@@ -1,0 +1,240 @@
+//! Equalities of a node in the recursion: collected backwards, their multipliers recovered forwards.
+
+use crate::eliminate::{Carried, Elimination, Pivots, Row, Source};
+use crate::kernel::{add_product, add_scaled, add_transposed_product, dot, largest};
+use crate::project::{Law, Quadratic};
+use crate::stage::Stage;
+use so3::Scalar;
+use so3::math::max;
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
+    Stage<T, X, NX, NU, NI>
+{
+    /// Least over the controls under the equalities of this node and those its successor hands back; the
+    /// rows that no control meets are left to be handed on.
+    ///
+    /// `None` if the quadratic has no minimum under them.
+    #[inline(always)]
+    pub(crate) fn minimise(
+        &mut self,
+        quadratic: &mut Quadratic<T, NX, NU>,
+        next: Option<&Carried<T, NX>>,
+        tolerance: T,
+    ) -> Option<Law<T, NX, NU>> {
+        let n = self.dims.controls.min(NU);
+        self.riccati.carried.count = 0;
+        self.riccati.pivots.clear();
+        if !self.has_equalities(next) {
+            return quadratic.minimise(n);
+        }
+        let mut free = [false; NU];
+        for free in free.iter_mut().take(n) {
+            *free = true;
+        }
+        let mut elimination = Elimination::new(free, tolerance);
+        let whitening = quadratic.whiten(n);
+        self.riccati.pivots.whitening = whitening;
+        self.insert_rows(next, &mut elimination);
+        elimination.finish(&mut self.riccati.carried, &mut self.riccati.pivots);
+        quadratic.minimise_under(&elimination, &whitening, n)
+    }
+
+    /// Whether there are own equalities or rows handed back by `next`.
+    #[inline(always)]
+    pub(crate) fn has_equalities(&self, next: Option<&Carried<T, NX>>) -> bool {
+        (0..self.row_count()).any(|i| self.is_equality(i))
+            || next.is_some_and(|next| next.count > 0)
+    }
+
+    #[inline(never)]
+    fn insert_rows(&mut self, next: Option<&Carried<T, NX>>, to: &mut Elimination<T, NX, NU>) {
+        let d = &self.derivatives;
+        let (rows, n) = (self.row_count(), self.dims.controls.min(NU));
+        let before_mixed = self.dims.state_rows.saturating_add(self.dims.control_rows);
+        let pivots = &mut self.riccati.pivots;
+        for i in 0..rows {
+            let lower = self.bounds.0[i];
+            if lower != self.bounds.1[i] {
+                continue;
+            }
+            let in_state = i < self.dims.state_rows || i >= before_mixed;
+            let in_control = i >= self.dims.state_rows;
+            let (x, mut u) = (
+                if in_state { d.rows_x[i] } else { [T::ZERO; NX] },
+                if in_control {
+                    d.rows_u[i]
+                } else {
+                    [T::ZERO; NU]
+                },
+            );
+            let scale = max(largest(&x), largest(&u));
+            pivots.whitening.gradient(&mut u, n);
+            let constant = self.values.rows[i] - lower;
+            to.insert(Row::new(x, u, constant, scale, i as Source), pivots);
+        }
+        let Some(next) = next.filter(|next| next.count > 0) else {
+            return;
+        };
+        let authority = d
+            .dynamics_u
+            .iter()
+            .take(n)
+            .fold(T::ZERO, |most, b| max(most, largest(b)));
+        let handed = next.rows.iter().zip(&next.residual).take(next.count);
+        for (j, (h, residual)) in handed.enumerate() {
+            let (mut x, mut u) = ([T::ZERO; NX], [T::ZERO; NU]);
+            add_transposed_product(&mut x, &d.dynamics_x, h);
+            for ((u, b), _) in u.iter_mut().zip(&d.dynamics_u).zip(0..n) {
+                *u = dot(b, h);
+            }
+            pivots.whitening.gradient(&mut u, n);
+            let constant = *residual + dot(h, &self.values.gap);
+            let source = rows.saturating_add(j) as Source;
+            to.insert(
+                Row::new(x, u, constant, largest(h) * authority, source),
+                pivots,
+            );
+        }
+    }
+
+    /// Multipliers of the equalities after the full step, and those of the rows `next` handed back.
+    ///
+    /// `costate` is the gradient of the successor's cost-to-go without its rows. Needs the multipliers of
+    /// the rows this node handed back, and the steps of this node.
+    #[inline(never)]
+    pub(crate) fn recover_multipliers(
+        &mut self,
+        costate: &[T; NX],
+        next: Option<&mut Carried<T, NX>>,
+        shift: T,
+    ) {
+        let rows = self.row_count();
+        let d = &self.derivatives;
+        let mut own = [T::ZERO; NI];
+        let mut handed = [T::ZERO; NX];
+        let mut write = |source: Source, y: T| {
+            let i = usize::from(source);
+            let slot = if i < rows {
+                own.get_mut(i)
+            } else {
+                handed.get_mut(i.saturating_sub(rows))
+            };
+            if let Some(slot) = slot {
+                *slot = y;
+            }
+        };
+        self.riccati.carried.multipliers(&mut write);
+        if !self.riccati.pivots.is_empty() {
+            // Gradient in the controls: everything but the pivot rows, whose multipliers are still zero.
+            let mut gradient = d.cost_u;
+            add_scaled(&mut gradient, shift, &self.step.control);
+            add_transposed_product(&mut gradient, &d.hessian_xu, &self.step.state);
+            add_product(&mut gradient, &d.hessian_uu, &self.step.control);
+            let mut costate = *costate;
+            if let Some(next) = &next {
+                for (row, y) in next.rows.iter().zip(&handed).take(next.count) {
+                    add_scaled(&mut costate, *y, row);
+                }
+            }
+            add_transposed_product(&mut gradient, &d.dynamics_u, &costate);
+            let first = self.dims.state_rows;
+            for (i, own) in own.iter().enumerate().take(rows).skip(first) {
+                let y = if self.is_equality(i) {
+                    *own
+                } else {
+                    // The condensed multiplier at the full step.
+                    let change = self.step.slack[i] - (self.values.rows[i] - self.slack[i]);
+                    self.step.target[i] + self.step.weight[i] * change
+                };
+                if y != T::ZERO {
+                    add_scaled(&mut gradient, y, &d.rows_u[i]);
+                }
+            }
+            let n = self.dims.controls.min(NU);
+            self.riccati.pivots.multipliers(gradient, n, |source, y| {
+                let i = usize::from(source);
+                let slot = if i < rows {
+                    own.get_mut(i)
+                } else {
+                    handed.get_mut(i.saturating_sub(rows))
+                };
+                if let Some(slot) = slot {
+                    *slot = y;
+                }
+            });
+        }
+        for (i, y) in own.iter().enumerate().take(rows) {
+            if self.is_equality(i) {
+                self.step.target[i] = *y;
+            }
+        }
+        if let Some(next) = next {
+            next.multiplier = handed;
+        }
+    }
+}
+
+/// Solves for the free coordinates of the first state under the rows that no control could meet.
+///
+/// `free[i]` marks the coordinates; the multipliers of the rows are left in `carried`. `None` if the
+/// cost-to-go is not positive definite in what the rows leave free.
+pub(crate) fn solve_start<T: Scalar, const NX: usize>(
+    hessian: &[[T; NX]; NX],
+    gradient: &[T; NX],
+    carried: &mut Carried<T, NX>,
+    free: &[bool; NX],
+    tolerance: T,
+) -> Option<[T; NX]> {
+    // The start coordinates are the "controls" of a stage without a state.
+    let mut quadratic = Quadratic {
+        xx: [[T::ZERO]],
+        x: [T::ZERO],
+        xu: [[T::ZERO]; NX],
+        uu: *hessian,
+        u: [[T::ZERO]; NX],
+    };
+    for (i, (column, u)) in quadratic.uu.iter_mut().zip(&mut quadratic.u).enumerate() {
+        u[0] = gradient[i];
+        for (j, value) in column.iter_mut().enumerate() {
+            if !(free[i] && free[j]) {
+                *value = if i == j { T::ONE } else { T::ZERO };
+            }
+        }
+        if !free[i] {
+            u[0] = T::ZERO;
+        }
+    }
+    let law = if carried.count == 0 {
+        quadratic.minimise(NX)?
+    } else {
+        let mut pivots = Pivots::new();
+        let mut rows = Elimination::<T, 1, NX>::new(*free, tolerance);
+        pivots.whitening = quadratic.whiten(NX);
+        let given = carried.rows.iter().zip(&carried.residual);
+        for (i, (h, residual)) in given.enumerate().take(carried.count) {
+            let mut u = *h;
+            for (value, free) in u.iter_mut().zip(free) {
+                *value = if *free { *value } else { T::ZERO };
+            }
+            pivots.whitening.gradient(&mut u, NX);
+            let row = Row::new([T::ZERO], u, *residual, largest(h), i as Source);
+            rows.insert(row, &mut pivots);
+        }
+        rows.finish(&mut Carried::new(), &mut pivots);
+        let whitening = pivots.whitening;
+        let law = quadratic.minimise_under(&rows, &whitening, NX)?;
+        let mut total = *gradient;
+        add_product(&mut total, hessian, &law.feedforward.map(|[value]| value));
+        carried.multiplier = [T::ZERO; NX];
+        for (value, free) in total.iter_mut().zip(free) {
+            *value = if *free { *value } else { T::ZERO };
+        }
+        pivots.multipliers(total, NX, |source, y| {
+            if let Some(slot) = carried.multiplier.get_mut(usize::from(source)) {
+                *slot = y;
+            }
+        });
+        law
+    };
+    Some(law.feedforward.map(|[value]| value))
+}
