@@ -13,7 +13,7 @@ mod transcription;
 mod violation;
 
 pub use error::Error;
-pub use problem::{Edge, Foot, Phase, Problem, Reference, Weights};
+pub use problem::{Edge, Foot, Ground, Phase, Problem, Reference, Weights};
 pub use rows::row_capacity;
 pub use state::{OMEGA, POSITION, ROTATION, State, TIMES, VELOCITY};
 pub use violation::{Judgement, Sample};

@@ -56,18 +56,31 @@ pub struct Edge<T> {
 }
 
 impl<T: Scalar> Edge<T> {
-    /// Height of the ground under a point of the world, m, and its slope along the axis across the edge.
+    /// The smoothed ground under a point of the world.
     #[inline(always)]
     #[must_use]
-    pub fn ground(&self, pos_w: &Vector3<T>) -> (T, T) {
+    pub fn ground(&self, pos_w: &Vector3<T>) -> Ground<T> {
         let across = if self.axis == 0 { pos_w.x } else { pos_w.y };
         let t = so3::math::tanh((self.sign * across - self.distance) / self.width);
         let half = self.drop * T::HALF;
-        (
-            -half * (T::ONE + t),
-            -half * (T::ONE - t * t) * self.sign / self.width,
-        )
+        let steep = half * (T::ONE - t * t) / self.width;
+        Ground {
+            height: -half * (T::ONE + t),
+            slope: -steep * self.sign,
+            curvature: T::TWO * t * steep / self.width,
+        }
     }
+}
+
+/// The ground under a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground<T> {
+    /// Height, m.
+    pub height: T,
+    /// First derivative of the height along the axis across the edge.
+    pub slope: T,
+    /// Second derivative of the height along that axis, 1/m.
+    pub curvature: T,
 }
 
 /// Weights of the cost, per node.
@@ -186,7 +199,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     /// Smoothed ground height under a point.
     #[inline(always)]
     pub(crate) fn ground(&self, point: &Vector3<T>) -> T {
-        self.edge.map_or(T::ZERO, |edge| edge.ground(point).0)
+        self.edge.map_or(T::ZERO, |edge| edge.ground(point).height)
     }
 
     /// Checks the data.

@@ -33,33 +33,9 @@ use rbd_core::model::Link;
 use rbd_core::{Force, Motion};
 use so3::Scalar;
 
+use crate::midpoint::Hessian;
 use crate::moments::{at_point, hat, moment_of, outer, turn};
 use crate::sweep::{Contacts, PointMotion, Sweep};
-
-/// Second derivatives of φ by rows; those of a pair of equal kind are symmetric. ∂²/∂q̇∂q̈ and ∂²/∂q̈² are zero.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Curvature<T, const N: usize, const FEET: usize> {
-    pub(crate) qq: [[T; N]; N],
-    /// `[i][k]`: ∂²φ/∂q̇_i∂q_k.
-    pub(crate) vq: [[T; N]; N],
-    pub(crate) vv: [[T; N]; N],
-    /// `[i][k]`: ∂²φ/∂q̈_i∂q_k.
-    pub(crate) aq: [[T; N]; N],
-    /// `[f][c][k]`: ∂²φ/∂F_fc∂q_k.
-    pub(crate) fq: [[[T; N]; 3]; FEET],
-}
-
-impl<T: Scalar, const N: usize, const FEET: usize> Curvature<T, N, FEET> {
-    pub(crate) const fn zero() -> Self {
-        Self {
-            qq: [[T::ZERO; N]; N],
-            vq: [[T::ZERO; N]; N],
-            vv: [[T::ZERO; N]; N],
-            aq: [[T::ZERO; N]; N],
-            fq: [[[T::ZERO; N]; 3]; FEET],
-        }
-    }
-}
 
 /// Sums over the virtual velocities and multipliers of a subtree.
 #[derive(Clone, Copy)]
@@ -164,14 +140,14 @@ impl<T: Scalar, const N: usize> PositionTerms<T, N> {
 }
 
 impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
-    /// Writes the second derivatives of φ; entries of joints that do not move each other are left alone.
+    /// Adds the second derivatives of φ.
     #[inline(never)]
     pub(crate) fn curvature<const FEET: usize>(
         &self,
         contacts: &Contacts<T, FEET>,
         multipliers: &Multipliers<'_, T, N, FEET>,
         positions: &PositionTerms<T, N>,
-        out: &mut Curvature<T, N, FEET>,
+        out: &mut Hessian<T, N, FEET>,
     ) {
         // Λ and S^λ of every joint.
         let mut virtuals = [Motion::ZERO; N];
@@ -250,16 +226,20 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                     + other.rate.dot(&q)
                     + other_rate.dot(&r)
                     + turn_k.dot(&z_q);
-                (out.qq[j][k], out.qq[k][j]) = (qq, qq);
-                out.vq[k][j] = other.rate.dot(&p) * T::TWO + other.axis.dot(&q);
-                out.vq[j][k] = other.rate.dot(&u) + other_rate.dot(&big_w) + turn_k.dot(&z_v);
                 let vv = other.axis.dot(&u);
-                (out.vv[j][k], out.vv[k][j]) = (vv, vv);
-                out.aq[k][j] = other.axis.dot(&p);
-                out.aq[j][k] = other_rate.dot(&f) + turn_k.dot(&z_a);
+                out.qq[j][k] += qq;
+                out.vv[j][k] += vv;
+                out.vq[j][k] += other.rate.dot(&u) + other_rate.dot(&big_w) + turn_k.dot(&z_v);
+                out.aq[j][k] += other_rate.dot(&f) + turn_k.dot(&z_a);
+                if k != j {
+                    out.qq[k][j] += qq;
+                    out.vv[k][j] += vv;
+                    out.vq[k][j] += other.rate.dot(&p) * T::TWO + other.axis.dot(&q);
+                    out.aq[k][j] += other.axis.dot(&p);
+                }
             }
         }
-        for ((point, _), block) in contacts.active().zip(&mut out.fq) {
+        for ((point, _), block) in contacts.active().zip(&mut out.force) {
             let Some(virtual_motion) = virtuals.get(point.link) else {
                 continue;
             };
@@ -268,7 +248,7 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                 let turn_k = &self.joints[k].axis.angular;
                 let column = turn_k.cross(&slip) + at_point(&virtual_rates[k], &point.pos);
                 for (row, value) in block.iter_mut().zip(column.iter()) {
-                    row[k] = -*value;
+                    row.q[k] -= *value;
                 }
             }
         }

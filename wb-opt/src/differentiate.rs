@@ -1,7 +1,7 @@
 //! Derivatives of one interval: cost, mixed rows, and the exact Hessian of the Lagrangian.
 
-use crate::curvature::{Curvature, Multipliers, PositionTerms};
-use crate::midpoint::{Gradient, Hessian, Map, Midpoint, add_scaled};
+use crate::curvature::{Multipliers, PositionTerms};
+use crate::midpoint::{Gradient, Hessian, Map, Midpoint};
 use crate::moments::at_point;
 use crate::problem::Problem;
 use crate::robot::BASE;
@@ -24,12 +24,13 @@ pub(crate) struct Interval<'a, 'p, T: Scalar, const N: usize, const FEET: usize>
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> {
-    /// Writes the next row and returns its multiplier in physical units.
+    /// Writes the next row, which is zero except at the coordinates `support`, and returns its multiplier in physical units.
     #[inline(always)]
     fn push<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         unit: T,
         gradient: &Gradient<T, N, FEET>,
+        support: impl Iterator<Item = usize>,
         y: &[T; NI],
         d: &mut Derivatives<T, NX, NU, NI>,
     ) -> T {
@@ -37,7 +38,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         self.row = i.saturating_add(1);
         let scale = T::ONE / unit;
         if let (Some(x), Some(u)) = (d.rows_x.get_mut(i), d.rows_u.get_mut(i)) {
-            self.map.gradient(scale, gradient, x, u);
+            self.map.sparse(scale, gradient, support, x, u);
         }
         y.get(i).copied().unwrap_or(T::ZERO) * scale
     }
@@ -60,35 +61,34 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let mut multipliers = [T::ZERO; N];
         let mut pulls = [Vector3::zeros(); FEET];
         for (i, multiplier) in multipliers.iter_mut().enumerate().take(BASE) {
-            *multiplier = self.push(units.effort(i), &jacobian.row(i), y, d);
+            *multiplier = self.push(units.effort(i), &jacobian.row(i), 0..N, y, d);
         }
         for f in 0..self.contacts.count {
             let rows = self.acceleration(f);
+            let link = self.contacts.points.get(f).map_or(0, |point| point.link);
             if let Some(pull) = pulls.get_mut(f) {
                 for (row, pull) in rows.iter().zip(pull.iter_mut()) {
-                    *pull = self.push(units.foot_acceleration, row, y, d);
+                    *pull = self.push(units.foot_acceleration, row, self.sweep.path(link), y, d);
                 }
             }
         }
         for i in BASE..N {
             let gradient = jacobian.row(i);
             let by_effort = T::TWO * weights.effort * effort[i];
-            multipliers[i] = self.push(units.moment, &gradient, y, d) + by_effort;
-            cost.add(by_effort, &gradient);
             let end = self.sweep.bodies[i].subtree_end;
-            let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
-            hessian.add_outer(T::TWO * weights.effort, &gradient, support);
+            let support = || self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
+            multipliers[i] = self.push(units.moment, &gradient, support(), y, d) + by_effort;
+            cost.add(by_effort, &gradient);
+            hessian.add_outer(T::TWO * weights.effort, &gradient, support());
         }
-        let positions = self.positions(y, d);
+        let positions = self.positions(y, d, &mut hessian);
 
-        let mut curvature = Curvature::<T, N, FEET>::zero();
         let multipliers = Multipliers {
             effort: &multipliers,
             acceleration: &pulls,
         };
         self.sweep
-            .curvature(self.contacts, &multipliers, &positions, &mut curvature);
-        hessian.add(&curvature);
+            .curvature(self.contacts, &multipliers, &positions, &mut hessian);
 
         let two = T::TWO * weights.position;
         let reference = self.problem.reference.get(self.k).unwrap_or(&self.mid.q);
@@ -123,39 +123,35 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         rows
     }
 
-    /// Rows of positions: drift, heights over the ground, joint positions and speeds.
+    /// Rows of positions: drift and heights over the ground.
     fn positions<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         y: &[T; NI],
         d: &mut Derivatives<T, NX, NU, NI>,
+        hessian: &mut Hessian<T, N, FEET>,
     ) -> PositionTerms<T, N> {
         let units = Units::new();
         let mut terms = PositionTerms::new();
         for (point, _) in self.contacts.active() {
             for normal in [Vector3::x(), Vector3::y(), Vector3::z()] {
                 let gradient = self.along(point.link, &point.pos, &normal);
-                let y = self.push(units.position, &gradient, y, d);
+                let path = self.sweep.path(point.link);
+                let y = self.push(units.position, &gradient, path, y, d);
                 terms.add(point.link, &point.pos, &(normal * y));
             }
         }
-        // The curvature of a box edge's smoothing is left out: it was measured not to matter.
         for point in self.problem.points_over_ground(self.k) {
             let pos = self.sweep.place(point);
-            let (_, normal) = self.problem.over_ground(&pos);
-            let gradient = self.along(point.link, &pos, &normal);
-            let y = self.push(units.position, &gradient, y, d);
-            terms.add(point.link, &pos, &(normal * y));
-        }
-        if self.mid.layout.joints > 0 {
-            for i in BASE..N {
-                let mut gradient = Gradient::zero();
-                gradient.q[i] = T::ONE;
-                self.push(T::ONE, &gradient, y, d);
-            }
-            for i in BASE..N {
-                let mut gradient = Gradient::zero();
-                gradient.v[i] = T::ONE;
-                self.push(units.speed, &gradient, y, d);
+            let over = self.problem.over_ground(&pos);
+            let path = || self.sweep.path(point.link);
+            let gradient = self.along(point.link, &pos, &over.normal);
+            let y = self.push(units.position, &gradient, path(), y, d);
+            terms.add(point.link, &pos, &(over.normal * y));
+            if over.curvature != T::ZERO {
+                let mut axis = Vector3::zeros();
+                axis[over.across] = T::ONE;
+                let gradient = self.along(point.link, &pos, &axis);
+                hessian.add_outer(y * over.curvature, &gradient, path());
             }
         }
         terms
@@ -178,22 +174,6 @@ impl<T: Scalar, const N: usize, const FEET: usize> EffortJacobian<T, N, FEET> {
             v: self.by_v[i],
             a: self.by_a[i],
             force: self.by_force[i],
-        }
-    }
-}
-
-impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
-    fn add(&mut self, c: &Curvature<T, N, FEET>) {
-        for i in 0..N {
-            add_scaled(&mut self.qq[i], T::ONE, &c.qq[i]);
-            add_scaled(&mut self.vq[i], T::ONE, &c.vq[i]);
-            add_scaled(&mut self.vv[i], T::ONE, &c.vv[i]);
-            add_scaled(&mut self.aq[i], T::ONE, &c.aq[i]);
-        }
-        for (mine, other) in self.force.iter_mut().zip(&c.fq) {
-            for (mine, other) in mine.iter_mut().zip(other) {
-                add_scaled(&mut mine.q, T::ONE, other);
-            }
         }
     }
 }

@@ -168,12 +168,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 above(abs(f.y) - self.friction * f.z);
                 above(-f.z);
             } else {
-                above(self.swing_height - self.over_ground(&point.pos).0);
+                above(self.swing_height - self.over_ground(&point.pos).height);
             }
         }
         for clearance in self.clearances {
             let pos = sweep.place(&clearance.point);
-            above(clearance.height - self.over_ground(&pos).0);
+            above(clearance.height - self.over_ground(&pos).height);
         }
     }
 }

@@ -242,10 +242,50 @@ impl<T: Scalar> Map<T> {
                 *slot = by_a * (self.second * g.q[i] + self.first * g.v[i] + g.a[i]);
             }
         }
+        self.forces(scale, g, u);
+    }
+
+    /// As [`Self::gradient`], where the gradient is zero except at the coordinates `support`; other entries are
+    /// left alone.
+    #[inline(always)]
+    pub(crate) fn sparse<const N: usize, const FEET: usize, const NX: usize, const NU: usize>(
+        &self,
+        scale: T,
+        g: &Gradient<T, N, FEET>,
+        support: impl Iterator<Item = usize>,
+        x: &mut [T; NX],
+        u: &mut [T; NU],
+    ) {
+        let by_v = scale * self.units.speed;
+        let by_a = scale * self.units.acceleration;
+        for i in support {
+            let (q, v, a) = (g.q[i], g.v[i], g.a[i]);
+            if let Some(slot) = x.get_mut(i) {
+                *slot = scale * q;
+            }
+            if let Some(slot) = x.get_mut(N.saturating_add(i)) {
+                *slot = by_v * (self.first * q + v);
+            }
+            if let Some(slot) = self.layout.acceleration(i).and_then(|j| u.get_mut(j)) {
+                *slot = by_a * (self.second * q + self.first * v + a);
+            }
+        }
+        self.forces(scale, g, u);
+    }
+
+    /// Writes the part of the contact forces.
+    #[inline(always)]
+    fn forces<const N: usize, const FEET: usize, const NU: usize>(
+        &self,
+        scale: T,
+        g: &Gradient<T, N, FEET>,
+        u: &mut [T; NU],
+    ) {
         let by_force = scale * self.units.force;
-        for (f, foot) in g.force.iter().enumerate().take(self.layout.feet) {
-            let slots = u.iter_mut().skip(Layout::force(f));
-            for (slot, value) in slots.zip(foot) {
+        let (_, forces) = u.split_at_mut(BASE.min(NU));
+        let (triples, _) = forces.as_chunks_mut::<3>();
+        for (slots, foot) in triples.iter_mut().zip(&g.force).take(self.layout.feet) {
+            for (slot, value) in slots.iter_mut().zip(foot) {
                 *slot = by_force * *value;
             }
         }

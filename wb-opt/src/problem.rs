@@ -115,20 +115,23 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         [false; FEET]
     }
 
-    /// Height of the ground under a point, and the gradient of the point's height over it.
+    /// How far a point is over the ground.
     #[inline(always)]
-    pub(crate) fn over_ground(&self, pos: &Vector3<T>) -> (T, Vector3<T>) {
-        let mut normal = Vector3::new(T::ZERO, T::ZERO, T::ONE);
-        let Some(edge) = &self.edge else {
-            return (pos.z, normal);
+    pub(crate) fn over_ground(&self, pos: &Vector3<T>) -> Height<T> {
+        let mut over = Height {
+            height: pos.z,
+            normal: Vector3::new(T::ZERO, T::ZERO, T::ONE),
+            across: 0,
+            curvature: T::ZERO,
         };
-        let (ground, slope) = edge.ground(pos);
-        if edge.axis == 0 {
-            normal.x = -slope;
-        } else {
-            normal.y = -slope;
+        if let Some(edge) = &self.edge {
+            let ground = edge.ground(pos);
+            over.height -= ground.height;
+            over.across = if edge.axis == 0 { 0 } else { 1 };
+            over.normal[over.across] = -ground.slope;
+            over.curvature = -ground.curvature;
         }
-        (pos.z - ground, normal)
+        over
     }
 
     /// Checks the data.
@@ -207,4 +210,16 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         }
         Ok(())
     }
+}
+
+/// Height of a point over the ground, with derivatives in its position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Height<T: Scalar> {
+    pub(crate) height: T,
+    /// Gradient.
+    pub(crate) normal: Vector3<T>,
+    /// World axis along which the ground is curved.
+    pub(crate) across: usize,
+    /// Second derivative along that axis.
+    pub(crate) curvature: T,
 }

@@ -47,6 +47,13 @@ impl Groups {
         self.landing.saturating_add(self.feet.saturating_mul(5))
     }
 
+    /// First row of the joint positions; those of the speeds follow.
+    pub(crate) const fn first_limit(&self) -> usize {
+        self.first_mixed()
+            .saturating_add(self.mixed())
+            .saturating_sub(self.limited.saturating_mul(2))
+    }
+
     const fn mixed(&self) -> usize {
         BASE.saturating_add(self.feet.saturating_mul(6))
             .saturating_add(self.joints)

@@ -1,7 +1,7 @@
 //! The whole-body problem as an optimal-control problem for `ocp-solver`.
 
 use crate::differentiate::Interval;
-use crate::midpoint::{Map, Midpoint};
+use crate::midpoint::{Gradient, Map, Midpoint};
 use crate::problem::Problem;
 use crate::robot::{BASE, Point};
 use crate::state::{State, Units};
@@ -63,7 +63,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         }
         for point in self.points_over_ground(k) {
-            push(self.over_ground(&sweep.place(point)).0 / units.position);
+            push(self.over_ground(&sweep.place(point)).height / units.position);
         }
         if mid.layout.joints > 0 {
             for q in mid.q.iter().skip(BASE) {
@@ -224,7 +224,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         }
     }
 
-    /// What does not depend on the point: dynamics, landing rows, friction rows.
+    /// What does not depend on the point: dynamics, landing rows, friction rows, joint positions and speeds.
     fn differentiate_linear<const NX: usize, const NU: usize, const NI: usize>(
         &self,
         k: usize,
@@ -259,6 +259,25 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 set(d.rows_x.get_mut(i), q, T::ONE);
                 set(d.rows_x.get_mut(groups.joints.saturating_add(i)), v, T::ONE);
             }
+        }
+        let map = Map::new(dt, mid.layout);
+        let mut limit = |row: usize, unit: T, gradient: &Gradient<T, N, 0>, joint: usize| {
+            if let (Some(x), Some(u)) = (d.rows_x.get_mut(row), d.rows_u.get_mut(row)) {
+                map.sparse(T::ONE / unit, gradient, core::iter::once(joint), x, u);
+            }
+        };
+        for i in 0..groups.limited {
+            let joint = BASE.saturating_add(i);
+            let row = groups.first_limit().saturating_add(i);
+            let (mut position, mut speed) = (Gradient::zero(), Gradient::zero());
+            (position.q[joint], speed.v[joint]) = (T::ONE, T::ONE);
+            limit(row, T::ONE, &position, joint);
+            limit(
+                row.saturating_add(groups.limited),
+                units.speed,
+                &speed,
+                joint,
+            );
         }
         let sides = pyramid(self.friction);
         let rows = d.rows_u.iter_mut().skip(groups.landing);
