@@ -4,4 +4,5 @@
 
 pub mod agree;
 pub mod bench;
+pub mod drops;
 pub mod golden;

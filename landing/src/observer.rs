@@ -1,0 +1,103 @@
+//! Forces on the feet without foot sensors.
+//!
+//! The joints' equations of motion give r = rnea(q, ν, ν̇) − τ = Σ Jᵀ f, with ν̇ from two successive velocities.
+//! A first-order low pass makes the differences usable: that is the generalised-momentum observer to first order in the
+//! period. The force of a leg is the least-squares solution of Jᵀ f = r over the joints that move its foot.
+
+use nalgebra::{Matrix3, Vector3};
+use rbd_core::{
+    Axes, Configuration, Frame, FrameJacobian, Kinematics, Posture, Tangent, Tree,
+    forward_kinematics, frame_jacobian, rnea,
+};
+use so3::Scalar;
+
+/// The observer of a robot with `N` joints and `F` feet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceObserver<T, const N: usize, const F: usize> {
+    /// The feet; each is the end of a leg of its own.
+    pub feet: [Frame<T>; F],
+    /// Time constant of the low pass, s.
+    pub time_constant: T,
+    /// Tikhonov term on the force, m²: keeps a stretched leg from seeing endless forces along itself.
+    pub damping: T,
+}
+
+/// Memory of the observer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObserverState<T: Scalar, const N: usize> {
+    residual: [T; N],
+    last: Option<Tangent<T, N>>,
+}
+
+impl<T: Scalar, const N: usize> ObserverState<T, N> {
+    /// Nothing seen yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            residual: [T::ZERO; N],
+            last: None,
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> Default for ObserverState<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Scalar, const N: usize, const F: usize> ForceObserver<T, N, F> {
+    /// 6 ms, 1e-3 m².
+    #[must_use]
+    pub fn new(feet: [Frame<T>; F]) -> Self {
+        Self {
+            feet,
+            time_constant: T::of(0.006),
+            damping: T::of(1e-3),
+        }
+    }
+
+    /// One tick of `dt` seconds: state, and the torques that the joints had since the last tick, friction included.
+    /// Gives the force of the ground on each foot, world axes, N; `None` on the first tick and where a number is not finite.
+    pub fn update<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        state: &mut ObserverState<T, N>,
+        configuration: &Configuration<T, N>,
+        velocity: &Tangent<T, N>,
+        torques: &[T; N],
+        dt: T,
+    ) -> Option<[Vector3<T>; F]> {
+        let last = state.last.replace(*velocity);
+        let acceleration = (*velocity + last? * -T::ONE) * (T::ONE / dt);
+        let posture = Posture::new(model, configuration);
+        let needed = rnea(model, &posture, velocity, &acceleration).joints;
+        let mut residual = state.residual;
+        let share = dt / (self.time_constant + dt);
+        for ((r, needed), tau) in residual.iter_mut().zip(needed).zip(torques) {
+            *r += share * (needed - *tau - *r);
+        }
+        if !residual.iter().all(|r| r.is_finite_number()) {
+            *state = ObserverState::new();
+            return None;
+        }
+        state.residual = residual;
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(model, &posture, &mut kinematics);
+        let mut jacobian = FrameJacobian::ZERO;
+        let mut forces = [Vector3::zeros(); F];
+        for (force, frame) in forces.iter_mut().zip(&self.feet) {
+            let axes = Axes::LocalWorldAligned;
+            frame_jacobian(model, &kinematics, frame, axes, &mut jacobian);
+            let mut square = Matrix3::from_diagonal_element(self.damping);
+            let mut right = Vector3::zeros();
+            for (column, r) in jacobian.joints.iter().zip(&residual) {
+                square += column.linear * column.linear.transpose();
+                right += column.linear * *r;
+            }
+            *force = square.try_inverse()? * right;
+        }
+        let finite = forces.iter().flat_map(|f| f.iter());
+        { finite }.all(|x| x.is_finite_number()).then_some(forces)
+    }
+}

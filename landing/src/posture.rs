@@ -1,0 +1,167 @@
+//! The pre-landing posture, turned partly against the tilt of the body.
+//!
+//! With the body tilted, feet that stay where they are in the base come down under one side of it. Turning all feet about
+//! the base's origin, towards where a level body would have them, brings them under the centre of mass again; but the legs'
+//! momentum turns a light trunk the other way, so only a share of the tilt is right. Feet that lead the horizontal motion
+//! step towards the capture point.
+
+use nalgebra::{Matrix3, Vector3};
+use rbd_core::{
+    Axes, Configuration, Frame, FrameJacobian, Kinematics, Posture, Transform, Tree,
+    forward_kinematics, frame_jacobian,
+};
+use so3::{Scalar, math};
+
+/// How far legs follow the tilt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PreLanding<T, const N: usize, const F: usize> {
+    /// The feet; each is the end of a leg of its own.
+    pub feet: [Frame<T>; F],
+    /// Joint positions for a level landing, rad.
+    pub joints: [T; N],
+    /// Share of the tilt that the feet follow.
+    pub share: T,
+    /// Time by which the feet lead the body's horizontal motion, s: towards the capture point, √(h/g) for a full step.
+    pub lead: T,
+    /// Farthest that they lead, m.
+    pub max_lead: T,
+    /// Largest tilt that they follow, rad; more is treated as this.
+    pub max_tilt: T,
+    /// Farthest that a joint goes from its level position, rad.
+    pub reach: T,
+}
+
+impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
+    /// Half of at most 0.6 rad, 0.12 s of lead up to 8 cm, joints within 0.5 rad.
+    #[must_use]
+    pub fn new(feet: [Frame<T>; F], joints: [T; N]) -> Self {
+        Self {
+            feet,
+            joints,
+            share: T::HALF,
+            lead: T::of(0.12),
+            max_lead: T::of(0.12),
+            max_tilt: T::of(0.6),
+            reach: T::HALF,
+        }
+    }
+
+    /// Joint positions for a body whose up direction is `up_b` (Rᵀ e_z) and which moves with `velocity_b`, both in base axes.
+    /// Numbers that are not finite give the level posture.
+    #[must_use]
+    pub fn joints<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        up_b: &Vector3<T>,
+        velocity_b: &Vector3<T>,
+    ) -> [T; N] {
+        let mut numbers = up_b.iter().chain(velocity_b.iter());
+        if !numbers.all(|x| x.is_finite_number()) {
+            return self.joints;
+        }
+        let across = (velocity_b - up_b * velocity_b.dot(up_b)) * self.lead;
+        let size = math::sqrt(across.norm_squared());
+        let lead = if size > self.max_lead {
+            across * (self.max_lead / size)
+        } else {
+            across
+        };
+        // The rotation that takes e_z to up: axis e_z × up, sine |e_z × up|, cosine e_z · up.
+        let axis = Vector3::z().cross(up_b);
+        let sine = math::sqrt(axis.norm_squared());
+        let tilt = math::min(math::atan2(sine, up_b.z), self.max_tilt);
+        let turn = if sine > T::EPSILON {
+            so3::exp(&(axis * (self.share * tilt / sine)))
+        } else {
+            nalgebra::Rotation3::identity()
+        };
+        let mut q = Configuration {
+            base: Transform::IDENTITY,
+            joints: self.joints,
+        };
+        let mut kinematics = Kinematics::IDENTITY;
+        let mut jacobian = FrameJacobian::ZERO;
+        forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
+        let wanted = self
+            .feet
+            .each_ref()
+            .map(|foot| turn * kinematics.frame(foot).translation + lead);
+        for _ in 0..3 {
+            for (foot, wanted) in self.feet.iter().zip(&wanted) {
+                let missing = wanted - kinematics.frame(foot).translation;
+                let axes = Axes::LocalWorldAligned;
+                frame_jacobian(model, &kinematics, foot, axes, &mut jacobian);
+                let columns = jacobian.joints.map(|column| column.linear);
+                let mut square = Matrix3::from_diagonal_element(T::of(1e-4));
+                for c in &columns {
+                    square += c * c.transpose();
+                }
+                let Some(inverse) = square.try_inverse() else {
+                    continue;
+                };
+                let step = inverse * missing;
+                let joints = q.joints.iter_mut().zip(&columns).zip(&self.joints);
+                for ((q, c), level) in joints {
+                    *q = math::clamp(*q + c.dot(&step), *level - self.reach, *level + self.reach);
+                }
+            }
+            forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
+        }
+        if q.joints.iter().all(|x| x.is_finite_number()) {
+            q.joints
+        } else {
+            self.joints
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PreLanding;
+    use a1_model::{A1Geared, FEET};
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Kinematics, Posture, forward_kinematics};
+
+    const LEVEL: [f64; 12] = [
+        0.14, 0.77, -1.54, -0.14, 0.77, -1.54, 0.14, 0.77, -1.54, -0.14, 0.77, -1.54,
+    ];
+
+    fn feet_b(joints: [f64; 12]) -> [Vector3<f64>; 4] {
+        let q = Configuration {
+            joints,
+            ..Configuration::NEUTRAL
+        };
+        let mut poses = Kinematics::IDENTITY;
+        forward_kinematics(&A1Geared, &Posture::new(&A1Geared, &q), &mut poses);
+        FEET.map(|foot| poses.frame(&foot.frame).translation)
+    }
+
+    #[test]
+    fn feet_turn_by_the_share_of_the_tilt_and_lead_the_motion() {
+        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let tilt: f64 = 0.2;
+        let up_b = Vector3::new(0.0, so3::math::sin(tilt), so3::math::cos(tilt));
+        let velocity = Vector3::new(0.3, 0.0, 0.0);
+        let feet = feet_b(posture.joints(&A1Geared, &up_b, &velocity));
+        let turn = so3::exp(&Vector3::new(-0.5 * tilt, 0.0, 0.0));
+        for (foot, level) in feet.iter().zip(feet_b(LEVEL)) {
+            let expected = turn * level + velocity * 0.12;
+            assert!((foot - expected).norm() < 2e-3, "{foot} {expected}");
+        }
+    }
+
+    #[test]
+    fn level_and_at_rest_nothing_changes_and_bad_numbers_change_nothing() {
+        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let joints = |up_b: Vector3<f64>, v: Vector3<f64>| posture.joints(&A1Geared, &up_b, &v);
+        assert_eq!(joints(Vector3::z(), Vector3::zeros()), LEVEL);
+        for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+            assert_eq!(joints(Vector3::z() * bad, Vector3::zeros()), LEVEL);
+            assert_eq!(joints(Vector3::z(), Vector3::x() * bad), LEVEL);
+        }
+        // However fast and tilted, joints stay within reach of the level posture.
+        let wild = joints(Vector3::new(1.0, 1.0, -1.0), Vector3::new(9.0, -9.0, 1.0));
+        let far = wild.iter().zip(LEVEL).map(|(q, l)| (q - l).abs());
+        assert!(far.fold(0.0, f64::max) <= 0.5);
+    }
+}
