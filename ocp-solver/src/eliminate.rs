@@ -194,8 +194,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Row<T, NX, NU> {
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
-    /// No rows yet; controls with `free[j]` may become dependent.
-    pub(crate) const fn new(free: [bool; NU], tolerance: T) -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             count: 0,
             column: [0; NU],
@@ -203,11 +202,17 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
             u: [[T::ZERO; NU]; NU],
             constant: [T::ZERO; NU],
             size: [T::ZERO; NU],
-            free,
-            tolerance,
+            free: [false; NU],
+            tolerance: T::ZERO,
             waiting: [Row::NONE; NX],
             waiting_count: 0,
         }
+    }
+
+    /// No rows; controls with `free[j]` may become dependent.
+    pub(crate) const fn start(&mut self, free: [bool; NU], tolerance: T) {
+        (self.count, self.waiting_count) = (0, 0);
+        (self.free, self.tolerance) = (free, tolerance);
     }
 
     /// Pivot rows: dependent control and the number of the row.

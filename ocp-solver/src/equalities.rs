@@ -2,7 +2,7 @@
 
 use crate::eliminate::{Carried, Elimination, Pivots, Row, Source};
 use crate::kernel::{add_product, add_scaled, add_transposed_product, dot, largest};
-use crate::project::{Law, Quadratic};
+use crate::project::{Work, minimise};
 use crate::stage::Stage;
 use so3::Scalar;
 use so3::math::max;
@@ -13,30 +13,37 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// Least over the controls under the equalities of this node and those its successor hands back; the
     /// rows that no control meets are left to be handed on.
     ///
-    /// `None` if the quadratic has no minimum under them.
+    /// Returns false if the quadratic has no minimum under them.
     #[inline(always)]
+    #[must_use]
     pub(crate) fn minimise(
         &mut self,
-        quadratic: &mut Quadratic<T, NX, NU>,
+        work: &mut Work<T, NX, NU>,
         next: Option<&Carried<T, NX>>,
         tolerance: T,
-    ) -> Option<Law<T, NX, NU>> {
+    ) -> bool {
         let n = self.dims.controls.min(NU);
         self.riccati.carried.count = 0;
         self.riccati.pivots.clear();
-        if !self.has_equalities(next) {
-            return quadratic.minimise(n);
+        let with_rows = self.has_equalities(next);
+        if with_rows {
+            let mut free = [false; NU];
+            for free in free.iter_mut().take(n) {
+                *free = true;
+            }
+            work.elimination.start(free, tolerance);
+            work.whiten(n, &mut self.riccati.pivots.whitening);
+            self.insert_rows(next, &mut work.elimination);
         }
-        let mut free = [false; NU];
-        for free in free.iter_mut().take(n) {
-            *free = true;
+        let r = &mut self.riccati;
+        let left = (&mut r.hessian, &mut r.gradient);
+        let law = (&mut r.gain, &mut r.feedforward);
+        if with_rows {
+            work.elimination.finish(&mut r.carried, &mut r.pivots);
+            n == 0 || work.minimise_under(left, &r.pivots.whitening, n, law)
+        } else {
+            minimise(left, &mut work.xu, &mut work.uu, &mut work.u, n, law)
         }
-        let mut elimination = Elimination::new(free, tolerance);
-        let whitening = quadratic.whiten(n);
-        self.riccati.pivots.whitening = whitening;
-        self.insert_rows(next, &mut elimination);
-        elimination.finish(&mut self.riccati.carried, &mut self.riccati.pivots);
-        quadratic.minimise_under(&elimination, &whitening, n)
     }
 
     /// Whether there are own equalities or rows handed back by `next`.
@@ -186,55 +193,51 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
     tolerance: T,
 ) -> Option<[T; NX]> {
     // The start coordinates are the "controls" of a stage without a state.
-    let mut quadratic = Quadratic {
-        xx: [[T::ZERO]],
-        x: [T::ZERO],
-        xu: [[T::ZERO]; NX],
-        uu: *hessian,
-        u: [[T::ZERO]; NX],
-    };
-    for (i, (column, u)) in quadratic.uu.iter_mut().zip(&mut quadratic.u).enumerate() {
-        u[0] = gradient[i];
+    let mut work = Work::<T, 1, NX>::new();
+    work.uu = *hessian;
+    for (i, (column, u)) in work.uu.iter_mut().zip(&mut work.u).enumerate() {
+        u[0] = if free[i] { gradient[i] } else { T::ZERO };
         for (j, value) in column.iter_mut().enumerate() {
             if !(free[i] && free[j]) {
                 *value = if i == j { T::ONE } else { T::ZERO };
             }
         }
-        if !free[i] {
-            u[0] = T::ZERO;
-        }
     }
-    let law = if carried.count == 0 {
-        quadratic.minimise(NX)?
-    } else {
-        let mut pivots = Pivots::new();
-        let mut rows = Elimination::<T, 1, NX>::new(*free, tolerance);
-        pivots.whitening = quadratic.whiten(NX);
-        let given = carried.rows.iter().zip(&carried.residual);
-        for (i, (h, residual)) in given.enumerate().take(carried.count) {
-            let mut u = *h;
-            for (value, free) in u.iter_mut().zip(free) {
-                *value = if *free { *value } else { T::ZERO };
-            }
-            pivots.whitening.gradient(&mut u, NX);
-            let row = Row::new([T::ZERO], u, *residual, largest(h), i as Source);
-            rows.insert(row, &mut pivots);
-        }
-        rows.finish(&mut Carried::new(), &mut pivots);
-        let whitening = pivots.whitening;
-        let law = quadratic.minimise_under(&rows, &whitening, NX)?;
-        let mut total = *gradient;
-        add_product(&mut total, hessian, &law.feedforward.map(|[value]| value));
-        carried.multiplier = [T::ZERO; NX];
-        for (value, free) in total.iter_mut().zip(free) {
+    let (mut xx, mut x) = ([[T::ZERO]], [T::ZERO]);
+    let (mut gain, mut step) = ([[T::ZERO]; NX], [[T::ZERO]; NX]);
+    let (left, law) = ((&mut xx, &mut x), (&mut gain, &mut step));
+    if carried.count == 0 {
+        let found = minimise(left, &mut work.xu, &mut work.uu, &mut work.u, NX, law);
+        return found.then(|| step.map(|[value]| value));
+    }
+    let mut pivots = Pivots::new();
+    work.elimination.start(*free, tolerance);
+    work.whiten(NX, &mut pivots.whitening);
+    let given = carried.rows.iter().zip(&carried.residual);
+    for (i, (h, residual)) in given.enumerate().take(carried.count) {
+        let mut u = *h;
+        for (value, free) in u.iter_mut().zip(free) {
             *value = if *free { *value } else { T::ZERO };
         }
-        pivots.multipliers(total, NX, |source, y| {
-            if let Some(slot) = carried.multiplier.get_mut(usize::from(source)) {
-                *slot = y;
-            }
-        });
-        law
-    };
-    Some(law.feedforward.map(|[value]| value))
+        pivots.whitening.gradient(&mut u, NX);
+        let row = Row::new([T::ZERO], u, *residual, largest(h), i as Source);
+        work.elimination.insert(row, &mut pivots);
+    }
+    work.elimination.finish(&mut Carried::new(), &mut pivots);
+    if !work.minimise_under(left, &pivots.whitening, NX, law) {
+        return None;
+    }
+    let step = step.map(|[value]| value);
+    let mut total = *gradient;
+    add_product(&mut total, hessian, &step);
+    for (value, free) in total.iter_mut().zip(free) {
+        *value = if *free { *value } else { T::ZERO };
+    }
+    carried.multiplier = [T::ZERO; NX];
+    pivots.multipliers(total, NX, |source, y| {
+        if let Some(slot) = carried.multiplier.get_mut(usize::from(source)) {
+            *slot = y;
+        }
+    });
+    Some(step)
 }

@@ -19,20 +19,35 @@ use crate::kernel::{add_outer_products, add_scaled, factor, largest, solve_lower
 use so3::Scalar;
 use so3::math::{abs, max, sqrt};
 
-/// `½ xᵀ Q_xx x + uᵀ Q_ux x + ½ uᵀ Q_uu u + q_xᵀ x + q_uᵀ u`, columns per control in `xu`.
-#[derive(Clone, Copy)]
-pub(crate) struct Quadratic<T, const NX: usize, const NU: usize> {
-    pub(crate) xx: [[T; NX]; NX],
-    pub(crate) x: [T; NX],
+/// Scratch of one stage, shared by all of them: `½ xᵀ Q_xx x + uᵀ Q_ux x + ½ uᵀ Q_uu u + q_xᵀ x + q_uᵀ u`
+/// without `Q_xx` and `q_x`, which are kept with the stage, and what the elimination needs.
+pub(crate) struct Work<T, const NX: usize, const NU: usize> {
+    /// Columns per control.
     pub(crate) xu: [[T; NX]; NU],
     pub(crate) uu: [[T; NU]; NU],
     pub(crate) u: [[T; 1]; NU],
+    pub(crate) elimination: Elimination<T, NX, NU>,
+    /// Per pivot: −K, S_x, and Q_dx − Σ_d K.
+    minus: [[T; NX]; NU],
+    s: [[T; NX]; NU],
+    shifted: [[T; NX]; NU],
+    /// What is left of the free controls, in front, and which they are.
+    free: Free<T, NX, NU>,
+    reduced: Law<T, NX, NU>,
 }
 
 /// The control that is least for every state: row `i` of `gain`, and `feedforward`.
 pub(crate) struct Law<T, const NX: usize, const NU: usize> {
     pub(crate) gain: [[T; NX]; NU],
     pub(crate) feedforward: [[T; 1]; NU],
+}
+
+struct Free<T, const NX: usize, const NU: usize> {
+    count: usize,
+    order: [u16; NU],
+    xu: [[T; NX]; NU],
+    uu: [[T; NU]; NU],
+    u: [[T; 1]; NU],
 }
 
 /// Coordinates `w` of the controls in which their cost is `½ wᵀ diag(sign) w`: `u = L⁻ᵀ S⁻¹ w`.
@@ -54,15 +69,14 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
         }
     }
 
-    /// From the leading `n` × `n` block of the symmetric `uu`, which may be indefinite or singular.
+    /// From the leading `n` × `n` block of the symmetric `uu`, which may be indefinite or singular and is used up.
     ///
     /// A pivot that is nothing but rounding is taken as zero where nothing couples to it, and is otherwise
     /// replaced by a small one, which changes the Hessian by as little.
     #[inline(always)]
-    fn of(mut uu: [[T; NU]; NU], n: usize) -> Self {
-        let mut out = Self::new();
+    fn set(&mut self, uu: &mut [[T; NU]; NU], n: usize) {
         let mut diagonal = [T::ZERO; NU];
-        for (j, (value, column)) in diagonal.iter_mut().zip(&uu).enumerate().take(n) {
+        for (j, (value, column)) in diagonal.iter_mut().zip(uu.iter()).enumerate().take(n) {
             *value = abs(column[j]);
         }
         let noise = T::of(32.0) * T::EPSILON;
@@ -103,11 +117,10 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
             }
             // The scale of a control without curvature of its own stays within reason of the others'.
             let square = max(abs(pivot), max(noise * diagonal[j], T::EPSILON));
-            out.lower[j] = column;
-            out.scale[j] = T::ONE / sqrt(square);
-            out.sign[j] = pivot / square;
+            self.lower[j] = column;
+            self.scale[j] = T::ONE / sqrt(square);
+            self.sign[j] = pivot / square;
         }
-        out
     }
 
     /// A gradient in the first `n` controls, in the coordinates `w`: `S⁻¹ L⁻¹ g`.
@@ -126,40 +139,66 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
     }
 }
 
-impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
-    /// Least over the first `n` controls: `xx` and `x` become the quadratic of the state that is left.
-    ///
-    /// `None` if there is no minimum: the block of the controls is not positive definite.
-    #[inline(always)]
-    pub(crate) fn minimise(&mut self, n: usize) -> Option<Law<T, NX, NU>> {
-        let mut inverse = [T::ZERO; NU];
-        if !factor(&mut self.uu, &mut inverse, n, T::ZERO) {
-            return None;
+/// Riccati step over the first `n` controls: `xx` and `x` become the quadratic of the state that is left,
+/// `xu`, `uu` and `u` are used up.
+///
+/// Returns false if there is no minimum: the block of the controls is not positive definite.
+#[inline(always)]
+#[must_use]
+pub(crate) fn minimise<T: Scalar, const NX: usize, const NU: usize>(
+    (xx, x): (&mut [[T; NX]; NX], &mut [T; NX]),
+    xu: &mut [[T; NX]; NU],
+    uu: &mut [[T; NU]; NU],
+    u: &mut [[T; 1]; NU],
+    n: usize,
+    (gain, feedforward): (&mut [[T; NX]; NU], &mut [[T; 1]; NU]),
+) -> bool {
+    let mut inverse = [T::ZERO; NU];
+    if !factor(uu, &mut inverse, n, T::ZERO) {
+        return false;
+    }
+    solve_lower(uu, xu, n);
+    solve_lower(uu, u, n);
+    let rows = gain.iter_mut().zip(feedforward.iter_mut());
+    for (((gain, y), inverse), (z, u)) in rows.zip(&inverse).zip(xu.iter().zip(u.iter())).take(n) {
+        *gain = z.map(|value| -value * *inverse);
+        y[0] = -u[0] * *inverse;
+        add_scaled(x, y[0], z);
+    }
+    add_outer_products(xx, gain, xu, n);
+    solve_upper(uu, gain, n);
+    solve_upper(uu, feedforward, n);
+    true
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            xu: [[T::ZERO; NX]; NU],
+            uu: [[T::ZERO; NU]; NU],
+            u: [[T::ZERO; 1]; NU],
+            elimination: Elimination::new(),
+            minus: [[T::ZERO; NX]; NU],
+            s: [[T::ZERO; NX]; NU],
+            shifted: [[T::ZERO; NX]; NU],
+            free: Free {
+                count: 0,
+                order: [0; NU],
+                xu: [[T::ZERO; NX]; NU],
+                uu: [[T::ZERO; NU]; NU],
+                u: [[T::ZERO; 1]; NU],
+            },
+            reduced: Law {
+                gain: [[T::ZERO; NX]; NU],
+                feedforward: [[T::ZERO; 1]; NU],
+            },
         }
-        solve_lower(&self.uu, &mut self.xu, n);
-        solve_lower(&self.uu, &mut self.u, n);
-        let mut law = Law {
-            gain: self.xu,
-            feedforward: self.u,
-        };
-        let rows = law.gain.iter_mut().zip(&mut law.feedforward);
-        for (((gain, y), inverse), z) in rows.zip(&inverse).zip(&self.xu).take(n) {
-            for value in gain.iter_mut() {
-                *value *= -*inverse;
-            }
-            y[0] *= -*inverse;
-            add_scaled(&mut self.x, y[0], z);
-        }
-        add_outer_products(&mut self.xx, &law.gain, &self.xu, n);
-        solve_upper(&self.uu, &mut law.gain, n);
-        solve_upper(&self.uu, &mut law.feedforward, n);
-        Some(law)
     }
 
-    /// Turns to whitened coordinates of the first `n` controls; `uu` is not meaningful afterwards.
+    /// Turns to whitened coordinates of the first `n` controls.
     #[inline(always)]
-    pub(crate) fn whiten(&mut self, n: usize) -> Whitening<T, NU> {
-        let whitening = Whitening::of(self.uu, n);
+    pub(crate) fn whiten(&mut self, n: usize, whitening: &mut Whitening<T, NU>) {
+        whitening.set(&mut self.uu, n);
         solve_lower(&whitening.lower, &mut self.xu, n);
         solve_lower(&whitening.lower, &mut self.u, n);
         let rows = self.xu.iter_mut().zip(&mut self.u);
@@ -169,48 +208,46 @@ impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
             }
             u[0] *= *scale;
         }
-        whitening
     }
 
-    /// As [`Self::minimise`], in whitened coordinates and under the pivot rows; the law is one for the
-    /// controls themselves.
+    /// As [`minimise`], in whitened coordinates and under the pivot rows; the law is one for the controls
+    /// themselves.
     #[inline(always)]
+    #[must_use]
     pub(crate) fn minimise_under(
         &mut self,
-        rows: &Elimination<T, NX, NU>,
+        (xx, x): (&mut [[T; NX]; NX], &mut [T; NX]),
         whitening: &Whitening<T, NU>,
         n: usize,
-    ) -> Option<Law<T, NX, NU>> {
-        let mut free = Free::new();
-        self.project(rows, &whitening.sign, &mut free);
-        let inner = Quadratic {
-            xx: self.xx,
-            x: self.x,
-            xu: free.xu,
-            uu: free.uu,
-            u: free.u,
-        };
-        let (mut inner, count) = (inner, free.count);
-        let reduced = inner.minimise(count)?;
-        (self.xx, self.x) = (inner.xx, inner.x);
-
-        let mut law = Law {
-            gain: [[T::ZERO; NX]; NU],
-            feedforward: [[T::ZERO; 1]; NU],
-        };
+        (gain, feedforward): (&mut [[T; NX]; NU], &mut [[T; 1]; NU]),
+    ) -> bool {
+        self.project((xx, x), &whitening.sign);
+        let Self {
+            free,
+            reduced,
+            elimination,
+            ..
+        } = self;
+        let count = free.count;
+        let law = (&mut reduced.gain, &mut reduced.feedforward);
+        if !minimise((xx, x), &mut free.xu, &mut free.uu, &mut free.u, count, law) {
+            return false;
+        }
         let found = reduced.gain.iter().zip(&reduced.feedforward);
-        for ((gain, y), j) in found.zip(&free.order).take(count) {
+        for ((row, y), j) in found.zip(&free.order).take(count) {
             let j = usize::from(*j);
-            if let (Some(row), Some(value)) = (law.gain.get_mut(j), law.feedforward.get_mut(j)) {
-                (*row, *value) = (*gain, *y);
+            if let (Some(to), Some(value)) = (gain.get_mut(j), feedforward.get_mut(j)) {
+                (*to, *value) = (*row, *y);
             }
         }
-        for (column, i) in rows.pivots() {
-            let (Some(x), Some(z), Some(k)) = (rows.x.get(i), rows.u.get(i), rows.constant.get(i))
+        for (column, i) in elimination.pivots() {
+            let rows = &*elimination;
+            let (Some(minus), Some(z), Some(k)) =
+                (self.minus.get(i), rows.u.get(i), rows.constant.get(i))
             else {
                 continue;
             };
-            let (mut row, mut value) = (x.map(|value| -value), -*k);
+            let (mut row, mut value) = (*minus, -*k);
             let found = reduced.gain.iter().zip(&reduced.feedforward);
             for ((gain, y), j) in found.zip(&free.order).take(count) {
                 let z = entry(z, *j);
@@ -219,35 +256,27 @@ impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
                     value -= z * y[0];
                 }
             }
-            if let (Some(to), Some(to_value)) =
-                (law.gain.get_mut(column), law.feedforward.get_mut(column))
+            if let (Some(to), Some(to_value)) = (gain.get_mut(column), feedforward.get_mut(column))
             {
                 (*to, to_value[0]) = (row, value);
             }
         }
-        let rows = law.gain.iter_mut().zip(&mut law.feedforward);
+        let rows = gain.iter_mut().zip(feedforward.iter_mut());
         for ((row, value), scale) in rows.zip(&whitening.scale).take(n) {
             for entry in row.iter_mut() {
                 *entry *= *scale;
             }
             value[0] *= *scale;
         }
-        solve_upper(&whitening.lower, &mut law.gain, n);
-        solve_upper(&whitening.lower, &mut law.feedforward, n);
-        Some(law)
+        solve_upper(&whitening.lower, gain, n);
+        solve_upper(&whitening.lower, feedforward, n);
+        true
     }
 
     /// Puts the dependent controls in and gathers what is left of the free ones.
     #[inline(never)]
-    fn project(
-        &mut self,
-        rows: &Elimination<T, NX, NU>,
-        sign: &[T; NU],
-        free: &mut Free<T, NX, NU>,
-    ) {
-        // Per pivot: −K, S_x, and Q_dx − Σ_d K.
-        let (mut minus, mut s) = ([[T::ZERO; NX]; NU], [[T::ZERO; NX]; NU]);
-        let mut shifted = [[T::ZERO; NX]; NU];
+    fn project(&mut self, (xx, x): (&mut [[T; NX]; NX], &mut [T; NX]), sign: &[T; NU]) {
+        let rows = &self.elimination;
         let mut count = 0usize;
         for (column, i) in rows.pivots() {
             let (Some(q_xd), Some(q_d), Some(k)) = (
@@ -257,25 +286,27 @@ impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
             ) else {
                 continue;
             };
-            add_scaled(&mut self.x, -*k, q_xd);
+            add_scaled(x, -*k, q_xd);
             let sign = entry(sign, column as u16);
             q_d[0] -= sign * *k;
-            if let (Some(x), Some(minus), Some(s), Some(shifted)) = (
+            if let (Some(own), Some(minus), Some(s), Some(shifted)) = (
                 rows.x.get(i),
-                minus.get_mut(i),
-                s.get_mut(i),
-                shifted.get_mut(i),
+                self.minus.get_mut(i),
+                self.s.get_mut(i),
+                self.shifted.get_mut(i),
             ) {
-                *minus = x.map(|value| -value);
+                *minus = own.map(|value| -value);
                 (*s, *shifted) = (*q_xd, *q_xd);
                 add_scaled(s, T::HALF * sign, minus);
                 add_scaled(shifted, sign, minus);
-                add_scaled(&mut self.x, q_d[0], minus);
+                add_scaled(x, q_d[0], minus);
             }
             count = i.saturating_add(1);
         }
-        add_outer_products(&mut self.xx, &minus, &s, count);
-        add_outer_products(&mut self.xx, &s, &minus, count);
+        add_outer_products(xx, &self.minus, &self.s, count);
+        add_outer_products(xx, &self.s, &self.minus, count);
+        let free = &mut self.free;
+        free.count = 0;
         for f in (0..NU).filter(|f| rows.remains(*f)) {
             let Some(slot) = free.order.get_mut(free.count) else {
                 break;
@@ -284,20 +315,19 @@ impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
             free.count = free.count.saturating_add(1);
         }
         let targets = free.xu.iter_mut().zip(&mut free.uu).zip(&mut free.u);
-        for (a, ((((xu, uu), u), f), _)) in targets.zip(&free.order).zip(0..free.count).enumerate()
-        {
+        for (a, (((xu, uu), u), f)) in targets.zip(&free.order).enumerate().take(free.count) {
             let f = usize::from(*f);
             let (Some(own), Some(g), Some(own_sign)) = (self.xu.get(f), self.u.get(f), sign.get(f))
             else {
                 continue;
             };
-            (*xu, *u) = (*own, *g);
+            (*xu, *u, *uu) = (*own, *g, [T::ZERO; NU]);
             if let Some(value) = uu.get_mut(a) {
                 *value = *own_sign;
             }
             for (column, i) in rows.pivots() {
                 let (Some(z), Some(shifted), Some(q_d)) =
-                    (rows.u.get(i), shifted.get(i), self.u.get(column))
+                    (rows.u.get(i), self.shifted.get(i), self.u.get(column))
                 else {
                     continue;
                 };
@@ -312,27 +342,6 @@ impl<T: Scalar, const NX: usize, const NU: usize> Quadratic<T, NX, NU> {
                     *value += weight * entry(z, *other);
                 }
             }
-        }
-    }
-}
-
-/// The free controls of a projected quadratic, in front.
-struct Free<T, const NX: usize, const NU: usize> {
-    count: usize,
-    order: [u16; NU],
-    xu: [[T; NX]; NU],
-    uu: [[T; NU]; NU],
-    u: [[T; 1]; NU],
-}
-
-impl<T: Scalar, const NX: usize, const NU: usize> Free<T, NX, NU> {
-    const fn new() -> Self {
-        Self {
-            count: 0,
-            order: [0; NU],
-            xu: [[T::ZERO; NX]; NU],
-            uu: [[T::ZERO; NU]; NU],
-            u: [[T::ZERO; 1]; NU],
         }
     }
 }

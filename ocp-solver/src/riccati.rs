@@ -22,7 +22,7 @@
 use crate::kernel::{
     add_outer, add_product, add_scaled, add_transposed_product, dot, mirror_lower, transpose,
 };
-use crate::project::Quadratic;
+use crate::project::Work;
 use crate::rows::RowBarrier;
 use crate::stage::{Riccati, Stage};
 use so3::Scalar;
@@ -37,12 +37,13 @@ pub(crate) fn factorise<T: Scalar, X: Copy, const NX: usize, const NU: usize, co
     barrier: RowBarrier<T>,
     shift: T,
 ) -> bool {
+    let mut work = Work::new();
     let mut k = stages.len();
     while let Some((head, tail)) = stages.split_at_mut_checked(k) {
         let Some(stage) = head.last_mut() else { break };
         stage.condense_rows(barrier.mu);
         let next = tail.first().map(|next| &next.riccati);
-        if !stage.factorise(next, barrier.rank_tolerance, shift) {
+        if !stage.factorise(&mut work, next, barrier.rank_tolerance, shift) {
             return false;
         }
         k = k.wrapping_sub(1);
@@ -57,46 +58,47 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     #[inline(always)]
     fn factorise(
         &mut self,
+        work: &mut Work<T, NX, NU>,
         next: Option<&Riccati<T, NX, NU>>,
         rank_tolerance: T,
         shift: T,
     ) -> bool {
         let n = self.dims.controls.min(NU);
         let d = &self.derivatives;
-        let mut q = Quadratic {
-            xx: d.hessian_xx,
-            x: d.cost_x,
-            xu: d.hessian_xu,
-            uu: d.hessian_uu,
-            u: d.cost_u.map(|g| [g]),
-        };
-        for (i, column) in q.xx.iter_mut().enumerate() {
+        let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
+        (*q_xx, *q_x) = (d.hessian_xx, d.cost_x);
+        for (i, column) in q_xx.iter_mut().enumerate() {
             column[i] += shift;
         }
-        for (i, column) in q.uu.iter_mut().enumerate() {
-            column[i] += shift;
+        if n > 0 {
+            (work.xu, work.uu, work.u) = (d.hessian_xu, d.hessian_uu, d.cost_u.map(|g| [g]));
+            for (i, column) in work.uu.iter_mut().enumerate() {
+                column[i] += shift;
+            }
         }
-        self.add_rows(&mut q);
+        self.add_rows(work);
 
+        let d = &self.derivatives;
+        let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         if let Some(next) = next {
             // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
             let mut v = next.gradient;
             add_product(&mut v, &next.hessian, &self.values.gap);
-            add_transposed_product(&mut q.x, &d.dynamics_x, &v);
+            add_transposed_product(q_x, &d.dynamics_x, &v);
             let mut w = [[T::ZERO; NX]; NX];
             for (w, a) in w.iter_mut().zip(&d.dynamics_x) {
                 add_product(w, &next.hessian, a);
             }
             let w = transpose(&w);
-            for (q, a) in q.xx.iter_mut().zip(&d.dynamics_x) {
+            for (q, a) in q_xx.iter_mut().zip(&d.dynamics_x) {
                 add_product(q, &w, a);
             }
             if n > 0 {
                 let mut v_u = [[T::ZERO; NX]; NU];
                 for ((((v_u, q_xu), q_u), b), _) in v_u
                     .iter_mut()
-                    .zip(&mut q.xu)
-                    .zip(&mut q.u)
+                    .zip(&mut work.xu)
+                    .zip(&mut work.u)
                     .zip(&d.dynamics_u)
                     .zip(0..n)
                 {
@@ -105,28 +107,25 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                     q_u[0] += dot(b, &v);
                 }
                 let v_u = transpose(&v_u);
-                for (q, b) in q.uu.iter_mut().zip(&d.dynamics_u).take(n) {
+                for (q, b) in work.uu.iter_mut().zip(&d.dynamics_u).take(n) {
                     add_product(q, &v_u, b);
                 }
             }
         }
         let carried = next.map(|next| &next.carried);
-        let Some(law) = self.minimise(&mut q, carried, rank_tolerance) else {
+        if !self.minimise(work, carried, rank_tolerance) {
             return false;
-        };
-        self.riccati.gain = law.gain;
-        self.riccati.feedforward = law.feedforward;
+        }
         // Rounding makes the two triangles differ, and an unstable motion would amplify that.
-        mirror_lower(&mut q.xx);
-        self.riccati.hessian = q.xx;
-        self.riccati.gradient = q.x;
+        mirror_lower(&mut self.riccati.hessian);
         true
     }
 
     /// Adds the condensed rows to the stage Hessian and gradient.
     #[inline(never)]
-    fn add_rows(&self, q: &mut Quadratic<T, NX, NU>) {
+    fn add_rows(&mut self, q: &mut Work<T, NX, NU>) {
         let d = &self.derivatives;
+        let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         let state_rows = self.dims.state_rows;
         let before_mixed = state_rows.saturating_add(self.dims.control_rows);
         let rows = d
@@ -134,14 +133,16 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             .iter()
             .zip(&d.rows_u)
             .zip(self.step.weight.iter().zip(&self.step.target));
-        for (i, ((row_x, row_u), (weight, target))) in rows.enumerate().take(self.row_count()) {
-            if self.is_equality(i) {
+        for (i, ((row_x, row_u), (weight, target))) in
+            rows.enumerate().take(self.dims.rows().min(NI))
+        {
+            if self.bounds.0[i] == self.bounds.1[i] {
                 continue;
             }
             let (in_state, in_control) = (i < state_rows || i >= before_mixed, i >= state_rows);
             if in_state {
-                add_outer(&mut q.xx, *weight, row_x);
-                add_scaled(&mut q.x, *target, row_x);
+                add_outer(q_xx, *weight, row_x);
+                add_scaled(q_x, *target, row_x);
             }
             if in_control {
                 add_outer(&mut q.uu, *weight, row_u);
