@@ -158,6 +158,26 @@ impl<T: Scalar, const NU: usize> Pivots<T, NU> {
 }
 
 impl<T: Scalar, const NX: usize> Carried<T, NX> {
+    /// The rows of `next`, each put through the dynamics by `map`, which returns what it adds to the
+    /// residual; `first` is the source of the first one.
+    #[inline(always)]
+    pub(crate) fn pass(
+        &mut self,
+        next: &Self,
+        first: usize,
+        map: impl Fn(&[T; NX], &mut [T; NX]) -> T,
+    ) {
+        self.count = next.count;
+        let from = next.rows.iter().zip(&next.residual);
+        let to = self.rows.iter_mut().zip(&mut self.residual);
+        let places = to.zip(&mut self.source).zip(from);
+        for (j, (((row, residual), source), (h, before))) in places.enumerate().take(next.count) {
+            *row = [T::ZERO; NX];
+            *residual = *before + map(h, row);
+            *source = first.saturating_add(j) as Source;
+        }
+    }
+
     /// Hands the multiplier of every row to `write`, with the place the row came from.
     pub(crate) fn multipliers(&self, mut write: impl FnMut(Source, T)) {
         for (source, y) in self.source.iter().zip(&self.multiplier).take(self.count) {

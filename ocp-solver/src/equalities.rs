@@ -26,6 +26,13 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         self.riccati.carried.count = 0;
         self.riccati.pivots.clear();
         let with_rows = self.has_equalities(next);
+        if n == 0 && !self.has_equalities(None) {
+            // Nothing to decide: rows pass through, and those that depend are found further back.
+            if let Some(next) = next {
+                self.pass_back(next);
+            }
+            return true;
+        }
         if with_rows {
             let mut free = [false; NU];
             for free in free.iter_mut().take(n) {
@@ -51,6 +58,17 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     pub(crate) fn has_equalities(&self, next: Option<&Carried<T, NX>>) -> bool {
         (0..self.row_count()).any(|i| self.is_equality(i))
             || next.is_some_and(|next| next.count > 0)
+    }
+
+    /// Puts the rows of the successor through dynamics without controls.
+    #[inline(never)]
+    fn pass_back(&mut self, next: &Carried<T, NX>) {
+        let (a, rows) = (&self.derivatives.dynamics_x, self.row_count());
+        let carried = &mut self.riccati.carried;
+        carried.pass(next, rows, |h, x| {
+            add_transposed_product(x, a, h);
+            dot(h, &self.values.gap)
+        });
     }
 
     #[inline(never)]

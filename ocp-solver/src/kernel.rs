@@ -49,7 +49,8 @@ pub(crate) fn add_product<T: Scalar, const R: usize, const C: usize>(
     *out = sum;
 }
 
-/// `matrix += Σ_j left_j rowsᵀ_j` over the first `n` rows, `left_j` and `rows_j` of equal length.
+/// The lower triangle of `matrix += Σ_j left_j rowsᵀ_j` over the first `n` rows; the upper one is left
+/// partly updated.
 #[inline(always)]
 pub(crate) fn add_outer_products<T: Scalar, const N: usize, const M: usize>(
     matrix: &mut [[T; N]; N],
@@ -58,11 +59,22 @@ pub(crate) fn add_outer_products<T: Scalar, const N: usize, const M: usize>(
     n: usize,
 ) {
     for (c, column) in matrix.iter_mut().enumerate() {
-        let mut sum = *column;
-        for (left, row) in left.iter().zip(rows).take(n) {
-            add_scaled(&mut sum, left[c], row);
+        // Eight rows at a time stay in registers over the whole sum.
+        let (eights, rest) = column.as_chunks_mut::<8>();
+        for (i, chunk) in eights.iter_mut().enumerate().skip(c / 8) {
+            let mut sum = *chunk;
+            for (left, row) in left.iter().zip(rows).take(n) {
+                if let Some(row) = row.as_chunks::<8>().0.get(i) {
+                    add_scaled(&mut sum, left[c], row);
+                }
+            }
+            *chunk = sum;
         }
-        *column = sum;
+        for (left, row) in left.iter().zip(rows).take(n) {
+            for (value, row) in rest.iter_mut().zip(row.as_chunks::<8>().1) {
+                *value += left[c] * *row;
+            }
+        }
     }
 }
 

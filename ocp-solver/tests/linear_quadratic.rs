@@ -50,14 +50,14 @@ struct Node {
 
 struct Lq {
     nx: usize,
-    nu: usize,
     nodes: Vec<Node>,
     free: [bool; NX],
 }
 
 impl Lq {
-    fn z(&self, x: &[f64; NX], u: &[f64; NU], last: bool) -> DVector<f64> {
-        let nu = if last { 0 } else { self.nu };
+    /// State and control of node `k` in one vector.
+    fn z(&self, k: usize, x: &[f64; NX], u: &[f64; NU]) -> DVector<f64> {
+        let nu = self.nodes[k].g.len() - self.nx;
         DVector::from_iterator(self.nx + nu, x[..self.nx].iter().chain(&u[..nu]).copied())
     }
 }
@@ -71,7 +71,7 @@ impl Problem<f64, NX, NU, NI> for Lq {
 
     fn dims(&self, k: usize) -> Dims {
         let [state_rows, control_rows, mixed_rows] = self.nodes[k].kinds;
-        let controls = if k == self.intervals() { 0 } else { self.nu };
+        let controls = self.nodes[k].g.len() - self.nx;
         Dims {
             controls,
             state_rows,
@@ -109,7 +109,7 @@ impl Problem<f64, NX, NU, NI> for Lq {
         v: &mut Values<f64, NX, NI>,
     ) {
         let node = &self.nodes[k];
-        let z = self.z(x, u, next.is_none());
+        let z = self.z(k, x, u);
         v.cost = (0.5 * z.transpose() * &node.h * &z)[0] + node.g.dot(&z);
         let rows = &node.rows * &z;
         v.rows[..rows.len()].copy_from_slice(rows.as_slice());
@@ -131,7 +131,7 @@ impl Problem<f64, NX, NU, NI> for Lq {
         d: &mut Derivatives<f64, NX, NU, NI>,
     ) {
         let node = &self.nodes[k];
-        let z = self.z(x, u, next.is_none());
+        let z = self.z(k, x, u);
         let gradient = &node.h * &z + &node.g;
         let nu = z.len() - self.nx;
         for i in 0..self.nx {
@@ -172,7 +172,7 @@ fn residuals(
     let nx = problem.nx;
     for (k, (stage, node)) in stages.iter().zip(&problem.nodes).enumerate() {
         let next = stages.get(k + 1);
-        let z = problem.z(&stage.state, &stage.control, next.is_none());
+        let z = problem.z(k, &stage.state, &stage.control);
         let y = DVector::from_row_slice(&stage.row_multipliers()[..node.right.len()]);
         let mut gradient = &node.h * &z + &node.g + node.rows.transpose() * y;
         if let Some(next) = next {
@@ -267,7 +267,6 @@ fn check(problem: &Lq, start: [f64; NX], what: &str) {
         "{what}: primal {primal:e} dual {dual:e}"
     );
     let wanted = dense(problem, &start);
-    let last = problem.nodes.len() - 1;
     let ours: Vec<f64> = stages
         .iter()
         .enumerate()
@@ -282,6 +281,9 @@ fn check(problem: &Lq, start: [f64; NX], what: &str) {
     let error = (DVector::from_vec(ours) - &wanted).amax();
     assert!(error < 1e-9 * (1.0 + wanted.amax()), "{what}: {error:e}");
 }
+
+/// Instead of row counts: a node without rows and controls.
+const BALLISTIC: [usize; 3] = [usize::MAX; 3];
 
 /// A problem of `n` intervals whose rows are met by some motion, with row counts `kinds(k)`.
 fn problem(
@@ -304,7 +306,18 @@ fn problem(
     }
     let mut nodes = Vec::new();
     for k in 0..=n {
-        let nu = if k == n { 0 } else { nu };
+        let nu = if k == n || kinds(k) == BALLISTIC {
+            0
+        } else {
+            nu
+        };
+        let kinds = |k| {
+            if kinds(k) == BALLISTIC {
+                [0; 3]
+            } else {
+                kinds(k)
+            }
+        };
         let u = draw.vector(nu);
         let z = DVector::from_iterator(nx + nu, x.iter().chain(&u).copied());
         let kinds = if nu == 0 {
@@ -335,15 +348,7 @@ fn problem(
             right,
         });
     }
-    (
-        Lq {
-            nx,
-            nu,
-            nodes,
-            free,
-        },
-        start,
-    )
+    (Lq { nx, nodes, free }, start)
 }
 
 #[test]
@@ -368,6 +373,19 @@ fn a_fixed_end_is_handed_back_over_several_stages() {
     for (nx, nu) in [(4, 1), (5, 2), (6, 2), (7, 2), (8, 3)] {
         let (lq, start) = problem(&mut draw, nx, nu, 9, [false; NX], |k| {
             [if k == 9 { nx } else { 0 }, 0, 0]
+        });
+        check(&lq, start, &format!("{nx} {nu}"));
+    }
+}
+
+#[test]
+fn rows_pass_through_stages_without_controls() {
+    let mut draw = Draw(7);
+    for (nx, nu) in [(4, 2), (6, 3), (8, 4)] {
+        let (lq, start) = problem(&mut draw, nx, nu, 9, [false; NX], |k| match k {
+            9 => [nx / 2, 0, 0],
+            5..9 => BALLISTIC,
+            _ => [0; 3],
         });
         check(&lq, start, &format!("{nx} {nu}"));
     }
