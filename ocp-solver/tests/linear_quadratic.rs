@@ -272,7 +272,7 @@ fn check(problem: &Lq, start: [f64; NX], what: &str) {
         .enumerate()
         .flat_map(|(k, s)| {
             problem
-                .z(&s.state, &s.control, k == last)
+                .z(k, &s.state, &s.control)
                 .iter()
                 .copied()
                 .collect::<Vec<_>>()
