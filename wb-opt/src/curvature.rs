@@ -239,14 +239,20 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                 }
             }
         }
+        for (foot, mu) in contacts.active().zip(multipliers.acceleration) {
+            self.rolling_curvature(foot, mu, &virtuals, out);
+        }
         for ((point, _), block) in contacts.active().zip(&mut out.force) {
             let Some(virtual_motion) = virtuals.get(point.link) else {
                 continue;
             };
             let slip = at_point(virtual_motion, &point.pos);
+            let touch = point.pos + point.arm;
             for k in self.path(point.link) {
                 let turn_k = &self.joints[k].axis.angular;
-                let column = turn_k.cross(&slip) + at_point(&virtual_rates[k], &point.pos);
+                let column = turn_k.cross(&slip)
+                    + turn_k.cross(&virtual_motion.angular).cross(&point.arm)
+                    + at_point(&virtual_rates[k], &touch);
                 for (row, value) in block.iter_mut().zip(column.iter()) {
                     row.q[k] -= *value;
                 }

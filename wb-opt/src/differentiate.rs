@@ -1,6 +1,7 @@
 //! Derivatives of one interval: cost, mixed rows, and the exact Hessian of the Lagrangian.
 
 use crate::curvature::{Multipliers, PositionTerms};
+use crate::drive::Line;
 use crate::midpoint::{Gradient, Hessian, Map, Midpoint};
 use crate::moments::at_point;
 use crate::problem::Problem;
@@ -53,8 +54,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let weights = &self.problem.weights;
         let mut effort = [T::ZERO; N];
         self.sweep.effort(&self.mid.a, self.contacts, &mut effort);
+        self.problem.add_friction(&self.mid.v, &mut effort);
         let mut jacobian = EffortJacobian::<T, N, FEET>::zero();
         self.sweep.differentiate(self.contacts, &mut jacobian);
+        let mut bends = [T::ZERO; N];
+        for (i, bent) in bends.iter_mut().enumerate().skip(BASE) {
+            let (limit, v) = (&self.problem.robot.limits[i], self.mid.v[i]);
+            let smoothing = self.problem.friction_smoothing;
+            let [_, slope, bend] = crate::drive::friction(limit, v, smoothing);
+            jacobian.by_v[i][i] += slope;
+            *bent = bend;
+        }
 
         let mut hessian = Hessian::<T, N, FEET>::zero();
         let mut cost = Gradient::<T, N, FEET>::zero();
@@ -80,6 +90,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             multipliers[i] = self.push(units.moment, &gradient, support(), y, d) + by_effort;
             cost.add(by_effort, &gradient);
             hessian.add_outer(T::TWO * weights.effort, &gradient, support());
+        }
+        let lines = self.problem.groups(self.k).lines;
+        for i in (BASE..N).take(lines) {
+            let mut gradient = jacobian.row(i);
+            gradient.v[i] += Line::of(self.problem.robot.motors[i].as_ref()).slope;
+            let end = self.sweep.bodies[i].subtree_end;
+            let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
+            multipliers[i] += self.push(units.moment, &gradient, support, y, d);
+        }
+        for i in BASE..N {
+            hessian.vv[i][i] += multipliers[i] * bends[i];
         }
         let positions = self.positions(y, d, &mut hessian);
 
@@ -116,6 +137,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
                 + turn.cross(&point.lifted);
             let by_v = at_point(&joint.rate, &point.pos) * T::TWO + carried(turn);
             let by_a = at_point(&joint.axis, &point.pos);
+            let rolling = self.sweep.angular_columns(point.link, k);
+            let by_q = by_q + rolling.by_q.cross(&point.arm);
+            let by_v = by_v + rolling.by_v.cross(&point.arm);
+            let by_a = by_a + rolling.by_a.cross(&point.arm);
             for (c, row) in rows.iter_mut().enumerate() {
                 (row.q[k], row.v[k], row.a[k]) = (by_q[c], by_v[c], by_a[c]);
             }
@@ -168,7 +193,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> EffortJacobian<T, N, FEET> {
-    fn row(&self, i: usize) -> Gradient<T, N, FEET> {
+    pub(crate) fn row(&self, i: usize) -> Gradient<T, N, FEET> {
         Gradient {
             q: self.by_q[i],
             v: self.by_v[i],

@@ -19,7 +19,7 @@ impl core::fmt::Display for Error {
             Self::Parameter(what) => f.write_str(what),
             Self::Solver(error) => error.fmt(f),
             Self::Capacity => f.write_str(
-                "const sizes too small: NX >= 2 N, NU >= N + 3 FEET, NI >= row_capacity(N, FEET, clearances)",
+                "const sizes too small: NX >= 2 N, NU >= N + 3 FEET, NI >= row_capacity(..)",
             ),
         }
     }

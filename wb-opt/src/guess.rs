@@ -26,7 +26,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         // Speed over interval k of the plain guess; none before the start.
         let speed = |k: usize, i: usize| {
             let at = |k: usize| nodes.get(k.min(last)).map_or(T::ZERO, |q| q[i]);
-            (at(k.saturating_add(1)) - at(k)) / self.dt
+            (at(k.saturating_add(1)) - at(k)) / self.dt(k.min(last.saturating_sub(1)))
         };
         let before = |k: usize, i: usize| k.checked_sub(1).map_or(T::ZERO, |k| speed(k, i));
         for (k, stage) in stages.iter_mut().enumerate() {
@@ -50,7 +50,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 continue;
             }
             for (i, u) in stage.control.iter_mut().enumerate().take(BASE.min(N)) {
-                *u = (speed(k, i) - before(k, i)) / (self.dt * units.acceleration);
+                *u = (speed(k, i) - before(k, i)) / (self.dt(k) * units.acceleration);
             }
             let on = self.contacts(k);
             let standing = (0..FEET).filter(|f| on.get(*f).copied().unwrap_or(false));

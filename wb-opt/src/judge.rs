@@ -1,5 +1,6 @@
 //! A planned motion in physical units, and how well it meets the problem.
 
+use crate::drive::Line;
 use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::BASE;
@@ -51,6 +52,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
+        self.add_friction(&mid.v, &mut effort);
         let mut forces_w = [Vector3::zeros(); FEET];
         let mut given = mid.forces.iter();
         for (slot, on) in forces_w.iter_mut().zip(self.contacts(k)) {
@@ -87,9 +89,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                     }
                 }
                 Some((from, over)) => {
+                    let dt = self.dt(k.saturating_sub(1));
                     for i in 0..N {
-                        above(abs(from.q[i] + self.dt * over.v[i] - state.q[i]));
-                        above(abs(from.v[i] + self.dt * over.a[i] - state.v[i]));
+                        above(abs(from.q[i] + dt * over.v[i] - state.q[i]));
+                        above(abs(from.v[i] + dt * over.a[i] - state.v[i]));
                     }
                 }
             }
@@ -140,6 +143,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     ) {
         for (i, limit) in self.robot.limits.iter().enumerate().skip(BASE) {
             above(abs(sample.effort[i]) - limit.effort);
+            if let Some(motor) = &self.robot.motors[i] {
+                let line = Line::of(Some(motor));
+                above(abs(sample.effort[i] + line.slope * sample.v[i]) - line.bound);
+            }
             if self.is_landing(k) {
                 above(abs(state.q[i] - self.goal[i]));
                 above(abs(state.v[i]));
@@ -159,8 +166,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         for ((foot, f), on) in feet.zip(self.contacts(k)) {
             let point = sweep.point(&foot.point);
             if on {
-                let acceleration = point.lifted + Vector3::from(rbd_core::GRAVITY.map(T::of));
-                acceleration.iter().for_each(|x| above(abs(*x)));
+                let mut touching = point;
+                touching.arm.z = -foot.radius;
+                let slip = sweep.slip_rate(&touching);
+                slip.iter().for_each(|x| above(abs(*x)));
                 for (x, place) in point.pos.iter().zip(&foot.pos_wf) {
                     above(abs(*x - *place) - self.drift);
                 }

@@ -3,7 +3,9 @@
 
 mod curvature;
 mod differentiate;
+mod drive;
 mod error;
+mod gain;
 mod guess;
 mod judge;
 mod midpoint;
@@ -11,12 +13,14 @@ mod moments;
 mod plan;
 mod problem;
 mod robot;
+mod rolling;
 mod rows;
 mod state;
 mod sweep;
 mod transcription;
 
 pub use error::Error;
+pub use gain::Gains;
 pub use judge::{Judgement, Sample};
 pub use plan::settings;
 pub use problem::{Clearance, Foot, Phase, Problem, Weights};

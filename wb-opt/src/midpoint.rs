@@ -46,7 +46,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     ) -> Midpoint<T, N, FEET> {
         let units = Units::new();
         let layout = self.layout(k);
-        let half = self.dt * T::HALF;
+        let half = self.dt(k) * T::HALF;
         let mut mid = Midpoint {
             q: state.q,
             v: state.v,
@@ -83,6 +83,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let still = PointMotion {
             link: 0,
             pos: Vector3::zeros(),
+            arm: Vector3::zeros(),
             velocity: Vector3::zeros(),
             lifted: Vector3::zeros(),
         };
@@ -95,6 +96,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let standing = self.feet.iter().zip(&on).filter(|(_, on)| **on);
         for (slot, (foot, _)) in contacts.points.iter_mut().zip(standing) {
             *slot = sweep.point(&foot.point);
+            slot.arm.z = -foot.radius;
         }
         contacts
     }

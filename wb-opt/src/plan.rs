@@ -33,9 +33,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Result<Solution<T>, Error> {
         self.check()?;
+        let lines = self.robot.motors.iter().any(Option::is_some);
         let fits = NX >= N.saturating_mul(2)
             && NU >= N.saturating_add(FEET.saturating_mul(3))
-            && NI >= row_capacity(N, FEET, self.clearances.len());
+            && NI >= row_capacity(N, FEET, self.clearances.len(), lines);
         if !fits {
             return Err(Error::Capacity);
         }

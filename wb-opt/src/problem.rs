@@ -13,6 +13,8 @@ pub struct Foot<T: Scalar> {
     pub point: Point<T>,
     /// Where it stands during its contact phases, world, m.
     pub pos_wf: Vector3<T>,
+    /// Radius of the ball around the point with which it touches, and on which it rolls, m; 0 for a point.
+    pub radius: T,
 }
 
 /// A point that keeps a distance from the ground.
@@ -25,12 +27,14 @@ pub struct Clearance<T: Scalar> {
 }
 
 /// One contact phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Phase<const FEET: usize> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase<T, const FEET: usize> {
     /// Feet in contact.
     pub contacts: [bool; FEET],
-    /// Intervals of length `dt`, at least 1.
+    /// Intervals, at least 1.
     pub intervals: usize,
+    /// Length of an interval, s.
+    pub dt: T,
 }
 
 /// Weights of the cost.
@@ -46,7 +50,7 @@ pub struct Weights<T> {
 
 /// Whole-body problem: joint motions, efforts and contact forces over given contact phases.
 ///
-/// Midpoint transcription on intervals of length `dt`: acceleration and contact forces are constant over
+/// Midpoint transcription on intervals of length dt: acceleration and contact forces are constant over
 /// an interval, q⁺ = q + dt q̇ + ½ dt² q̈, q̇⁺ = q̇ + dt q̈, and all nonlinear rows hold at the midpoint
 /// qm = q + ½ dt q̇ + ¼ dt² q̈, vm = q̇ + ½ dt q̈. `N` coordinates, the base's six first.
 #[derive(Clone, Copy, Debug)]
@@ -62,11 +66,9 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     /// Box edge, if the ground has one.
     pub edge: Option<Edge<T>>,
     /// Contact phases in order.
-    pub phases: &'a [Phase<FEET>],
+    pub phases: &'a [Phase<T, FEET>],
     /// Reference configuration at the midpoint of every interval.
     pub reference: &'a [[T; N]],
-    /// Length of an interval, s.
-    pub dt: T,
     /// Configuration at the start, at rest.
     pub start: [T; N],
     /// Configuration wanted at the end.
@@ -75,6 +77,9 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     pub goal_tolerance: [T; BASE],
     /// Over this many last intervals the joints rest at the goal: the pre-landing configuration.
     pub landing_intervals: usize,
+    /// Speed below which the Coulomb friction of a joint fades, rad/s: τ_f = d q̇ + f tanh(q̇/this), with damping d
+    /// and friction f of the robot's limits.
+    pub friction_smoothing: T,
     /// Coulomb coefficient of the friction pyramid.
     pub friction: T,
     /// How far a foot in contact may be from its place, per axis, m.
@@ -102,17 +107,39 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         k >= self.landing_node()
     }
 
-    /// Feet in contact during interval `k`; none at the last node.
+    /// Phase of interval `k`; none at the last node.
     #[must_use]
-    pub fn contacts(&self, k: usize) -> [bool; FEET] {
+    pub fn phase_of(&self, k: usize) -> Option<&Phase<T, FEET>> {
         let mut left = k;
         for phase in self.phases {
             if left < phase.intervals {
-                return phase.contacts;
+                return Some(phase);
             }
             left = left.saturating_sub(phase.intervals);
         }
-        [false; FEET]
+        None
+    }
+
+    /// Feet in contact during interval `k`; none at the last node.
+    #[must_use]
+    pub fn contacts(&self, k: usize) -> [bool; FEET] {
+        self.phase_of(k)
+            .map_or([false; FEET], |phase| phase.contacts)
+    }
+
+    /// Length of interval `k`, s; 0 at the last node.
+    #[must_use]
+    pub fn dt(&self, k: usize) -> T {
+        self.phase_of(k).map_or(T::ZERO, |phase| phase.dt)
+    }
+
+    /// Adds the joints' friction to efforts.
+    #[inline(always)]
+    pub(crate) fn add_friction(&self, v: &[T; N], effort: &mut [T; N]) {
+        for ((effort, limit), v) in effort.iter_mut().zip(&self.robot.limits).zip(v).skip(BASE) {
+            let [friction, _, _] = crate::drive::friction(limit, *v, self.friction_smoothing);
+            *effort += friction;
+        }
     }
 
     /// How far a point is over the ground.
@@ -152,7 +179,6 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             N >= BASE,
             "N: a robot has at least the six coordinates of its base",
         )?;
-        require(positive(self.dt), "dt: must be positive")?;
         require(positive(self.friction), "friction: must be positive")?;
         require(positive(self.drift), "drift: must be positive")?;
         require(self.start.iter().all(finite), "start: must be finite")?;
@@ -168,6 +194,20 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.phases.iter().all(|phase| phase.intervals > 0),
             "phases.intervals: must be at least 1",
+        )?;
+        require(
+            self.phases.iter().all(|phase| positive(phase.dt)),
+            "phases.dt: must be positive",
+        )?;
+        require(
+            self.feet
+                .iter()
+                .all(|foot| foot.radius >= T::ZERO && finite(&foot.radius)),
+            "feet.radius: must not be negative",
+        )?;
+        require(
+            positive(self.friction_smoothing),
+            "friction_smoothing: must be positive",
         )?;
         let total = self
             .phases
@@ -197,6 +237,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         if let Some(edge) = &self.edge {
             require(edge.axis < 2, "edge.axis: must be 0 or 1")?;
             require(positive(edge.width), "edge.width: must be positive")?;
+        }
+        for motor in self.robot.motors.iter().flatten() {
+            require(
+                motor.torque > T::ZERO && motor.no_load_speed > motor.corner_speed,
+                "robot.motors: torque must be positive and no_load_speed above corner_speed",
+            )?;
         }
         for limit in &self.robot.limits {
             require(

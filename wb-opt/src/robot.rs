@@ -1,9 +1,9 @@
 //! A robot whose base is a chain of joints.
 
 use nalgebra::{Matrix3, Vector3};
-use rbd_core::Model;
 use rbd_core::joint::Kind;
 use rbd_core::model::{Body, Frame, JointLimits, Link};
+use rbd_core::{Model, Motor};
 use so3::Scalar;
 
 /// Coordinates of the base: three prismatic and three revolute joints.
@@ -70,8 +70,10 @@ impl EulerOrder {
 pub struct Robot<T, const N: usize> {
     /// Bodies in depth-first order; the sixth is the trunk, the five before it have no mass.
     pub bodies: [Body<T>; N],
-    /// Limits; none on the base.
+    /// Limits and losses; none on the base.
     pub limits: [JointLimits<T>; N],
+    /// Motors, where their torque-speed lines bound the efforts.
+    pub motors: [Option<Motor<T>>; N],
 }
 
 impl<T: Scalar, const N: usize> Robot<T, N> {
@@ -98,7 +100,16 @@ impl<T: Scalar, const N: usize> Robot<T, N> {
             slot.subtree_end = body.subtree_end.saturating_add(BASE);
             *limit = *from;
         }
-        Self { bodies, limits }
+        let mut motors = [None; N];
+        let known = model.motors().into_iter().flatten();
+        for (slot, motor) in motors.iter_mut().skip(BASE).zip(known) {
+            *slot = Some(*motor);
+        }
+        Self {
+            bodies,
+            limits,
+            motors,
+        }
     }
 
     /// Where a link of the model is in this robot.

@@ -3,9 +3,10 @@
 //! State rows: at the first landing node, joints at the goal and their speeds zero; at the last node, the
 //! base near the goal. Control rows: per foot in contact four sides of the friction pyramid and the normal
 //! force. Mixed rows, all at the midpoint: effort on the base (zero), acceleration of the feet in contact
-//! (zero), joint efforts, drift of the feet in contact, clearances, heights of the other feet, and, where
+//! (zero), joint efforts, torque-speed lines if any joint has a motor, drift of the feet in contact, clearances, heights of the other feet, and, where
 //! joints move, their positions and speeds. Rows are in the units of [`crate::state::Units`].
 
+use crate::drive::Line;
 use crate::problem::Problem;
 use crate::robot::BASE;
 use crate::state::Units;
@@ -13,15 +14,20 @@ use ocp_solver::Dims;
 use so3::Scalar;
 
 /// Rows a node can have at most: the least `NI` for `coordinates` coordinates, `feet` feet and a number of
-/// clearances.
+/// clearances, with or without torque-speed lines.
 #[must_use]
-pub const fn row_capacity(coordinates: usize, feet: usize, clearances: usize) -> usize {
+pub const fn row_capacity(
+    coordinates: usize,
+    feet: usize,
+    clearances: usize,
+    lines: bool,
+) -> usize {
     let joints = coordinates.saturating_sub(BASE);
     // Contact: pyramid and normal force, acceleration, drift. The landing rows come instead of limits.
     let contacts = feet.saturating_mul(5 + 3 + 3);
     let middle = BASE
         .saturating_add(contacts)
-        .saturating_add(joints.saturating_mul(3));
+        .saturating_add(joints.saturating_mul(if lines { 4 } else { 3 }));
     middle.saturating_add(clearances)
 }
 
@@ -34,6 +40,8 @@ pub(crate) struct Groups {
     pub(crate) feet: usize,
     /// Joints.
     pub(crate) joints: usize,
+    /// Torque-speed lines.
+    pub(crate) lines: usize,
     pub(crate) clearances: usize,
     /// Feet in the air.
     pub(crate) swing: usize,
@@ -57,6 +65,7 @@ impl Groups {
     const fn mixed(&self) -> usize {
         BASE.saturating_add(self.feet.saturating_mul(6))
             .saturating_add(self.joints)
+            .saturating_add(self.lines)
             .saturating_add(self.clearances)
             .saturating_add(self.swing)
             .saturating_add(self.limited.saturating_mul(2))
@@ -75,6 +84,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             },
             feet: layout.feet,
             joints,
+            lines: if self.robot.motors.iter().any(Option::is_some) {
+                joints
+            } else {
+                0
+            },
             clearances: self.clearances.len(),
             swing: FEET.saturating_sub(layout.feet),
             limited: layout.joints,
@@ -134,6 +148,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let limits = || self.robot.limits.iter().skip(BASE);
         for limit in limits() {
             push(-limit.effort, limit.effort, units.moment);
+        }
+        let lines = self.robot.motors.iter().skip(BASE).take(groups.lines);
+        for line in lines.map(|motor| Line::of(motor.as_ref())) {
+            push(-line.bound, line.bound, units.moment);
         }
         for (foot, _) in self.feet.iter().zip(self.contacts(k)).filter(|(_, on)| *on) {
             for place in &foot.pos_wf {

@@ -106,6 +106,8 @@ impl<T: Scalar> Joint<T> {
 pub(crate) struct PointMotion<T: Scalar> {
     pub(crate) link: usize,
     pub(crate) pos: Vector3<T>,
+    /// From the point to where its force acts: down by the radius of a ball foot.
+    pub(crate) arm: Vector3<T>,
     pub(crate) velocity: Vector3<T>,
     /// Acceleration less gravity.
     pub(crate) lifted: Vector3<T>,
@@ -179,9 +181,17 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
         PointMotion {
             link: point.link,
             pos,
+            arm: Vector3::zeros(),
             velocity,
             lifted: at_point(&body.acceleration, &pos) + body.velocity.angular.cross(&velocity),
         }
+    }
+
+    /// Acceleration of the material point at the contact as far as it does not come from rolling: a + α × arm.
+    #[inline(always)]
+    pub(crate) fn slip_rate(&self, point: &PointMotion<T>) -> Vector3<T> {
+        let alpha = &self.body(point.link).acceleration.angular;
+        point.lifted + Vector3::from(GRAVITY.map(T::of)) + alpha.cross(&point.arm)
     }
 
     /// The joint `i` and all its ancestors, from the tip to the base.
@@ -206,7 +216,7 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
                 + self.bodies[i].rotor_inertia * qdd[i];
         }
         for (point, force) in contacts.active() {
-            let wrench = Force::new(*force, point.pos.cross(force));
+            let wrench = Force::new(*force, (point.pos + point.arm).cross(force));
             for k in self.path(point.link) {
                 effort[k] -= self.joints[k].axis.dot(&wrench);
             }
@@ -248,9 +258,10 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
                 out.by_v[j][k] = other.rate.dot(&by_a) * T::TWO + other.axis.angular.dot(&by_v);
             }
         }
-        for (f, (point, _)) in contacts.active().enumerate() {
+        for (f, (point, force)) in contacts.active().enumerate() {
+            self.differentiate_couple(point, force, out);
             for k in self.path(point.link) {
-                let column = -at_point(&self.joints[k].axis, &point.pos);
+                let column = -at_point(&self.joints[k].axis, &(point.pos + point.arm));
                 if let Some(slot) = out.by_force[k].get_mut(f) {
                     *slot = column.into();
                 }

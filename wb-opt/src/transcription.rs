@@ -1,6 +1,7 @@
 //! The whole-body problem as an optimal-control problem for `ocp-solver`.
 
 use crate::differentiate::Interval;
+use crate::drive::Line;
 use crate::midpoint::{Gradient, Map, Midpoint};
 use crate::problem::Problem;
 use crate::robot::{BASE, Point};
@@ -49,13 +50,16 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             push(*value / units.effort(i));
         }
         for (point, _) in contacts.active() {
-            let true_acceleration = point.lifted + Vector3::from(rbd_core::GRAVITY.map(T::of));
-            for value in &true_acceleration {
+            for value in &sweep.slip_rate(point) {
                 push(*value / units.foot_acceleration);
             }
         }
         for value in effort.iter().skip(BASE) {
             push(*value / units.moment);
+        }
+        let drives = effort.iter().zip(&mid.v).zip(&self.robot.motors);
+        for ((effort, v), motor) in drives.skip(BASE).take(self.groups(k).lines) {
+            push((*effort + Line::of(motor.as_ref()).slope * *v) / units.moment);
         }
         for (point, _) in contacts.active() {
             for value in &point.pos {
@@ -146,9 +150,10 @@ where
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
+        self.add_friction(&mid.v, &mut effort);
         values.cost = self.interval_cost(k, &mid, &effort);
 
-        let dt = self.dt;
+        let dt = self.dt(k);
         let of_q = state.q.iter().zip(&mid.v).zip(&next.q);
         let of_q = of_q.map(|((q, v), to)| *q + dt * *v - *to);
         let of_v = state.v.iter().zip(&mid.a).zip(&next.v);
@@ -184,7 +189,7 @@ where
             return;
         }
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let map = Map::new(self.dt, mid.layout);
+        let map = Map::new(self.dt(k), mid.layout);
         self.differentiate_linear(k, &mid, d);
         let sweep = Sweep::new(&self.robot.bodies, &mid.q, &mid.v, &mid.a);
         let contacts = self.contact_motions(k, &sweep, &mid);
@@ -232,7 +237,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
         let units = Units::new();
-        let dt = self.dt;
+        let dt = self.dt(k);
         let set = |column: Option<&mut [T; NX]>, row: usize, value: T| {
             if let Some(slot) = column.and_then(|column| column.get_mut(row)) {
                 *slot = value;

@@ -3,11 +3,12 @@
 
 mod common;
 
+use a1_model::A1Geared;
 use common::{FEET, N, NI, NU, NX, Noise, anywhere, data, jump};
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
 use proptest::prelude::*;
 use srb_opt::Edge;
-use wb_opt::{EulerOrder, Problem, State};
+use wb_opt::{EulerOrder, Problem, Robot, State};
 
 const ORDERS: [EulerOrder; 2] = [EulerOrder::Zyx, EulerOrder::Zxy];
 
@@ -33,6 +34,23 @@ proptest! {
         let data = data();
         let mut problem = jump(&data, ORDERS[order]);
         problem.edge = Some(Edge { drop: 0.3, axis: 0, sign: 1.0, distance: 0.1, width: 0.3 });
+        let worst = hessian_error(&problem, seed, k);
+        prop_assert!(worst < 2e-5, "{worst}");
+    }
+
+    #[test]
+    fn of_the_geared_robot_on_rolling_feet(seed in 0u32..1_000_000, k in 0usize..34, order in 0usize..2) {
+        let data = data();
+        let mut problem = jump(&data, ORDERS[order]);
+        problem.robot = Robot::on_euler_base(&A1Geared, ORDERS[order]);
+        problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
+        let mut noise = Noise(seed);
+        let (state, control) = anywhere(&mut noise);
+        let (next, _) = anywhere(&mut noise);
+        let errors = derivative_errors::<f64, _, NX, NU, NI>(
+            &problem, k, &state, &control, Some(&next), 1e-6,
+        );
+        prop_assert!(errors.worst() < 2e-6, "{errors:?}");
         let worst = hessian_error(&problem, seed, k);
         prop_assert!(worst < 2e-5, "{worst}");
     }

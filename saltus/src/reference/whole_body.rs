@@ -19,6 +19,8 @@ const LANDING_INTERVALS: usize = 5;
 const KNEE_CLEARANCE: f64 = 0.02;
 const SWING_HEIGHT: f64 = -0.01;
 const DRIFT: f64 = 0.01;
+/// The reference robot has no joint friction, so any value does.
+const FRICTION_SMOOTHING: f64 = 1.0;
 const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 const WEIGHTS: Weights<f64> = Weights {
     position: 1.0,
@@ -72,7 +74,7 @@ pub(crate) struct Data {
     robot: Robot<f64, N>,
     feet: [Foot<f64>; FEET],
     clearances: Vec<Clearance<f64>>,
-    phases: Vec<Phase<FEET>>,
+    phases: Vec<Phase<f64, FEET>>,
     /// References of the intervals.
     reference: Vec<[f64; N]>,
     /// References of the nodes.
@@ -90,7 +92,7 @@ pub(crate) struct Data {
 impl Data {
     /// Durations of the phases, s.
     pub(crate) fn durations(&self) -> Vec<f64> {
-        let seconds = |phase: &Phase<FEET>| DT * phase.intervals as f64;
+        let seconds = |phase: &Phase<f64, FEET>| DT * phase.intervals as f64;
         self.phases.iter().map(seconds).collect()
     }
 
@@ -104,11 +106,11 @@ impl Data {
             edge: self.edge,
             phases: &self.phases,
             reference: &self.reference,
-            dt: DT,
             start: self.start,
             goal: self.goal,
             goal_tolerance: GOAL_TOLERANCE,
             landing_intervals: LANDING_INTERVALS,
+            friction_smoothing: FRICTION_SMOOTHING,
             friction: self.friction,
             drift: DRIFT,
             weights: WEIGHTS,
@@ -145,13 +147,14 @@ impl File {
             }
         };
         let track = Track::new(name, &t.n, srb, order)?;
-        let phases: Vec<Phase<FEET>> = shared
+        let phases: Vec<Phase<f64, FEET>> = shared
             .used_phases()
             .iter()
             .zip(&srb.sol.durations)
             .map(|(phase, duration)| Phase {
                 contacts: phase.contacts,
                 intervals: (duration / DT).round_ties_even().max(1.0) as usize,
+                dt: DT,
             })
             .collect();
         // The clock of the reference is stretched phase by phase onto the intervals.
@@ -193,6 +196,7 @@ impl File {
         let foot = |i: usize| Foot {
             point: Robot::<f64, N>::point(&frames[i]),
             pos_wf: Vector3::from(c.feet0[i]),
+            radius: 0.0,
         };
         let corner = |offset: &[f64; 3]| Clearance {
             point: Point {

@@ -8,7 +8,7 @@ pub(crate) const N: usize = 18;
 pub(crate) const FEET: usize = 4;
 pub(crate) const NX: usize = 36;
 pub(crate) const NU: usize = 30;
-pub(crate) const NI: usize = 98;
+pub(crate) const NI: usize = 110;
 
 /// Numbers from a small generator, uniform in ±1.
 pub(crate) struct Noise(pub(crate) u32);
@@ -23,7 +23,7 @@ impl Noise {
 /// What the problem borrows.
 pub(crate) struct Data {
     pub(crate) clearances: [Clearance<f64>; 12],
-    pub(crate) phases: [Phase<FEET>; 3],
+    pub(crate) phases: [Phase<f64, FEET>; 3],
     pub(crate) reference: Vec<[f64; N]>,
 }
 
@@ -54,16 +54,17 @@ pub(crate) fn data() -> Data {
             height: 0.03,
         }
     };
-    let phase = |contacts, intervals| Phase {
+    let phase = |contacts, intervals, dt| Phase {
         contacts,
         intervals,
+        dt,
     };
     Data {
         clearances: core::array::from_fn(|i| if i < 8 { corner(i) } else { knee(i - 8) }),
         phases: [
-            phase([true; 4], 12),
-            phase([false, false, true, true], 8),
-            phase([false; 4], 14),
+            phase([true; 4], 12, 0.01),
+            phase([false, false, true, true], 8, 0.012),
+            phase([false; 4], 14, 0.005),
         ],
         reference: vec![crouch(); 34],
     }
@@ -87,17 +88,18 @@ pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> 
                 if i % 2 == 0 { 0.1308 } else { -0.1308 },
                 0.0,
             ),
+            radius: 0.0,
         }),
         clearances: &data.clearances,
         swing_height: -0.01,
         edge: None,
         phases: &data.phases,
         reference: &data.reference,
-        dt: 0.01,
         start: crouch(),
         goal,
         goal_tolerance: [0.02, 0.02, 0.02, 0.05, 0.05, 0.05],
         landing_intervals: 5,
+        friction_smoothing: 0.5,
         friction: 0.6,
         drift: 0.01,
         weights: Weights {

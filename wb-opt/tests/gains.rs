@@ -1,0 +1,65 @@
+//! Gains against differences of the efforts, with controls that respond to the state.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use a1_model::A1Geared;
+use common::{N, NU, NX, Noise, anywhere, data, jump};
+use ocp_solver::Problem as Ocp;
+use wb_opt::{EulerOrder, Robot};
+
+#[test]
+fn efforts_and_forces_change_as_the_gains_say() {
+    let data = data();
+    let mut problem = jump(&data, EulerOrder::Zyx);
+    problem.robot = Robot::on_euler_base(&A1Geared, EulerOrder::Zyx);
+    problem.feet.iter_mut().for_each(|foot| foot.radius = 0.02);
+    let mut noise = Noise(11);
+    for k in [3, 15, 22, 31] {
+        let (state, control) = anywhere(&mut noise);
+        let gain: [[f64; NX]; NU] =
+            core::array::from_fn(|_| core::array::from_fn(|_| noise.next()));
+        let gains = problem.gains(k, &state, &control, &gain);
+        let controls = Ocp::<f64, NX, NU, { common::NI }>::dims(&problem, k).controls;
+        let h = 1e-6;
+        for j in 0..2 * N {
+            let moved = |h: f64| {
+                let (mut x, mut u) = (state, control);
+                // The solver's tangent coordinate of a rate is in units of 5 rad/s.
+                let mut step = [0.0; NX];
+                match j.checked_sub(N) {
+                    None => (x.q[j], step[j]) = (x.q[j] + h, h),
+                    Some(i) => (x.v[i], step[j]) = (x.v[i] + h, h / 5.0),
+                }
+                for (u, row) in u.iter_mut().zip(&gain).take(controls) {
+                    *u += row.iter().zip(&step).map(|(k, d)| k * d).sum::<f64>();
+                }
+                problem.sample(k, &x, &u)
+            };
+            let (plus, minus) = (moved(h), moved(-h));
+            for i in 6..N {
+                let found = (plus.effort[i] - minus.effort[i]) / (2.0 * h);
+                let wanted = match j.checked_sub(N) {
+                    None => gains.effort_by_q[i][j],
+                    Some(j) => gains.effort_by_v[i][j],
+                };
+                assert!(
+                    (found - wanted).abs() < 1e-5 * (1.0 + wanted.abs()),
+                    "{k} {i} {j}"
+                );
+            }
+            for foot in 0..4 {
+                for c in 0..3 {
+                    let (plus, minus) = (plus.forces_w[foot][c], minus.forces_w[foot][c]);
+                    let wanted = match j.checked_sub(N) {
+                        None => gains.force_by_q[foot][c][j],
+                        Some(j) => gains.force_by_v[foot][c][j],
+                    };
+                    assert!(
+                        ((plus - minus) / (2.0 * h) - wanted).abs() < 1e-5 * (1.0 + wanted.abs())
+                    );
+                }
+            }
+        }
+    }
+}
