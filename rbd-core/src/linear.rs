@@ -1,9 +1,10 @@
 //! Small dense factorisations on fixed-size arrays.
 
+use nalgebra::Matrix3;
 use so3::Scalar;
 
-/// Factors a symmetric positive definite matrix in place into L D Lᵀ (unit L below the diagonal, D on
-/// it); only the lower triangle is read.
+/// Factors a symmetric positive definite matrix in place into L D Lᵀ: D on the diagonal, row j of Lᵀ to the right
+/// of entry (j, j). Only the upper triangle is read; what lies below the diagonal is overwritten.
 ///
 /// A pivot at or below `EPSILON` times its original diagonal entry, or NaN, is replaced by 0: the
 /// direction is treated as infinitely stiff by [`ldl_back_substitute`].
@@ -13,26 +14,36 @@ use so3::Scalar;
     reason = "indices are those of the textbook formula"
 )]
 pub fn ldl_factor<T: Scalar, const N: usize>(m: &mut [[T; N]; N]) {
+    let mut original = [T::ZERO; N];
     for j in 0..N {
-        let original = m[j][j];
-        let mut work = [T::ZERO; N];
+        original[j] = m[j][j];
+    }
+    for j in 0..N {
+        // Row by row, whole rows: the sum stays in registers, and its length is a constant. Left of the diagonal it
+        // is not used.
+        let mut row = m[j];
         for k in 0..j {
-            work[k] = m[j][k] * m[k][k];
-        }
-        let mut pivot = original;
-        for k in 0..j {
-            pivot -= m[j][k] * work[k];
-        }
-        let good = pivot > original * T::EPSILON;
-        m[j][j] = if good { pivot } else { T::ZERO };
-        let inverse = if good { T::ONE / pivot } else { T::ZERO };
-        for i in j + 1..N {
-            let mut x = m[i][j];
-            for k in 0..j {
-                x -= m[i][k] * work[k];
+            let x = m[k][j] * m[k][k];
+            for (y, &z) in row.iter_mut().zip(&m[k]) {
+                *y -= x * z;
             }
-            m[i][j] = x * inverse;
         }
+        let (pivot, inverse) = sound_pivot(row[j], original[j]);
+        for x in &mut row {
+            *x *= inverse;
+        }
+        row[j] = pivot;
+        m[j] = row;
+    }
+}
+
+/// A pivot and its inverse, both 0 where rounding has eaten it up.
+#[inline(always)]
+fn sound_pivot<T: Scalar>(pivot: T, original: T) -> (T, T) {
+    if pivot > original * T::EPSILON {
+        (pivot, T::ONE / pivot)
+    } else {
+        (T::ZERO, T::ZERO)
     }
 }
 
@@ -41,9 +52,9 @@ pub fn ldl_factor<T: Scalar, const N: usize>(m: &mut [[T; N]; N]) {
 #[must_use]
 pub fn ldl_back_substitute<T: Scalar, const N: usize>(m: &[[T; N]; N], b: [T; N]) -> [T; N] {
     let mut x = b;
-    for i in 0..N {
-        for k in 0..i {
-            x[i] -= m[i][k] * x[k];
+    for k in 0..N {
+        for i in k + 1..N {
+            x[i] -= m[k][i] * x[k];
         }
     }
     for i in 0..N {
@@ -54,8 +65,9 @@ pub fn ldl_back_substitute<T: Scalar, const N: usize>(m: &[[T; N]; N], b: [T; N]
         };
     }
     for i in (0..N).rev() {
-        for k in i + 1..N {
-            x[i] -= m[k][i] * x[k];
+        // The newest component last, so that the sum does not wait for it.
+        for k in (i + 1..N).rev() {
+            x[i] -= m[i][k] * x[k];
         }
     }
     x
@@ -67,4 +79,56 @@ pub fn ldl_back_substitute<T: Scalar, const N: usize>(m: &[[T; N]; N], b: [T; N]
 pub fn ldl_solve<T: Scalar, const N: usize>(m: &mut [[T; N]; N], b: [T; N]) -> [T; N] {
     ldl_factor(m);
     ldl_back_substitute(m, b)
+}
+
+/// Inverse of a symmetric positive definite 6 × 6 matrix by its 3 × 3 blocks.
+///
+/// With the blocks [P Q; Qᵀ S], G = P⁻¹ Q and the Schur complement C = S − Qᵀ G:
+/// M⁻¹ = [P⁻¹ + G C⁻¹ Gᵀ, −G C⁻¹; −C⁻¹ Gᵀ, C⁻¹]. Two chains of three divisions instead of one of six. A pivot that
+/// is lost to rounding counts as infinitely stiff, as in [`ldl_factor`]. Only the upper triangle is read.
+#[inline]
+#[must_use]
+pub fn spd_inverse_6<T: Scalar>(m: &[[T; 6]; 6]) -> [[T; 6]; 6] {
+    let block = |r: usize, c: usize| Matrix3::from_fn(|i, j| m[r + i][c + j]);
+    let (p, q, s) = (block(0, 0), block(0, 3), block(3, 3));
+    let p_inverse = spd_inverse_3(&p, &p);
+    let g = p_inverse * q;
+    let c_inverse = spd_inverse_3(&(s - q.tr_mul(&g)), &s);
+    let cross = g * c_inverse;
+    let top = p_inverse + cross * g.transpose();
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| match (i < 3, j < 3) {
+            (true, true) => top[(i.min(j), i.max(j))],
+            (true, false) => -cross[(i, j - 3)],
+            (false, true) => -cross[(j, i - 3)],
+            (false, false) => c_inverse[(i - 3, j - 3)],
+        })
+    })
+}
+
+/// Inverse of a symmetric positive definite 3 × 3 matrix, W D⁻¹ Wᵀ with W = L⁻ᵀ; `original` has the diagonal that
+/// the pivots are judged by.
+#[inline(always)]
+fn spd_inverse_3<T: Scalar>(m: &Matrix3<T>, original: &Matrix3<T>) -> Matrix3<T> {
+    let (_, a) = sound_pivot(m.m11, original.m11);
+    let (l21, l31) = (m.m12 * a, m.m13 * a);
+    let (_, b) = sound_pivot(m.m22 - m.m12 * l21, original.m22);
+    let rest = m.m23 - m.m13 * l21;
+    let l32 = rest * b;
+    let (_, c) = sound_pivot((m.m33 - m.m13 * l31) - rest * l32, original.m33);
+    // Rows of L⁻¹: (1, 0, 0), (−l21, 1, 0), (w, −l32, 1).
+    let w = l21 * l32 - l31;
+    let (wc, lc) = (w * c, l32 * c);
+    let (xy, xz, yz) = (-(l21 * b) - wc * l32, wc, -lc);
+    Matrix3::new(
+        (a + l21 * l21 * b) + w * wc,
+        xy,
+        xz,
+        xy,
+        b + l32 * lc,
+        yz,
+        xz,
+        yz,
+        c,
+    )
 }

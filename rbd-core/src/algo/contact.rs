@@ -13,8 +13,10 @@
 use nalgebra::Vector3;
 use so3::{Scalar, math};
 
+use super::{at, put};
+use super::blocks::add_scaled;
 use super::jacobian::FrameJacobian;
-use super::minv::MassFactors;
+use super::minv::{Columns, MassFactors};
 use crate::linear::{ldl_back_substitute, ldl_factor};
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Tangent};
@@ -39,23 +41,34 @@ impl<T: Scalar, const N: usize> ContactRow<T, N> {
     /// velocity. `bias` is the classical acceleration of the point at ν̇ = 0, in the same axes.
     #[must_use]
     pub fn point(jacobian: &FrameJacobian<T, N>, bias: &Vector3<T>) -> [Self; 3] {
-        let bias = Motion::new(*bias, Vector3::zeros());
-        let [x, y, z, ..] = Self::surface(jacobian, &bias);
-        [x, y, z]
+        let [x, y, z] = (*bias).into();
+        Self::rows(jacobian, [x, y, z])
     }
 
     /// The six rows of a surface contact, linear first: its frame keeps its velocity. `bias` is the
     /// classical acceleration of the frame at ν̇ = 0.
     #[must_use]
     pub fn surface(jacobian: &FrameJacobian<T, N>, bias: &Motion<T>) -> [Self; 6] {
-        let mut rows = [Self::ZERO; 6];
-        for ((i, row), bias) in rows.iter_mut().enumerate().zip(bias.to_array()) {
-            let mut unit = [T::ZERO; 6];
-            super::put(&mut unit, i, T::ONE);
-            *row = Self {
-                gradient: jacobian.tr_mul(&Force::from_array(unit)),
-                bias,
-            };
+        Self::rows(jacobian, bias.to_array())
+    }
+
+    /// The first `R` rows of a Jacobian.
+    #[inline(always)]
+    fn rows<const R: usize>(jacobian: &FrameJacobian<T, N>, bias: [T; R]) -> [Self; R] {
+        let mut rows = bias.map(|bias| Self { bias, ..Self::ZERO });
+        let mut base = [[T::ZERO; 6]; R];
+        for (k, column) in jacobian.base.iter().enumerate() {
+            for (to, x) in base.iter_mut().zip(column.to_array()) {
+                put(to, k, x);
+            }
+        }
+        for (row, base) in rows.iter_mut().zip(base) {
+            row.gradient.base = Force::from_array(base);
+        }
+        for (j, column) in jacobian.joints.iter().enumerate() {
+            for (row, x) in rows.iter_mut().zip(column.to_array()) {
+                put(&mut row.gradient.joints, j, x);
+            }
         }
         rows
     }
@@ -64,8 +77,8 @@ impl<T: Scalar, const N: usize> ContactRow<T, N> {
 /// Scratch for up to `K` rows, all zero before use.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactWorkspace<T, const N: usize, const K: usize> {
-    /// M⁻¹ Jᵀ.
-    answers: [Tangent<T, N>; K],
+    /// Jᵀ by rows: one column per constraint, so that all of them are solved for at once.
+    columns: Columns<T, N, K>,
     /// W = J M⁻¹ Jᵀ.
     delassus: [[T; K]; K],
     /// Factors of W + μ 1.
@@ -77,7 +90,7 @@ impl<T: Scalar, const N: usize, const K: usize> ContactWorkspace<T, N, K> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            answers: [Tangent::ZERO; K],
+            columns: Columns::ZERO,
             delassus: [[T::ZERO; K]; K],
             factors: [[T::ZERO; K]; K],
         }
@@ -106,8 +119,8 @@ const STEPS: usize = 12;
 
 /// Forward dynamics under contact, paper A eq. (4) and (5).
 ///
-/// `free` is the acceleration without contact, for example from [`aba`](crate::aba). Rows beyond `K` are
-/// ignored.
+/// `free` is the acceleration without contact: from [`aba`](crate::aba) or, since the mass matrix is factored already,
+/// [`MassFactors::solve`] of the effort less [`nonlinear_effects`](crate::nonlinear_effects). Rows beyond `K` are ignored.
 #[must_use]
 pub fn contact_dynamics<T: Scalar, const N: usize, const K: usize>(
     mass: &MassFactors<T, N>,
@@ -155,17 +168,14 @@ fn project<T: Scalar, const N: usize, const K: usize>(
     wanted: impl Fn(&ContactRow<T, N>, &Tangent<T, N>) -> T,
     ws: &mut ContactWorkspace<T, N, K>,
 ) -> ContactSolution<T, N, K> {
-    for (answer, row) in ws.answers.iter_mut().zip(rows) {
-        *answer = mass.solve(&row.gradient);
+    let rows = rows.get(..K).unwrap_or(rows);
+    ws.columns = Columns::ZERO;
+    for (i, row) in rows.iter().enumerate() {
+        ws.columns.set(i, &row.gradient);
     }
-    let mut largest = T::ZERO;
-    ws.delassus = [[T::ZERO; K]; K];
-    for ((i, to), row) in ws.delassus.iter_mut().enumerate().zip(rows) {
-        for (x, answer) in to.iter_mut().zip(&ws.answers).take(rows.len()) {
-            *x = answer.dot(&row.gradient);
-        }
-        largest = math::max(largest, super::at(to, i));
-    }
+    mass.delassus(&mut ws.columns, &mut ws.delassus);
+    let diagonal = ws.delassus.iter().enumerate().map(|(i, row)| at(row, i));
+    let largest = diagonal.fold(T::ZERO, |m, x| math::max(m, x));
     let damping = largest * math::sqrt(T::EPSILON);
     ws.factors = ws.delassus;
     for (i, row) in ws.factors.iter_mut().enumerate() {
@@ -190,28 +200,32 @@ fn project<T: Scalar, const N: usize, const K: usize>(
     let mut forces = [T::ZERO; K];
     for _ in 0..STEPS {
         let mut rest = goal;
-        for (r, row) in rest.iter_mut().zip(&ws.delassus) {
-            for (&w, &f) in row.iter().zip(&forces) {
-                *r -= w * f;
-            }
+        // W is symmetric: by columns, all rows at once.
+        for (column, &f) in ws.delassus.iter().zip(&forces) {
+            add_scaled(&mut rest, -f, column);
         }
         if rest.iter().all(|&r| math::abs(r) <= enough) {
             break;
         }
         let step = ldl_back_substitute(&ws.factors, rest);
+        let (mut longest, mut size) = (T::ZERO, T::ZERO);
         for (f, dx) in forces.iter_mut().zip(step) {
             *f += dx;
+            longest = math::max(longest, math::abs(dx));
+            size = math::max(size, math::abs(*f));
+        }
+        // What rounding leaves of W λ is no reason for another step.
+        if longest <= size * T::EPSILON * T::of(16.0) {
+            break;
         }
     }
 
-    let mut motion = *free;
-    for (answer, &f) in ws.answers.iter().zip(&forces).take(rows.len()) {
-        motion = motion + *answer * f;
+    let mut push = Effort::ZERO;
+    for (row, &f) in rows.iter().zip(&forces) {
+        push = push + row.gradient * f;
     }
-    let rests = rows
-        .iter()
-        .take(K)
-        .map(|row| math::abs(wanted(row, &motion)));
+    let motion = *free + mass.solve(&push);
+    let rests = rows.iter().map(|row| math::abs(wanted(row, &motion)));
     let residual = rests.fold(T::ZERO, |m, x| math::max(m, x));
     ContactSolution {
         motion,

@@ -5,7 +5,7 @@
 //! each joint j it passes is M_ij = S_j · F_i, and what arrives at the base is column i of the coupling
 //! between base and joints (Featherstone 2008, chapter 6).
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, Vector3};
 use so3::Scalar;
 
 use super::{at, place, put};
@@ -94,8 +94,8 @@ impl<T: Scalar, const N: usize> MassMatrix<T, N> {
 
 struct Crba<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
-    /// F_i on its way to the base.
-    forces: &'a mut [Force<T>; N],
+    /// F_i on its way to the base, by components, so that several walk at once.
+    forces: [[T; N]; 6],
     joints: &'a mut [[T; N]; N],
 }
 
@@ -120,26 +120,78 @@ impl<T: Scalar, const N: usize> Fold<T> for Crba<'_, T, N> {
         let composite = here.body.inertia() + children;
         let i = here.index;
         let sign = here.body.sign;
-        put(self.forces, i, unit_force::<J, T>(&composite) * sign);
-        for j in i..here.end {
-            let force = at(self.forces, j);
-            let entry = sign
-                * J::component(if J::KIND.is_revolute() {
-                    &force.angular
-                } else {
-                    &force.linear
-                });
-            if j == i {
-                set(self.joints, i, i, entry + here.body.rotor_inertia);
-            } else {
-                set(self.joints, i, j, entry);
-                set(self.joints, j, i, entry);
-            }
-            let linear = rotation.up(&force.linear);
-            let angular = rotation.up(&force.angular) + offset.cross(&linear);
-            put(self.forces, j, Force { linear, angular });
+        let own = unit_force::<J, T>(&composite) * sign;
+        for (row, x) in self.forces.iter_mut().zip(own.to_array()) {
+            put(row, i, x);
+        }
+        let mut j = i;
+        while j + LANES <= here.end {
+            self.pass::<J, LANES>(i, j, sign, &rotation, &offset);
+            j += LANES;
+        }
+        while j < here.end {
+            self.pass::<J, 1>(i, j, sign, &rotation, &offset);
+            j += 1;
+        }
+        if let Some(x) = self.joints.get_mut(i).and_then(|row| row.get_mut(i)) {
+            *x += here.body.rotor_inertia;
         }
         composite.assembled_up(&rotation, &offset)
+    }
+}
+
+/// Forces that pass a joint at once, where that many remain.
+const LANES: usize = 4;
+
+impl<T: Scalar, const N: usize> Crba<'_, T, N> {
+    /// Takes the forces of joints `j .. j + L` past joint `i`: their components on it, and they themselves to the
+    /// parent's frame.
+    #[inline(always)]
+    fn pass<J: JointKind, const L: usize>(
+        &mut self,
+        i: usize,
+        j: usize,
+        sign: T,
+        rotation: &J::Rotation<T>,
+        offset: &Vector3<T>,
+    ) {
+        let mut force = [[T::ZERO; L]; 6];
+        for (to, from) in force.iter_mut().zip(&self.forces) {
+            if let Some(from) = from.get(j..).and_then(|rest| rest.first_chunk()) {
+                *to = *from;
+            }
+        }
+        let mut entries = [T::ZERO; L];
+        let [fx, fy, fz, mx, my, mz] = &mut force;
+        for l in 0..L {
+            let linear = Vector3::new(fx[l], fy[l], fz[l]);
+            let angular = Vector3::new(mx[l], my[l], mz[l]);
+            let part = if J::KIND.is_revolute() {
+                &angular
+            } else {
+                &linear
+            };
+            entries[l] = sign * J::component(part);
+            let linear = rotation.up(&linear);
+            let angular = rotation.up(&angular) + offset.cross(&linear);
+            [fx[l], fy[l], fz[l]] = linear.into();
+            [mx[l], my[l], mz[l]] = angular.into();
+        }
+        for (to, from) in self.forces.iter_mut().zip(&force) {
+            if let Some(to) = to.get_mut(j..).and_then(|rest| rest.first_chunk_mut()) {
+                *to = *from;
+            }
+        }
+        if let Some(to) = self
+            .joints
+            .get_mut(i)
+            .and_then(|row| row.get_mut(j..)?.first_chunk_mut())
+        {
+            *to = entries;
+        }
+        for (row, &x) in self.joints.iter_mut().skip(j).zip(&entries) {
+            put(row, i, x);
+        }
     }
 }
 
@@ -153,16 +205,9 @@ pub(crate) fn unit_force<J: JointKind, T: Scalar>(body: &Inertia<T>) -> Force<T>
         }
     } else {
         Force {
-            linear: J::along_axis(nalgebra::Vector3::zeros(), body.mass),
+            linear: J::along_axis(Vector3::zeros(), body.mass),
             angular: -J::axis_cross(&body.first),
         }
-    }
-}
-
-#[inline(always)]
-fn set<T: Copy, const N: usize>(m: &mut [[T; N]; N], i: usize, j: usize, x: T) {
-    if let Some(slot) = m.get_mut(i).and_then(|row| row.get_mut(j)) {
-        *slot = x;
     }
 }
 
@@ -172,7 +217,7 @@ impl<T: Scalar> Inertia<T> {
     pub(crate) fn assembled_up<R: JointRotation<T>>(
         &self,
         rotation: &R,
-        offset: &nalgebra::Vector3<T>,
+        offset: &Vector3<T>,
     ) -> Self {
         self.assembled(
             rotation.up(&self.first),
@@ -195,13 +240,18 @@ pub fn crba<T: Scalar, M: Tree<T, N>, const N: usize>(
         coupling,
         joints,
     } = out;
-    let children = model.fold(
-        &mut Crba {
-            posture,
-            forces: coupling,
-            joints,
-        },
-        &Nothing,
-    );
+    let mut fold = Crba {
+        posture,
+        forces: [[T::ZERO; N]; 6],
+        joints,
+    };
+    let children = model.fold(&mut fold, &Nothing);
+    let [fx, fy, fz, mx, my, mz] = &fold.forces;
+    for (i, column) in coupling.iter_mut().enumerate() {
+        *column = Force {
+            linear: Vector3::new(at(fx, i), at(fy, i), at(fz, i)),
+            angular: Vector3::new(at(mx, i), at(my, i), at(mz, i)),
+        };
+    }
     *base = model.base().inertia() + children;
 }

@@ -19,7 +19,7 @@ use so3::Scalar;
 use super::blocks::{BlockMatrix, add_scaled};
 use super::crba::MassMatrix;
 use super::{at, put};
-use crate::linear::ldl_factor;
+use crate::linear::spd_inverse_6;
 use crate::model::{BaseKind, Link};
 use crate::spatial::{ArticulatedInertia, Motion};
 use crate::state::{Effort, Tangent};
@@ -137,20 +137,25 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         // Y = L⁻ᵀ Cᵀ, Ã = A − Yᵀ D⁻¹ Y, X = L⁻¹ D⁻¹ Y.
         let mut rows = self.coupling;
         self.inward(&mut rows);
-        let mut base = ArticulatedInertia::from(mass.base).to_rows();
-        for (row, &pivot) in rows.iter_mut().zip(&self.pivots) {
-            let mut scaled = *row;
-            for x in &mut scaled {
+        let mut scaled = rows;
+        for (row, &pivot) in scaled.iter_mut().zip(&self.pivots) {
+            for x in row {
                 *x *= pivot;
             }
-            for (to, &x) in base.iter_mut().zip(row.iter()) {
-                add_scaled(to, -x, &scaled);
-            }
-            *row = scaled;
         }
+        let mut base = ArticulatedInertia::from(mass.base).to_rows();
+        for (k, to) in base.iter_mut().enumerate() {
+            // The sum runs to its end in registers, a whole row at once.
+            let mut sum = *to;
+            for (row, scaled) in rows.iter().zip(&scaled) {
+                add_scaled(&mut sum, -at(row, k), scaled);
+            }
+            *to = sum;
+        }
+        rows = scaled;
         self.outward(&mut rows);
         self.coupling = rows;
-        self.base = inverted(base);
+        self.base = spd_inverse_6(&base);
     }
 
     /// b ← L⁻ᵀ b for every column of b, rows of length K.
@@ -240,12 +245,44 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         self.solve_joints(&mut b.joints_base);
         self.solve_joints(&mut b.joints);
         if self.floating {
-            for (row, x) in b.joints_base.iter_mut().zip(&self.coupling) {
-                subtract_rows(row, x, &b.base);
+            subtract_product(&mut b.joints_base, &self.coupling, &b.base);
+            subtract_product(&mut b.joints, &self.coupling, &b.base_joints);
+        }
+    }
+
+    /// W = B ᵀ M⁻¹ B for efforts in columns, which are used up.
+    ///
+    /// With z = L⁻ᵀ b_J and r = b_b − Xᵀ b_J, W = zᵀ D⁻¹ z + rᵀ Ã⁻¹ r: half a solve. Contacts touch few joints each, so
+    /// zeros are skipped.
+    #[inline(always)]
+    pub(crate) fn delassus<const K: usize>(&self, b: &mut Columns<T, N, K>, w: &mut [[T; K]; K]) {
+        // Every sum runs to its end in registers, whole rows at once.
+        let mut answers = [[T::ZERO; K]; 6];
+        if self.floating {
+            for (k, row) in b.base.iter_mut().enumerate() {
+                for (x, from) in self.coupling.iter().zip(&b.joints) {
+                    add_scaled(row, -at(x, k), from);
+                }
             }
-            for (row, x) in b.joints.iter_mut().zip(&self.coupling) {
-                subtract_rows(row, x, &b.base_joints);
+            for (answer, row) in answers.iter_mut().zip(&self.base) {
+                for (&x, from) in row.iter().zip(&b.base) {
+                    add_scaled(answer, x, from);
+                }
             }
+        }
+        self.inward(&mut b.joints);
+        for (i, out) in w.iter_mut().enumerate() {
+            let mut sum = [T::ZERO; K];
+            for (row, answer) in b.base.iter().zip(&answers) {
+                add_scaled(&mut sum, at(row, i), answer);
+            }
+            for (row, &pivot) in b.joints.iter().zip(&self.pivots) {
+                let x = at(row, i);
+                if x != T::ZERO {
+                    add_scaled(&mut sum, x * pivot, row);
+                }
+            }
+            *out = sum;
         }
     }
 
@@ -280,16 +317,11 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
             return;
         }
         out.base = self.base;
-        for (i, (row, x)) in out.joints_base.iter_mut().zip(&self.coupling).enumerate() {
-            *row = [T::ZERO; 6];
-            for (&x, from) in x.iter().zip(&out.base) {
-                add_scaled(row, -x, from);
-            }
-            set_column(&mut out.base_joints, i, row);
-        }
-        for (x, row) in self.coupling.iter().zip(&mut out.joints) {
-            subtract_rows(row, x, &out.base_joints);
-        }
+        let transposed = columns_of(&self.coupling);
+        out.base_joints = [[T::ZERO; N]; 6];
+        subtract_product(&mut out.base_joints, &self.base, &transposed);
+        out.joints_base = rows_of(&out.base_joints);
+        subtract_product(&mut out.joints, &self.coupling, &out.base_joints);
     }
 
     /// H⁻¹ = W D⁻¹ Wᵀ with W = L⁻¹, stored by depths as L is; zero between joints of different branches.
@@ -395,6 +427,34 @@ impl<T: Scalar, const N: usize> Default for MassFactors<T, N> {
     }
 }
 
+/// Efforts side by side: `K` columns, by rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns<T, const N: usize, const K: usize> {
+    /// On the base, in base axes.
+    pub(crate) base: [[T; K]; 6],
+    /// On the joints.
+    pub(crate) joints: [[T; K]; N],
+}
+
+impl<T: Scalar, const N: usize, const K: usize> Columns<T, N, K> {
+    /// All zero.
+    pub(crate) const ZERO: Self = Self {
+        base: [[T::ZERO; K]; 6],
+        joints: [[T::ZERO; K]; N],
+    };
+
+    /// Writes column `i`.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, effort: &Effort<T, N>) {
+        for (row, x) in self.base.iter_mut().zip(effort.base.to_array()) {
+            put(row, i, x);
+        }
+        for (row, &x) in self.joints.iter_mut().zip(&effort.joints) {
+            put(row, i, x);
+        }
+    }
+}
+
 /// The way from a joint to the base.
 struct Ancestors<'a, const N: usize> {
     before: &'a [usize; N],
@@ -425,56 +485,45 @@ impl<const N: usize> Iterator for Ancestors<'_, N> {
     }
 }
 
-/// Inverse of a symmetric positive definite matrix by L D Lᵀ, all columns at once. A pivot that is lost to
-/// rounding counts as infinitely stiff.
+/// y ← y − x rows.
 #[inline(always)]
-fn inverted<T: Scalar>(mut m: [[T; 6]; 6]) -> [[T; 6]; 6] {
-    ldl_factor(&mut m);
-    let mut inverse = [[T::ZERO; 6]; 6];
-    for i in 0..6 {
-        let mut row = [T::ZERO; 6];
-        row[i] = T::ONE;
-        for k in 0..i {
-            add_scaled(&mut row, -m[i][k], &inverse[k]);
-        }
-        inverse[i] = row;
+fn subtract_product<T: Scalar, const R: usize, const K: usize>(
+    y: &mut [[T; K]; R],
+    x: &[[T; 6]; R],
+    rows: &[[T; K]; 6],
+) {
+    for (y, x) in y.iter_mut().zip(x) {
+        subtract_rows(y, x, rows);
     }
-    for i in (0..6).rev() {
-        let pivot = m[i][i];
-        let scale = if pivot > T::ZERO {
-            T::ONE / pivot
-        } else {
-            T::ZERO
-        };
-        let mut row = inverse[i];
-        for x in &mut row {
-            *x *= scale;
-        }
-        for k in i + 1..6 {
-            add_scaled(&mut row, -m[k][i], &inverse[k]);
-        }
-        inverse[i] = row;
-    }
-    inverse
 }
 
-/// y ← y − Σ x_k row_k. Out of line for the reason of [`set_column`].
+/// y ← y − Σ x_k row_k. Out of line: together with the loop around it, compilers would turn it into gathers and
+/// scatters, which are slower.
 #[inline(never)]
-fn subtract_rows<T: Scalar, const N: usize>(y: &mut [T; N], x: &[T; 6], rows: &[[T; N]; 6]) {
+fn subtract_rows<T: Scalar, const K: usize>(y: &mut [T; K], x: &[T; 6], rows: &[[T; K]; 6]) {
     let [a, b, c, d, e, f] = rows;
     let [p, q, r, s, t, u] = *x;
-    for i in 0..N {
+    for i in 0..K {
         y[i] -= (p * a[i] + q * b[i] + r * c[i]) + (s * d[i] + t * e[i] + u * f[i]);
     }
 }
 
-/// Writes a column of six. Out of line: around it, compilers would turn the loop over `i` into gathers and
-/// scatters, which are slower.
+/// A matrix of N rows of six, transposed.
 #[inline(never)]
-fn set_column<T: Scalar, const N: usize>(table: &mut [[T; N]; 6], i: usize, column: &[T; 6]) {
-    for (row, &x) in table.iter_mut().zip(column) {
-        put(row, i, x);
+fn columns_of<T: Scalar, const N: usize>(rows: &[[T; 6]; N]) -> [[T; N]; 6] {
+    let mut columns = [[T::ZERO; N]; 6];
+    for (i, row) in rows.iter().enumerate() {
+        for (column, &x) in columns.iter_mut().zip(row) {
+            put(column, i, x);
+        }
     }
+    columns
+}
+
+/// A matrix of six rows, transposed.
+#[inline(never)]
+fn rows_of<T: Scalar, const N: usize>(columns: &[[T; N]; 6]) -> [[T; 6]; N] {
+    core::array::from_fn(|i| columns.each_ref().map(|column| at(column, i)))
 }
 
 /// Dot product of the first `length` entries.

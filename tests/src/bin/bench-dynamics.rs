@@ -214,7 +214,8 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     let mut contact = Contact::<N>::new();
     algorithm!("constrained_dynamics", |i, p| {
         contact.prepare(model, &p, feet, Some(&s[i].velocity));
-        let free = aba(model, &p, &s[i].velocity, &s[i].effort, &mut contact.aba);
+        let drift = nonlinear_effects(model, &p, &s[i].velocity);
+        let free = contact.factors.solve(&(s[i].effort - drift));
         let rows = &contact.rows[..contact.count];
         contact_dynamics(&contact.factors, &free, rows, &mut contact.workspace)
     });
@@ -285,7 +286,6 @@ struct Contact<const N: usize> {
     kinematics: Kinematics<f64, N>,
     bias: BodyMotions<f64, N>,
     jacobian: FrameJacobian<f64, N>,
-    aba: AbaWorkspace<f64, N>,
     rows: [ContactRow<f64, N>; 12],
     count: usize,
     workspace: ContactWorkspace<f64, N, 12>,
@@ -299,7 +299,6 @@ impl<const N: usize> Contact<N> {
             kinematics: Kinematics::IDENTITY,
             bias: BodyMotions::ZERO,
             jacobian: FrameJacobian::ZERO,
-            aba: AbaWorkspace::new(),
             rows: [ContactRow::ZERO; 12],
             count: 0,
             workspace: ContactWorkspace::new(),
@@ -331,8 +330,11 @@ impl<const N: usize> Contact<N> {
                 &mut self.jacobian,
             );
             let drift = self.bias.frame_classical_acceleration(foot);
-            let all = ContactRow::surface(&self.jacobian, &drift);
-            rows.copy_from_slice(&all[..rows_per_foot]);
+            if rows_per_foot == 3 {
+                rows.copy_from_slice(&ContactRow::point(&self.jacobian, &drift.linear));
+            } else {
+                rows.copy_from_slice(&ContactRow::surface(&self.jacobian, &drift));
+            }
         }
     }
 }
