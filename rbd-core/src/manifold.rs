@@ -21,7 +21,8 @@ pub fn integrate<T: Scalar, const N: usize>(
     for (x, &dx) in joints.iter_mut().zip(&d.joints) {
         *x += dx;
     }
-    let step = Transform::new(so3::exp(w), so3::left_jacobian(w) * v);
+    let (rotation, jacobian) = so3::exp_with_jacobian(w);
+    let step = Transform::new(rotation, jacobian * v);
     Configuration {
         base: q.base.compose(&step),
         joints,
@@ -39,8 +40,8 @@ pub fn difference<T: Scalar, const N: usize>(
     to: &Configuration<T, N>,
 ) -> Tangent<T, N> {
     let step = from.base.inverse().compose(&to.base);
-    let angular = so3::log(&step.rotation);
-    let linear = so3::left_jacobian_inverse(&angular) * step.translation;
+    let (angular, jacobian) = so3::log_with_jacobian_inverse(&step.rotation);
+    let linear = jacobian * step.translation;
     let mut joints = to.joints;
     for (x, &x0) in joints.iter_mut().zip(&from.joints) {
         *x -= x0;

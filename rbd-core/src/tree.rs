@@ -152,24 +152,32 @@ pub fn walk<T: Scalar, F: Fold<T>, const N: usize>(
     let mut keeps = [F::Keep::default(); N];
     let mut ups = [F::Up::default(); N];
     let mut total = F::Up::default();
+    let mut last = *base;
     for (index, body) in bodies.iter().enumerate().take(count) {
         let parent = match body.parent {
             Link::Base => *base,
+            // Most bodies hang from the one before: that need not go through memory.
+            Link::Joint(p) if p + 1 == index => last,
             Link::Joint(p) => downs.get(p).copied().unwrap_or(*base),
         };
         let (down, keep) = by_kind!(body.kind, J => {
             fold.down::<J>(At { index, end: body.subtree_end, body }, &parent)
         });
+        last = down;
         put(&mut downs, index, down);
         put(&mut keeps, index, keep);
     }
+    // What goes to the body before: that need not go through memory either.
+    let mut carried = F::Up::default();
     for (index, body) in bodies.iter().enumerate().take(count).rev() {
-        let (keep, children) = (at(&keeps, index), at(&ups, index));
+        let (keep, children) = (at(&keeps, index), at(&ups, index) + carried);
+        carried = F::Up::default();
         let up = by_kind!(body.kind, J => {
             fold.up::<J>(At { index, end: body.subtree_end, body }, &keep, children)
         });
         match body.parent {
             Link::Base => total = total + up,
+            Link::Joint(p) if p + 1 == index => carried = up,
             Link::Joint(p) => {
                 if let Some(slot) = ups.get_mut(p) {
                     *slot = *slot + up;

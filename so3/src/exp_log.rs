@@ -10,7 +10,7 @@
 //! from sums, where the classical formula θ/(2 sin θ)(R − Rᵀ) divides zero by zero. Neither
 //! the length of the quaternion nor the exact orthogonality of R matters: atan2 sees only a ratio.
 
-use crate::{Matrix3, Rotation3, Scalar, Unit, Vector3, hat, math, quat, small_angle};
+use crate::{Matrix3, Rotation3, Scalar, Unit, Vector3, hat, jacobian, math, quat, small_angle};
 
 /// Rotation by the angle |w| about the axis w/|w|: exp(hat(w)) = I + a A + b A², A = hat(w).
 ///
@@ -30,7 +30,31 @@ use crate::{Matrix3, Rotation3, Scalar, Unit, Vector3, hat, math, quat, small_an
 #[must_use]
 pub fn exp<T: Scalar>(w: &Vector3<T>) -> Rotation3<T> {
     let theta_squared = w.norm_squared();
-    let small_angle::Coefficients { a, b, .. } = small_angle::coefficients(theta_squared);
+    exponential(w, theta_squared, &small_angle::coefficients(theta_squared))
+}
+
+/// exp(w) and its left Jacobian at once, for the price of little more than one: what the exponential of a rigid
+/// motion needs.
+///
+/// Each equals [`exp`] and [`left_jacobian`](crate::left_jacobian) bit for bit (test `pairs_are_their_parts`).
+#[inline]
+#[must_use]
+pub fn exp_with_jacobian<T: Scalar>(w: &Vector3<T>) -> (Rotation3<T>, Matrix3<T>) {
+    let theta_squared = w.norm_squared();
+    let coefficients = small_angle::coefficients(theta_squared);
+    (
+        exponential(w, theta_squared, &coefficients),
+        jacobian::polynomial(w, coefficients.b, coefficients.c),
+    )
+}
+
+/// cos θ I + a A + b w wᵀ.
+#[inline(always)]
+fn exponential<T: Scalar>(
+    w: &Vector3<T>,
+    theta_squared: T,
+    &small_angle::Coefficients { a, b, .. }: &small_angle::Coefficients<T>,
+) -> Rotation3<T> {
     let cos = T::ONE - b * theta_squared;
     let m = Matrix3::from_diagonal_element(cos) + hat(&(w * a)) + (w * b) * w.transpose();
     Rotation3::from_matrix_unchecked(m)
@@ -57,6 +81,27 @@ pub fn exp<T: Scalar>(w: &Vector3<T>) -> Rotation3<T> {
 pub fn log<T: Scalar>(rot: &Rotation3<T>) -> Vector3<T> {
     let [x, y, z, s] = quat::unnormalized(rot.matrix());
     quat::rotation_vector(&Vector3::new(x, y, z), s)
+}
+
+/// log(rot) and the inverse left Jacobian there at once: what the logarithm of a rigid motion needs.
+///
+/// The half angle's cotangent is the quaternion's s/|v|, so that no sine is taken. The vector is that of [`log`]
+/// bit for bit, the matrix within the accuracy of [`left_jacobian_inverse`](crate::left_jacobian_inverse)
+/// (test `pairs_are_their_parts`).
+#[inline]
+#[must_use]
+pub fn log_with_jacobian_inverse<T: Scalar>(rot: &Rotation3<T>) -> (Vector3<T>, Matrix3<T>) {
+    let [x, y, z, s] = quat::unnormalized(rot.matrix());
+    let (v, s) = quat::short_way(&Vector3::new(x, y, z), s);
+    let scale = quat::angle_per_length(&v, s);
+    let w = v * scale;
+    let theta_squared = w.norm_squared();
+    let d = if theta_squared < T::of(small_angle::SERIES_LIMIT) {
+        small_angle::inverse_coefficient(theta_squared)
+    } else {
+        (T::ONE - T::HALF * scale * s) / theta_squared
+    };
+    (w, jacobian::polynomial(&w, -T::HALF, d))
 }
 
 /// Of all rotation vectors w with exp(w) = `rot`, the one nearest to `hint`: log with any number of turns.

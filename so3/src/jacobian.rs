@@ -17,7 +17,7 @@ use crate::{Matrix3, Scalar, Vector3, hat, small_angle};
 
 /// I + p A + q A², A = hat(w).
 #[inline(always)]
-fn polynomial<T: Scalar>(w: &Vector3<T>, p: T, q: T) -> Matrix3<T> {
+pub(crate) fn polynomial<T: Scalar>(w: &Vector3<T>, p: T, q: T) -> Matrix3<T> {
     // A² = w wᵀ − θ² I
     let diagonal = T::ONE - q * w.norm_squared();
     Matrix3::from_diagonal_element(diagonal) + hat(&(w * p)) + (w * q) * w.transpose()

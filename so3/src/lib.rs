@@ -16,7 +16,9 @@ pub mod small_angle;
 mod taylor;
 
 pub use error::Error;
-pub use exp_log::{exp, log, log_near, rotation_about};
+pub use exp_log::{
+    exp, exp_with_jacobian, log, log_near, log_with_jacobian_inverse, rotation_about,
+};
 pub use hat::{hat, vee};
 pub use interpolate::Geodesic;
 pub use jacobian::{left_jacobian, left_jacobian_inverse, right_jacobian, right_jacobian_inverse};

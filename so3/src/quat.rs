@@ -32,17 +32,30 @@ pub(crate) fn unnormalized<T: Scalar>(m: &Matrix3<T>) -> [T; 4] {
     }
 }
 
-/// 2 atan2(|v|, s)/|v| v for a quaternion (v, s) of any length; (−v, −s) where s < 0.
-pub(crate) fn rotation_vector<T: Scalar>(v: &Vector3<T>, s: T) -> Vector3<T> {
-    let (v, s) = if s < T::ZERO { (-v, -s) } else { (*v, s) };
+/// θ/|v| = 2 atan2(|v|, s)/|v| for a quaternion (v, s) of any length with s ≥ 0: times v, its rotation vector; times
+/// s/2, the half angle times its cotangent.
+#[inline(always)]
+pub(crate) fn angle_per_length<T: Scalar>(v: &Vector3<T>, s: T) -> T {
     let length_squared = v.norm_squared();
     let negligible = T::EPSILON * s;
     if length_squared <= negligible * negligible {
         // atan(u)/u = 1 − u²/3 + …, u ≤ ε; also where |v|² underflows.
-        return v * (T::TWO / s);
+        return T::TWO / s;
     }
     let length = math::sqrt(length_squared);
-    v * (T::TWO * math::atan2(length, s) / length)
+    T::TWO * math::atan2(length, s) / length
+}
+
+/// The same rotation with s ≥ 0.
+#[inline(always)]
+pub(crate) fn short_way<T: Scalar>(v: &Vector3<T>, s: T) -> (Vector3<T>, T) {
+    if s < T::ZERO { (-v, -s) } else { (*v, s) }
+}
+
+/// 2 atan2(|v|, s)/|v| v for a quaternion (v, s) of any length; (−v, −s) where s < 0.
+pub(crate) fn rotation_vector<T: Scalar>(v: &Vector3<T>, s: T) -> Vector3<T> {
+    let (v, s) = short_way(v, s);
+    v * angle_per_length(&v, s)
 }
 
 /// Unit quaternion of a rotation matrix, with w ≥ 0.
