@@ -16,13 +16,12 @@
 use nalgebra::Vector3;
 use so3::Scalar;
 
-use super::at;
-use super::jacobian::FrameJacobian;
+use super::jacobian::{FrameJacobian, columns};
 use super::kinematics::Kinematics;
 use super::motion::{Axes, BodyMotions};
+use super::{at, put};
 use crate::model::{Body, Frame, Link};
 use crate::spatial::{Motion, Transform};
-use crate::state::basis;
 use crate::tree::Tree;
 
 /// Which acceleration of a frame.
@@ -58,6 +57,48 @@ impl<T: Scalar, const N: usize> FrameDerivatives<T, N> {
         acceleration_by_position: FrameJacobian::ZERO,
         acceleration_by_velocity: FrameJacobian::ZERO,
     };
+}
+
+impl<T: Scalar, const N: usize> FrameDerivatives<T, N> {
+    #[inline(always)]
+    fn set_base(&mut self, k: usize, columns: Columns<T>) {
+        put(&mut self.jacobian.base, k, columns.jacobian);
+        put(
+            &mut self.velocity_by_position.base,
+            k,
+            columns.velocity_by_position,
+        );
+        put(
+            &mut self.acceleration_by_position.base,
+            k,
+            columns.acceleration_by_position,
+        );
+        put(
+            &mut self.acceleration_by_velocity.base,
+            k,
+            columns.acceleration_by_velocity,
+        );
+    }
+
+    #[inline(always)]
+    fn set_joint(&mut self, j: usize, columns: Columns<T>) {
+        put(&mut self.jacobian.joints, j, columns.jacobian);
+        put(
+            &mut self.velocity_by_position.joints,
+            j,
+            columns.velocity_by_position,
+        );
+        put(
+            &mut self.acceleration_by_position.joints,
+            j,
+            columns.acceleration_by_position,
+        );
+        put(
+            &mut self.acceleration_by_velocity.joints,
+            j,
+            columns.acceleration_by_velocity,
+        );
+    }
 }
 
 /// The four columns of one coordinate.
@@ -154,34 +195,38 @@ pub fn frame_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         axes,
     };
     let xf_fw = xf_wf.inverse();
-    *out = FrameDerivatives::ZERO;
+    for columns in [
+        &mut out.jacobian.joints,
+        &mut out.velocity_by_position.joints,
+        &mut out.acceleration_by_position.joints,
+        &mut out.acceleration_by_velocity.joints,
+    ] {
+        *columns = [Motion::ZERO; N];
+    }
 
     let xf_fb = xf_fw.compose(&kinematics.base);
     let slip = xf_fb.motion(&motions.base_velocity) - observer.velocity_f;
-    for (k, unit) in basis::<T>().iter().enumerate() {
-        let jacobian = xf_fb.motion(unit);
+    // A shift of the base moves the frame along an axis of the base, a turn about one as well.
+    let axes_f = columns(xf_fb.rotation.matrix());
+    let still = Vector3::zeros();
+    let shifts = axes_f.map(|axis| {
+        (
+            Motion::new(axis, still),
+            Motion::new(slip.angular.cross(&axis), still),
+        )
+    });
+    let turns = axes_f.map(|axis| {
+        let jacobian = Motion::new(xf_fb.translation.cross(&axis), axis);
+        (jacobian, slip.cross(&jacobian))
+    });
+    for (k, (jacobian, by_velocity)) in shifts.into_iter().chain(turns).enumerate() {
         let columns = observer.expressed(Columns {
             jacobian,
             velocity_by_position: Motion::ZERO,
             acceleration_by_position: Motion::ZERO,
-            acceleration_by_velocity: slip.cross(&jacobian),
+            acceleration_by_velocity: by_velocity,
         });
-        super::put(&mut out.jacobian.base, k, columns.jacobian);
-        super::put(
-            &mut out.velocity_by_position.base,
-            k,
-            columns.velocity_by_position,
-        );
-        super::put(
-            &mut out.acceleration_by_position.base,
-            k,
-            columns.acceleration_by_position,
-        );
-        super::put(
-            &mut out.acceleration_by_velocity.base,
-            k,
-            columns.acceleration_by_velocity,
-        );
+        out.set_base(k, columns);
     }
 
     let mut link = frame.link;
@@ -203,22 +248,7 @@ pub fn frame_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
             acceleration_by_position: xf_fj.motion(&second) + rate.cross(&observer.velocity_f),
             acceleration_by_velocity: rate * T::TWO + axis.cross(&observer.velocity_f),
         });
-        super::put(&mut out.jacobian.joints, j, columns.jacobian);
-        super::put(
-            &mut out.velocity_by_position.joints,
-            j,
-            columns.velocity_by_position,
-        );
-        super::put(
-            &mut out.acceleration_by_position.joints,
-            j,
-            columns.acceleration_by_position,
-        );
-        super::put(
-            &mut out.acceleration_by_velocity.joints,
-            j,
-            columns.acceleration_by_velocity,
-        );
+        out.set_joint(j, columns);
         link = body.parent;
     }
 }
