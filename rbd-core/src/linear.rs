@@ -132,3 +132,46 @@ fn spd_inverse_3<T: Scalar>(m: &Matrix3<T>, original: &Matrix3<T>) -> Matrix3<T>
         c,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::SMatrix;
+
+    use super::*;
+
+    /// G Gᵀ + 1 of a full G; the directions in `stiff` have no inertia.
+    fn matrix(stiff: &[usize]) -> SMatrix<f64, 6, 6> {
+        let g: SMatrix<f64, 6, 6> = SMatrix::from_fn(|i, j| ((3 * i + 5 * j + 1) as f64).sin());
+        let mut m = g * g.transpose() + SMatrix::identity();
+        for &k in stiff {
+            m.fill_row(k, 0.0);
+            m.fill_column(k, 0.0);
+        }
+        m
+    }
+
+    fn rows(m: &SMatrix<f64, 6, 6>) -> [[f64; 6]; 6] {
+        core::array::from_fn(|i| core::array::from_fn(|j| m[(i, j)]))
+    }
+
+    #[test]
+    fn the_inverse_of_six_by_blocks_and_the_factors_agree() {
+        for stiff in [&[][..], &[0], &[2, 4], &[3, 4, 5], &[0, 1, 2, 3, 4, 5]] {
+            let m = matrix(stiff);
+            let inverse = spd_inverse_6(&rows(&m));
+            let inverse: SMatrix<f64, 6, 6> = SMatrix::from_fn(|i, j| inverse[i][j]);
+            let mut wanted = SMatrix::<f64, 6, 6>::identity();
+            for &k in stiff {
+                wanted[(k, k)] = 0.0;
+            }
+            assert!((m * inverse - wanted).norm() < 1e-13, "{stiff:?}");
+            for k in 0..6 {
+                let b = core::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+                let x = ldl_solve(&mut rows(&m), b);
+                for (i, x) in x.iter().enumerate() {
+                    assert!((x - inverse[(i, k)]).abs() < 1e-13, "{stiff:?}: {i}, {k}");
+                }
+            }
+        }
+    }
+}

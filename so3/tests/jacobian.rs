@@ -7,8 +7,8 @@ use cases::{distance, matrix_error, rotation_vector, rotation_vectors, to_f64};
 use oracle::even_series;
 use proptest::prelude::*;
 use so3::{
-    Matrix3, Scalar, Vector3, exp, left_jacobian, left_jacobian_inverse, log, right_jacobian,
-    right_jacobian_inverse,
+    Matrix3, Scalar, Vector3, exp, exp_with_jacobian, left_jacobian, left_jacobian_inverse, log,
+    log_with_jacobian_inverse, right_jacobian, right_jacobian_inverse,
 };
 
 fn oracle_errors<T: Scalar>() -> (f64, f64, f64) {
@@ -53,6 +53,23 @@ fn right_is_left_transposed() {
         let (right, left) = (right_jacobian_inverse(&w), left_jacobian_inverse(&w));
         assert!(matrix_error(&right, &left.transpose()) <= 1.0);
     }
+}
+
+fn pairs<T: Scalar>() {
+    for w in rotation_vectors::<T>() {
+        let rot = exp(&w);
+        assert_eq!(exp_with_jacobian(&w), (rot, left_jacobian(&w)));
+        let (vector, inverse) = log_with_jacobian_inverse(&rot);
+        assert_eq!(vector, log(&rot));
+        let error = matrix_error(&inverse, &left_jacobian_inverse(&vector));
+        assert!(error <= 4.0, "{error} ε at {w}");
+    }
+}
+
+#[test]
+fn pairs_are_their_parts() {
+    pairs::<f64>();
+    pairs::<f32>();
 }
 
 /// Step of the central differences: truncation h² and rounding ε/h are both near 1e-10.

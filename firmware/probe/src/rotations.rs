@@ -3,10 +3,11 @@
 use so3::euler::RollPitchYaw;
 use so3::{
     Geodesic, Matrix3, Rotation3, Unit, UnitQuaternion, Vector3, euler, exp, exp_taylor4,
-    exp_taylor4_defect, exp_taylor4_derivatives, exp_taylor4_error_bound, hat, left_jacobian,
-    left_jacobian_inverse, log, log_near, nearest_rotation, orthogonality_defect,
-    orthonormalize_step, quat, right_jacobian, right_jacobian_inverse, rotation_about,
-    rotation_error, rotation_error_smoothed, small_angle, vee,
+    exp_taylor4_defect, exp_taylor4_derivatives, exp_taylor4_error_bound, exp_with_jacobian, hat,
+    left_jacobian, left_jacobian_inverse, log, log_near, log_with_jacobian_inverse,
+    nearest_rotation, orthogonality_defect, orthonormalize_step, quat, right_jacobian,
+    right_jacobian_inverse, rotation_about, rotation_error, rotation_error_smoothed, small_angle,
+    vee,
 };
 
 use crate::inputs::Stream;
@@ -50,6 +51,7 @@ fn vectors<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, w: &Vector3<T>) {
     let m = on.call("hat", w, |w| hat(w));
     on.call("vee", &m, |m| vee(m));
     on.call("left_jacobian", w, |w| left_jacobian(w));
+    on.call("exp_with_jacobian", w, |w| exp_with_jacobian(w));
     on.call("right_jacobian", w, |w| right_jacobian(w));
     on.call("left_jacobian_inverse", w, |w| left_jacobian_inverse(w));
     on.call("right_jacobian_inverse", w, |w| right_jacobian_inverse(w));
@@ -77,6 +79,9 @@ fn logarithms<T: Real, R: Recorder>(
     rot: &Rotation3<T>,
 ) {
     on.call("log", rot, |rot| log(rot));
+    on.call("log_with_jacobian_inverse", rot, |rot| {
+        log_with_jacobian_inverse(rot)
+    });
     on.call("log_near", (rot, w), |(rot, hint)| log_near(rot, hint));
     on.call("rotation_about", (axis, w.x), |(axis, angle)| {
         rotation_about(axis, angle)

@@ -13,10 +13,10 @@
 use nalgebra::Vector3;
 use so3::{Scalar, math};
 
-use super::{at, put};
 use super::blocks::add_scaled;
 use super::jacobian::FrameJacobian;
 use super::minv::{Columns, MassFactors};
+use super::{at, put};
 use crate::linear::{ldl_back_substitute, ldl_factor};
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Tangent};
