@@ -141,7 +141,8 @@ mod tests {
 
     /// G Gᵀ + 1 of a full G; the directions in `stiff` have no inertia.
     fn matrix(stiff: &[usize]) -> SMatrix<f64, 6, 6> {
-        let g: SMatrix<f64, 6, 6> = SMatrix::from_fn(|i, j| ((3 * i + 5 * j + 1) as f64).sin());
+        let g: SMatrix<f64, 6, 6> =
+            SMatrix::from_fn(|i, j| so3::math::sin((3 * i + 5 * j + 1) as f64));
         let mut m = g * g.transpose() + SMatrix::identity();
         for &k in stiff {
             m.fill_row(k, 0.0);
