@@ -56,8 +56,8 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// Whether there are own equalities or rows handed back by `next`.
     #[inline(always)]
     pub(crate) fn has_equalities(&self, next: Option<&Carried<T, NX>>) -> bool {
-        (0..self.row_count()).any(|i| self.is_equality(i))
-            || next.is_some_and(|next| next.count > 0)
+        let own = self.elastic == T::ZERO && (0..self.row_count()).any(|i| self.is_equality(i));
+        own || next.is_some_and(|next| next.count > 0)
     }
 
     /// Puts the rows of the successor through dynamics without controls.

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod blocking;
 mod check;
 mod eliminate;
 mod equalities;
@@ -14,6 +15,7 @@ mod settings;
 mod solver;
 mod stage;
 
+pub use blocking::{Blocking, blocking_rows};
 pub use check::{DerivativeErrors, derivative_errors};
 pub use problem::{Derivatives, Dims, Evaluated, Problem, Values};
 pub use settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};

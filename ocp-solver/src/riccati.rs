@@ -136,7 +136,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         for (i, ((row_x, row_u), (weight, target))) in
             rows.enumerate().take(self.dims.rows().min(NI))
         {
-            if self.bounds.0[i] == self.bounds.1[i] {
+            if self.bounds.0[i] == self.bounds.1[i] && self.elastic == T::ZERO {
                 continue;
             }
             let (in_state, in_control) = (i < state_rows || i >= before_mixed, i >= state_rows);

@@ -10,6 +10,10 @@
 //!
 //! so a row adds `JᵀΣJ` to the stage Hessian and `Jᵀ (µ/(h−s) − µ/(s−l) + Σ(c − s))` to its gradient. A
 //! row with `l == h` is an equality, see [`crate::eliminate`].
+//!
+//! In *elastic mode* every row gives way, `c − s = e y`, which adds `½ (c − s)²/e` to the cost: as `e` goes to
+//! zero the solution is one of least squared violation among its neighbours. The row above then adds
+//! `Σ/(1 + e Σ)` and `(µ/(h−s) − µ/(s−l) + Σ(c − s))/(1 + e Σ)`, and an equality `1/e` and `(c − l)/e`.
 
 use crate::kernel::{dot, larger};
 use crate::stage::{Side, Stage};
@@ -142,15 +146,21 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         for i in 0..self.row_count() {
             let residual = self.values.rows[i] - self.slack[i];
             if self.is_equality(i) {
-                (self.step.weight[i], self.step.target[i]) = (T::ZERO, T::ZERO);
+                let weight = if self.elastic > T::ZERO {
+                    T::ONE / self.elastic
+                } else {
+                    T::ZERO
+                };
+                (self.step.weight[i], self.step.target[i]) = (weight, weight * residual);
             } else {
                 let (below, above) = (
                     T::ONE / self.lower.distance[i],
                     T::ONE / self.upper.distance[i],
                 );
                 let weight = self.lower.multiplier[i] * below + self.upper.multiplier[i] * above;
-                self.step.weight[i] = weight;
-                self.step.target[i] = mu * (above - below) + weight * residual;
+                let give = T::ONE / (T::ONE + self.elastic * weight);
+                self.step.weight[i] = weight * give;
+                self.step.target[i] = (mu * (above - below) + weight * residual) * give;
             }
         }
     }
@@ -178,7 +188,14 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         let mut primal = T::ONE;
         for i in 0..self.row_count() {
             let change = self.row_change(i);
-            let ds = self.values.rows[i] - self.slack[i] + change;
+            let mut ds = self.values.rows[i] - self.slack[i] + change;
+            if self.elastic > T::ZERO {
+                let multiplier = self.step.target[i] + self.step.weight[i] * change;
+                ds -= self.elastic * multiplier;
+                if self.is_equality(i) {
+                    self.step.target[i] = multiplier;
+                }
+            }
             self.step.slack[i] = ds;
             if self.is_equality(i) {
                 continue;
@@ -249,7 +266,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
-    /// Largest violation of `c = s` (or `c = l` of an equality).
+    /// Largest and summed violation of `c − s = e y` (`s = l` in an equality).
     pub(crate) fn row_violation(&self, values: &[T; NI], slack_step: T) -> (T, T) {
         let (mut worst, mut sum) = (T::ZERO, T::ZERO);
         let rows = values.iter().zip(&self.slack).zip(&self.step.slack);
@@ -259,7 +276,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             } else {
                 slack_step * *step
             };
-            let r = *value - *slack - moved;
+            let r = *value - *slack - moved - self.elastic * self.row_multiplier[i];
             worst = larger(worst, r);
             sum += so3::math::abs(r);
         }

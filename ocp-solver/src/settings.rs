@@ -23,6 +23,9 @@ pub struct Settings<T> {
     pub max_iterations: usize,
     /// Largest number of iterations of one attempt of a portfolio.
     pub attempt_iterations: usize,
+    /// Part of `max_iterations` that is kept for the search of a point of least violation where nothing
+    /// else ends in a solution; none is kept if it is more than half of them.
+    pub restoration_iterations: usize,
     /// Largest violation of dynamics and rows at a solution, in their own units.
     pub primal_tolerance: T,
     /// Largest entry of the gradient of the Lagrangian at a solution, relative to the mean multiplier
@@ -63,6 +66,7 @@ impl<T: Scalar> Settings<T> {
         Self {
             max_iterations: 400,
             attempt_iterations: 200,
+            restoration_iterations: 100,
             primal_tolerance: T::of(2e-7),
             dual_tolerance: T::of(1e-6),
             complementarity_tolerance: T::of(1e-6),
@@ -130,6 +134,10 @@ pub enum Status {
     IterationLimit,
     /// The observer asked to stop.
     Cancelled,
+    /// No solution was found, and the stages hold a point of least squared violation of the rows among its
+    /// neighbours: [`blocking_rows`](crate::blocking_rows) names them. This proves nothing about points far
+    /// away.
+    LocallyInfeasible,
     /// Steps became too short to make progress.
     Stalled,
     /// The Hessian could not be made positive definite.
@@ -142,7 +150,8 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution<T> {
-    /// How it ended. Unless [`Status::Solved`], the stages hold the best iterate seen.
+    /// How it ended. Unless [`Status::Solved`] or [`Status::LocallyInfeasible`], the stages hold the best
+    /// iterate seen.
     pub status: Status,
     /// Iterations, over all attempts.
     pub iterations: usize,
@@ -150,6 +159,8 @@ pub struct Solution<T> {
     pub cost: T,
     /// Residuals of the returned iterate.
     pub residual: Residual<T>,
+    /// Largest violation of a row's bounds or of the dynamics there.
+    pub violation: T,
     /// Last barrier parameter.
     pub mu: T,
     /// Factorisations, including those repeated with a shifted Hessian.

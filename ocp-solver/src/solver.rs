@@ -1,5 +1,6 @@
 //! The interior-point iteration.
 
+use crate::blocking::largest_violation;
 use crate::equalities::solve_start;
 use crate::iterate::{self, Merit};
 use crate::problem::Problem;
@@ -29,6 +30,10 @@ struct Run<T, const NX: usize> {
     iterations: usize,
     factorisations: usize,
     attempt: usize,
+    /// Iterations at which an attempt has to end.
+    limit: usize,
+    /// Give of the rows, see [`crate::rows`].
+    elastic: T,
     /// Sums of violations of the last iterates.
     recent: [T; 4],
     best: Residual<T>,
@@ -58,6 +63,14 @@ impl<T: Scalar> Solver<T> {
         let mut run = Run::new(problem);
         let mut status = Status::IterationLimit;
         let mut restarts = 0;
+        // What is left of the limit is for the search of a point of least violation.
+        let limit = self.settings.max_iterations;
+        let reserve = self.settings.restoration_iterations;
+        run.limit = if limit > reserve.saturating_mul(2) {
+            limit.saturating_sub(reserve)
+        } else {
+            limit
+        };
         for (i, (adaptive, mu)) in self.settings.attempts().into_iter().flatten().enumerate() {
             if i > 0 {
                 for stage in stages.iter_mut() {
@@ -67,12 +80,20 @@ impl<T: Scalar> Solver<T> {
             }
             (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
             status = self.attempt(problem, stages, &mut run, mu, &mut observer);
-            let out_of_iterations = run.iterations >= self.settings.max_iterations;
-            if matches!(status, Status::Solved | Status::Cancelled) || out_of_iterations {
+            if matches!(status, Status::Solved | Status::Cancelled) || run.iterations >= run.limit {
                 break;
             }
         }
-        if status != Status::Solved {
+        run.limit = limit;
+        let give_up = matches!(
+            status,
+            Status::Solved | Status::Cancelled | Status::NotFinite
+        );
+        if !give_up && run.iterations < limit {
+            restarts = restarts.saturating_add(1);
+            status = self.restore(problem, stages, &mut run, status, &mut observer);
+        }
+        if !matches!(status, Status::Solved | Status::LocallyInfeasible) {
             for stage in stages.iter_mut() {
                 (stage.state, stage.control) = stage.best;
             }
@@ -83,10 +104,67 @@ impl<T: Scalar> Solver<T> {
             iterations: run.iterations,
             cost: run.best_cost,
             residual: run.best,
+            violation: largest_violation(stages),
             mu: run.mu,
             factorisations: run.factorisations,
             restarts,
         })
+    }
+
+    /// Looks for a point of least violation from the best iterate, in elastic mode (see [`crate::rows`]).
+    ///
+    /// Where the violation goes to zero with the give of the rows, solves from there; where it stays, the
+    /// problem is locally infeasible. Returns `status` where neither comes out.
+    fn restore<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        problem: &P,
+        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        run: &mut Run<T, NX>,
+        status: Status,
+        observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
+    ) -> Status {
+        for stage in stages.iter_mut() {
+            (stage.state, stage.control) = stage.best;
+        }
+        if iterate::evaluate(problem, stages).is_some() {
+            return status;
+        }
+        run.adaptive = false;
+        run.attempt = run.attempt.saturating_add(1);
+        let mut before = T::INFINITY;
+        let mut violation = T::INFINITY;
+        for (elastic, mu) in [(1e-3, 1.0), (1e-6, 1.0)] {
+            run.elastic = T::of(elastic);
+            let mu = self.settings.initial_mu * T::of(mu);
+            let outcome = self.attempt(problem, stages, run, mu, observer);
+            if outcome != Status::Solved {
+                run.elastic = T::ZERO;
+                return if outcome == Status::Cancelled {
+                    outcome
+                } else {
+                    status
+                };
+            }
+            (before, violation) = (violation, largest_violation(stages));
+        }
+        run.elastic = T::ZERO;
+        let far = T::of(100.0) * self.settings.primal_tolerance;
+        if violation > far && violation > before * T::of(0.1) {
+            run.best = Residual {
+                primal: violation,
+                ..run.best
+            };
+            run.best_cost = iterate::merit(stages).cost;
+            return Status::LocallyInfeasible;
+        }
+        run.attempt = run.attempt.saturating_add(1);
+        let mu = self.settings.initial_mu;
+        let outcome = self.attempt(problem, stages, run, mu, observer);
+        if matches!(outcome, Status::Solved | Status::Cancelled) {
+            outcome
+        } else {
+            status
+        }
     }
 
     /// One descent under one barrier rule, from evaluated values.
@@ -104,6 +182,7 @@ impl<T: Scalar> Solver<T> {
         run.short_steps = 0;
         let last_iteration = run.iterations.saturating_add(settings.attempt_iterations);
         for stage in stages.iter_mut() {
+            stage.elastic = run.elastic;
             stage.costate = [T::ZERO; NX];
             let mu = (!run.adaptive).then_some(initial_mu);
             stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
@@ -120,7 +199,9 @@ impl<T: Scalar> Solver<T> {
                 point.worst,
                 &mut complementarity,
             );
-            run.remember(settings, stages, &point, &residual);
+            if run.elastic == T::ZERO {
+                run.remember(settings, stages, &point, &residual);
+            }
             let progress = Progress {
                 iteration: run.iterations,
                 cost: point.cost,
@@ -134,12 +215,14 @@ impl<T: Scalar> Solver<T> {
             if observer(&progress).is_break() {
                 return Status::Cancelled;
             }
-            if settings.is_solved(&residual) {
-                run.best = residual;
-                run.best_cost = point.cost;
+            if settings.is_solved(&residual, run.elastic) {
+                if run.elastic == T::ZERO {
+                    run.best = residual;
+                    run.best_cost = point.cost;
+                }
                 return Status::Solved;
             }
-            if run.iterations >= settings.max_iterations.min(last_iteration) {
+            if run.iterations >= run.limit.min(last_iteration) {
                 return Status::IterationLimit;
             }
             run.iterations = run.iterations.saturating_add(1);
@@ -160,9 +243,14 @@ impl<T: Scalar> Solver<T> {
                 trial = iterate::try_step(problem, stages, primal_step);
             }
             run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
-            let floor = max(run.mu, settings.smallest_mu());
+            let floor = max(run.mu, settings.smallest_mu(run.elastic));
             iterate::accept(stages, primal_step, dual_step, floor);
-            point = trial;
+            point = if run.elastic > T::ZERO {
+                // The give of the rows has moved with their multipliers.
+                iterate::merit(stages)
+            } else {
+                trial
+            };
             if primal_step < settings.stall_step {
                 run.short_steps = run.short_steps.saturating_add(1);
             } else {
@@ -187,7 +275,8 @@ impl<T: Scalar> Solver<T> {
         complementarity: &Complementarity<T>,
     ) {
         let settings = &self.settings;
-        let smallest = settings.smallest_mu();
+        let smallest = settings.smallest_mu(run.elastic);
+        let relief = Settings::relief(run.elastic);
         if complementarity.count <= T::ZERO {
             run.mu = smallest;
         } else if run.adaptive {
@@ -206,7 +295,7 @@ impl<T: Scalar> Solver<T> {
                     complementarity.largest - run.mu,
                     run.mu - complementarity.smallest,
                 );
-                let error = max(max(residual.primal, residual.dual), gap);
+                let error = max(max(residual.primal, residual.dual * relief), gap);
                 if error > settings.mu_margin * run.mu || run.mu <= smallest {
                     break;
                 }
@@ -286,6 +375,8 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
             iterations: 0,
             factorisations: 0,
             attempt: 0,
+            limit: 0,
+            elastic: T::ZERO,
             recent: [T::ZERO; 4],
             best: none,
             best_cost: T::INFINITY,
@@ -346,14 +437,29 @@ impl<T: Scalar> Settings<T> {
         }
     }
 
-    fn smallest_mu(&self) -> T {
-        self.complementarity_tolerance * T::of(0.1)
+    /// Factor on multipliers, which grow with the inverse of the give of the rows.
+    fn relief(elastic: T) -> T {
+        if elastic > T::ZERO {
+            min(T::of(1e3) * elastic, T::ONE)
+        } else {
+            T::ONE
+        }
     }
 
-    fn is_solved(&self, residual: &Residual<T>) -> bool {
-        residual.primal <= self.primal_tolerance
-            && residual.dual <= self.dual_tolerance
-            && residual.complementarity <= self.complementarity_tolerance
+    fn smallest_mu(&self, elastic: T) -> T {
+        self.complementarity_tolerance * T::of(0.1) / Self::relief(elastic)
+    }
+
+    /// Whether all residuals are within tolerance; a wider one for points of least violation.
+    fn is_solved(&self, residual: &Residual<T>, elastic: T) -> bool {
+        let (relief, wider) = if elastic > T::ZERO {
+            (Self::relief(elastic), T::of(100.0))
+        } else {
+            (T::ONE, T::ONE)
+        };
+        residual.primal <= self.primal_tolerance * wider
+            && residual.dual * relief <= self.dual_tolerance * wider
+            && residual.complementarity * relief <= self.complementarity_tolerance
     }
 
     fn check(&self) -> Result<(), Error> {

@@ -37,6 +37,8 @@ pub struct Stage<T, X, const NX: usize, const NU: usize, const NI: usize> {
     /// Control of the interval that starts here: the guess before, the solution after a solve.
     pub control: [T; NU],
     pub(crate) dims: Dims,
+    /// Give of every row per unit of its multiplier; 0 outside elastic mode.
+    pub(crate) elastic: T,
     /// Multiplier of the dynamics that lead into this node.
     pub(crate) costate: [T; NX],
     pub(crate) slack: [T; NI],
@@ -111,6 +113,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 control_rows: 0,
                 mixed_rows: 0,
             },
+            elastic: T::ZERO,
             costate: [T::ZERO; NX],
             slack: [T::ZERO; NI],
             lower: Side::new(),

@@ -3,7 +3,9 @@
 
 use core::ops::ControlFlow;
 use nalgebra::{DMatrix, DVector};
-use ocp_solver::{Derivatives, Dims, Evaluated, Problem, Settings, Solver, Stage, Status, Values};
+use ocp_solver::{
+    Derivatives, Dims, Evaluated, Problem, Settings, Solver, Stage, Status, Values, blocking_rows,
+};
 
 const NX: usize = 8;
 const NU: usize = 4;
@@ -480,6 +482,14 @@ fn contradicting_rows_are_never_called_solved() {
     let solution = Solver::new(Settings::new())
         .solve(&lq, &mut stages, |_| ControlFlow::Continue(()))
         .unwrap();
-    assert_ne!(solution.status, Status::Solved);
-    assert!(solution.residual.primal > 0.24, "{solution:?}");
+    assert_eq!(solution.status, Status::LocallyInfeasible, "{solution:?}");
+    // Least squares shares the contradiction between the two rows.
+    assert!((solution.violation - 0.25).abs() < 1e-4, "{solution:?}");
+    let rows = blocking_rows::<3, _, _, _, _, _>(&stages).map(|b| b.map(|b| (b.stage, b.row)));
+    assert!(
+        rows[..2].contains(&Some((2, 0))) && rows[..2].contains(&Some((2, 1))),
+        "{rows:?}"
+    );
+    let signs = [stages[2].violation(0), stages[2].violation(1)];
+    assert!(signs[0] > 0.249 && signs[1] < -0.249, "{signs:?}");
 }
