@@ -9,6 +9,7 @@ mod limits;
 mod program;
 mod snapshot;
 pub mod task;
+mod torque;
 mod velocity;
 
 pub use anchor::anchored;
@@ -17,4 +18,5 @@ pub use error::Error;
 pub use limits::{Horizon, torque_range};
 pub use snapshot::Snapshot;
 pub use task::{Gains, Task};
+pub use torque::{TorqueAnswer, TorqueQp, Yielded};
 pub use velocity::{VelocityAnswer, VelocityQp};

@@ -84,11 +84,23 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         Ok(index)
     }
 
+    /// Sets the limits of a row.
+    pub(crate) fn limit_row(&mut self, i: usize, lower: T, upper: T) {
+        if let (Some(l), Some(u)) = (self.row_lower.get_mut(i), self.row_upper.get_mut(i)) {
+            (*l, *u) = (lower, upper);
+        }
+    }
+
     /// Sets the bounds of a variable.
     pub(crate) fn bound(&mut self, i: usize, lower: T, upper: T) {
         if let (Some(l), Some(u)) = (self.lower.get_mut(i), self.upper.get_mut(i)) {
             (*l, *u) = (lower, upper);
         }
+    }
+
+    /// Row `i`; zero beyond the end.
+    pub(crate) fn row(&self, i: usize) -> [T; V] {
+        self.rows.get(i).copied().unwrap_or([T::ZERO; V])
     }
 
     /// The program as the solver takes it.

@@ -104,6 +104,12 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityQp<T, N,
         }
     }
 
+    /// The program as it stands, over z = (q̇, v_b): for a log, or another solver's opinion.
+    #[must_use]
+    pub fn problem(&self) -> dense_qp::Problem<'_, T, V, M> {
+        self.program.problem()
+    }
+
     /// Solves the program.
     ///
     /// # Errors

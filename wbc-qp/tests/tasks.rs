@@ -1,48 +1,14 @@
 //! Tasks, contacts and limits against finite differences and against what they promise.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
+mod common;
+
+use common::{N, Rng, snapshot};
 use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Motion, Tangent, Transform, integrate};
+use rbd_core::{Transform, integrate};
 use wbc_qp::{Contact, Horizon, Snapshot, Task, VelocityQp, anchored};
-
-const N: usize = 23;
-
-/// Numbers in [−1, 1), the same on every machine.
-struct Rng(u64);
-
-impl Rng {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        2.0 * ((self.0 >> 11) as f64 / (1u64 << 53) as f64) - 1.0
-    }
-
-    fn state(&mut self) -> (Configuration<f64, N>, Tangent<f64, N>) {
-        let turn = Vector3::new(self.next(), self.next(), self.next());
-        let mut q = Configuration {
-            base: Transform::new(so3::exp(&turn), Vector3::new(self.next(), self.next(), 0.5)),
-            joints: [0.0; N],
-        };
-        for (x, limits) in q.joints.iter_mut().zip(&LIMITS) {
-            let middle = 0.5 * (limits.lower + limits.upper);
-            *x = middle + 0.4 * self.next() * (limits.upper - limits.lower);
-        }
-        let mut v = Tangent::ZERO;
-        v.base = Motion::from_array(core::array::from_fn(|_| self.next()));
-        v.joints = core::array::from_fn(|_| self.next());
-        (q, v)
-    }
-}
-
-fn snapshot(q: &Configuration<f64, N>, v: &Tangent<f64, N>) -> Snapshot<f64, N> {
-    let mut s = Snapshot::ZERO;
-    s.update(&Icub23, q, v);
-    s
-}
 
 /// The rate is J ν, and the drift is what the rate gains along q̇ = ν at ν̇ = 0.
 fn check<const R: usize>(name: &str, task: impl Fn(&Snapshot<f64, N>) -> Task<f64, N, R>) {

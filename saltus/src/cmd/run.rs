@@ -2,7 +2,7 @@
 
 use crate::humanoid;
 use crate::jump::judge::Verdict;
-use crate::jump::plant::Sim;
+use crate::jump::plant::{Disturbance, Sim};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, reference, report};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -97,13 +97,10 @@ fn run_humanoid(args: &Args, task: &humanoid::Task) -> Result<ExitCode, String> 
     if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
         return Err(taken(path));
     }
-    if args.sim != Sim::Native {
-        return Err("humanoid tasks run in the native simulator only, so far".into());
-    }
-    let mut plant = humanoid::plant(0.6);
-    let run = humanoid::execute::run(task, &mut plant, |_, _| {})?;
+    let disturbance = Disturbance::draw(args.seed);
+    let run = humanoid::execute::run(task, args.sim, &disturbance, args.seed, |_, _| {})?;
     let verdict = humanoid::judge::Verdict::of(&run);
-    let json = verdict.json(task, &run, args.seed, "native");
+    let json = verdict.json(task, &run, args.seed, args.sim.name());
     let folder = new_folder(args.out.as_deref(), task.name())?;
     write(&folder, "log.csv", &humanoid::log::csv(&run.samples))?;
     write(&folder, "result.json", &format!("{json:#}\n"))?;

@@ -1,13 +1,15 @@
 //! The controller of a humanoid jump: push-off by a program, flight by minimum jerk, landing by a hold. 1 kHz.
 
-use super::{GRAVITY, JOINTS, ROBOT, State, Task, Velocity, landing_posture};
+use super::{GRAVITY, JOINTS, Level, ROBOT, State, Task, Velocity, landing_posture};
 use icub_model::gazebo::joint;
-use icub_model::{LIMITS, SOLES};
+use icub_model::{LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
 use nalgebra::Vector3;
 use rbd_core::{JointLimits, Transform};
-use wbc_qp::jump::{ComReference, Residuals, VelocityJump, VelocityJumpSettings};
-use wbc_qp::{Contact, Snapshot, anchored};
+use wbc_qp::jump::{
+    ComReference, Residuals, TorqueJump, TorqueJumpSettings, VelocityJump, VelocityJumpSettings,
+};
+use wbc_qp::{Contact, Snapshot, Yielded, anchored};
 
 /// Length of a tick, s.
 pub(crate) const TICK: f64 = 1e-3;
@@ -23,10 +25,15 @@ const TOUCH: f64 = 20.0;
 const FRICTION: f64 = 0.5;
 /// Share of the joints' speed limits that the program may use.
 const SPEED_MARGIN: f64 = 0.96;
-/// Residuals up to which an equality of the paper counts as held.
-const HELD: Residuals<f64> = Residuals {
+/// Residuals up to which an equality of the paper counts as held: m/s and kg m²/s.
+const HELD_VELOCITY: Residuals<f64> = Residuals {
     com: 0.02,
     momentum: 0.05,
+};
+/// The same at the level of torques: m/s² and N m.
+const HELD_TORQUE: Residuals<f64> = Residuals {
+    com: 0.1,
+    momentum: 0.5,
 };
 
 /// What the programs did.
@@ -50,6 +57,7 @@ pub(crate) struct Controller {
     snapshot: Snapshot<f64, JOINTS>,
     contacts: [Contact<f64>; 2],
     velocity: Box<VelocityJump<f64, JOINTS, 29, 12>>,
+    torque: Box<TorqueJump<f64, JOINTS, 12, 35, 55>>,
     start_com: Vector3<f64>,
     /// Where the left sole stands.
     anchor: Transform<f64>,
@@ -57,6 +65,8 @@ pub(crate) struct Controller {
     servo: [f64; JOINTS],
     /// Velocities last asked of them.
     commanded: [f64; JOINTS],
+    /// Torques of the last program that was solved.
+    last_torques: [f64; JOINTS],
     aerial: MinimumJerk<f64, JOINTS>,
     took_off: f64,
     calm: f64,
@@ -93,8 +103,11 @@ impl Controller {
             joint::L_SHOULDER_PITCH.. => 0.3,
             _ => 1.0,
         });
+        let mut torque = TorqueJumpSettings::icub();
+        torque.posture_weight = settings.posture_weight;
         if !task.momentum {
             settings.momentum_weight = 0.0;
+            torque.momentum_weight = 0.0;
         }
         let start_com = super::com(start);
         Ok(Self {
@@ -110,10 +123,12 @@ impl Controller {
             snapshot: Snapshot::ZERO,
             contacts: SOLES.map(|sole| Contact::new(&sole, FRICTION, 1000.0)),
             velocity: Box::new(VelocityJump::new(settings, start.joints)),
+            torque: Box::new(TorqueJump::new(torque, start.joints)),
             start_com,
             anchor: super::poses(start).frame(&SOLES[0].frame),
             servo: start.joints,
             commanded: [0.0; JOINTS],
+            last_torques: [0.0; JOINTS],
             aerial: MinimumJerk {
                 from: start.joints,
                 velocity: [0.0; JOINTS],
@@ -190,7 +205,12 @@ impl Controller {
 
     fn push(&mut self, t: f64, q: &State, v: &Velocity) -> JointCommand<f64, JOINTS> {
         let sole = &SOLES[0].frame;
-        let (q, v) = anchored(&ROBOT, &q.joints, &v.joints, sole, &self.anchor);
+        let (q, v) = match self.task.level {
+            // Servos hide the soles' own small motion, and a centre of mass that ignores it is smooth.
+            Level::Velocity => anchored(&ROBOT, &q.joints, &v.joints, sole, &self.anchor),
+            // Torques do not: a sole that rocks would look like the whole robot rocking.
+            Level::Torque => (*q, *v),
+        };
         self.snapshot.update(&ROBOT, &q, &v);
         let point = self.profile.at(t);
         let up = Vector3::z();
@@ -200,6 +220,13 @@ impl Controller {
             acceleration_w: up * point.acceleration,
         };
         self.qp.solves += 1;
+        match self.task.level {
+            Level::Velocity => self.push_by_velocity(),
+            Level::Torque => self.push_by_torque(),
+        }
+    }
+
+    fn push_by_velocity(&mut self) -> JointCommand<f64, JOINTS> {
         let tick = self.velocity.tick(
             &ROBOT,
             &self.snapshot,
@@ -210,7 +237,7 @@ impl Controller {
         );
         let velocities = match tick {
             Ok(tick) => {
-                self.note(tick.iterations, &tick.residuals);
+                self.note(tick.iterations, &tick.residuals, false);
                 tick.velocities
             }
             Err(_) => {
@@ -225,7 +252,30 @@ impl Controller {
         self.track(velocities)
     }
 
-    fn note(&mut self, iterations: u32, residuals: &Residuals<f64>) {
+    /// Torques are held for a tick; the servos only follow, to be ready for the flight.
+    fn push_by_torque(&mut self) -> JointCommand<f64, JOINTS> {
+        let tick = self.torque.tick(
+            &ROBOT,
+            &self.snapshot,
+            &self.contacts,
+            (&guarded_limits(), &MOTORS),
+            &self.reference,
+        );
+        self.servo = self.snapshot.configuration.joints;
+        match tick {
+            Ok(tick) => {
+                let yielded = tick.answer.yielded != Yielded::Nothing;
+                self.note(tick.answer.iterations, &tick.residuals, yielded);
+                self.last_torques = tick.answer.torques;
+            }
+            Err(_) => self.qp.failures += 1,
+        }
+        let mut command = JointCommand::damp(0.0);
+        command.feed_forward = self.last_torques;
+        command
+    }
+
+    fn note(&mut self, iterations: u32, residuals: &Residuals<f64>, yielded: bool) {
         let log = &mut self.qp;
         log.max_iterations = log.max_iterations.max(iterations);
         let momentum = if self.task.momentum {
@@ -233,7 +283,11 @@ impl Controller {
         } else {
             0.0
         };
-        if residuals.com > HELD.com || momentum > HELD.momentum {
+        let held = match self.task.level {
+            Level::Velocity => HELD_VELOCITY,
+            Level::Torque => HELD_TORQUE,
+        };
+        if yielded || residuals.com > held.com || momentum > held.momentum {
             log.relaxed_ticks += 1;
         }
         log.residuals.com = log.residuals.com.max(residuals.com);

@@ -2,12 +2,14 @@
 
 use super::control::{Controller, QpLog, TICK};
 use super::log::Sample;
-use super::{JOINTS, ROBOT, SPHERES, State, Task, Velocity, on_the_floor, poses, spheres, squat};
-use contact_sim::Simulator;
+use super::{Plant, ROBOT, State, Task, Velocity, on_the_floor, plant, poses, spheres, squat};
+use crate::jump::plant::{Disturbance, Sim};
+use crate::noise::Noise;
 use icub_model::{LIMITS, MOTORS};
-use jump_control::Phase;
+use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
 use rbd_core::{CentroidalMap, Posture, Tangent, centroidal_map, centroidal_state};
+use std::collections::VecDeque;
 
 /// Time of standing in the squat before the push-off, s.
 pub(crate) const HOLD: f64 = 0.5;
@@ -41,14 +43,16 @@ pub(crate) struct Run {
 }
 
 /// Runs the jump; `progress` hears time and phase once per simulated 10 ms.
-pub(crate) fn run<P: Simulator<f64, JOINTS, SPHERES>>(
+pub(crate) fn run(
     task: &Task,
-    plant: &mut P,
+    sim: Sim,
+    disturbance: &Disturbance,
+    seed: u64,
     mut progress: impl FnMut(f64, Phase),
-) -> Result<Run, String>
-where
-    P::Error: core::fmt::Display,
-{
+) -> Result<Run, String> {
+    let mut plant = plant(sim, disturbance)?;
+    let mut noise = Noise::new(seed, 1.0);
+    let mut sensed = VecDeque::new();
     let start = on_the_floor(squat());
     plant.reset(&start, &Tangent::ZERO);
     let mut controller = Controller::new(*task, &start)?;
@@ -65,16 +69,21 @@ where
         peak_force: 0.0,
         qp: QpLog::default(),
     };
+    let mut command = JointCommand::damp(0.0);
     let substeps = (TICK / plant.tick()).round() as usize;
     for k in 0_u64.. {
         let t = k as f64 * TICK - HOLD;
         if t > run.takeoff + SETTLE + 0.7 {
             break;
         }
-        let (q, v) = (*plant.configuration(), *plant.velocity());
-        let forces = sole_forces(plant);
-        let command = controller.tick(t, &q, &v, forces[0].norm() + forces[1].norm());
-        let sample = record(plant, &controller, t);
+        sensed.push_back(measure(&plant, disturbance, &mut noise));
+        if sensed.len() > disturbance.latency_ms + 1 {
+            sensed.pop_front();
+        }
+        if let Some(Measured { q, v, force }) = sensed.front() {
+            command = controller.tick(t, q, v, *force);
+        }
+        let sample = record(&plant, &controller, t);
         observe(&mut run, &sample);
         run.samples.push(sample);
         for _ in 0..substeps {
@@ -91,17 +100,35 @@ where
     Ok(run)
 }
 
+/// What the controller is told at 1 kHz.
+struct Measured {
+    q: State,
+    v: Velocity,
+    /// Sum of the forces on the soles, N.
+    force: f64,
+}
+
+/// The truth, joints with the disturbance's encoder noise.
+fn measure(plant: &Plant, disturbance: &Disturbance, noise: &mut Noise) -> Measured {
+    let (mut q, mut v) = (*plant.configuration(), *plant.velocity());
+    let (dq, dv) = disturbance.encoder;
+    if dq > 0.0 {
+        for (q, v) in q.joints.iter_mut().zip(&mut v.joints) {
+            *q += dq * noise.sample();
+            *v += dv * noise.sample();
+        }
+    }
+    let force = sole_forces(plant).iter().map(|f| f.norm()).sum();
+    Measured { q, v, force }
+}
+
 /// Force of the ground on each sole.
-fn sole_forces<P: Simulator<f64, JOINTS, SPHERES>>(plant: &P) -> [Vector3<f64>; 2] {
+fn sole_forces(plant: &Plant) -> [Vector3<f64>; 2] {
     let f = plant.contact_forces_w();
     [f[..4].iter().sum(), f[4..].iter().sum()]
 }
 
-fn record<P: Simulator<f64, JOINTS, SPHERES>>(
-    plant: &P,
-    controller: &Controller,
-    time: f64,
-) -> Sample {
+fn record(plant: &Plant, controller: &Controller, time: f64) -> Sample {
     let (q, v): (&State, &Velocity) = (plant.configuration(), plant.velocity());
     let posture = Posture::new(&ROBOT, q);
     let state = centroidal_state(&ROBOT, &posture, v);

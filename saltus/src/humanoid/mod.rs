@@ -1,17 +1,19 @@
-//! The jumps of paper B: iCub pushes off by the velocity program, flies and lands.
+//! The jumps of paper B: iCub pushes off by the velocity program or the torque program, flies and lands.
 
 pub(crate) mod control;
 pub(crate) mod execute;
 pub(crate) mod judge;
 pub(crate) mod log;
 
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Terrain};
+use crate::jump::plant::{Disturbance, Sim};
+use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
 use icub_model::gazebo::joint;
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, takeoff_speed};
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Posture, Tangent, center_of_mass};
-use rbd_core::{Kinematics, forward_kinematics};
+use rbd_core::{
+    Configuration, Kinematics, Posture, TableModel, Tangent, center_of_mass, forward_kinematics,
+};
 
 /// Joints of the robot.
 pub(crate) const JOINTS: usize = 23;
@@ -26,11 +28,21 @@ pub(crate) const GRAVITY: f64 = 9.81;
 
 pub(crate) type State = Configuration<f64, JOINTS>;
 pub(crate) type Velocity = Tangent<f64, JOINTS>;
-pub(crate) type Plant = NativeSimulator<f64, Icub23, JOINTS, SPHERES>;
+
+/// What computes the joints' commands in the push-off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Level {
+    /// Paper B, III-D.
+    Velocity,
+    /// Paper B, III-E.
+    Torque,
+}
 
 /// A humanoid task.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Task {
+    /// Level of the push-off's program.
+    pub(crate) level: Level,
     /// Height to gain in flight, m.
     pub(crate) height: f64,
     /// Whether the angular momentum is controlled.
@@ -40,12 +52,24 @@ pub(crate) struct Task {
 impl Task {
     /// The task of this name, `None` if it is none of a humanoid.
     pub(crate) fn named(name: &str, height: f64, momentum: bool) -> Option<Self> {
-        (name == "icub/velocity").then_some(Self { height, momentum })
+        let level = match name {
+            "icub/velocity" => Level::Velocity,
+            "icub/torque" => Level::Torque,
+            _ => return None,
+        };
+        Some(Self {
+            level,
+            height,
+            momentum,
+        })
     }
 
     /// Its name.
     pub(crate) fn name(&self) -> &'static str {
-        "icub/velocity"
+        match self.level {
+            Level::Velocity => "icub/velocity",
+            Level::Torque => "icub/torque",
+        }
     }
 
     /// The push-off of the paper: a displacement of 11 cm.
@@ -122,11 +146,52 @@ pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
     })
 }
 
-/// The embedded simulator of the robot.
-pub(crate) fn plant(friction: f64) -> Plant {
-    let mut settings = Settings::new(&LIMITS, &MOTORS);
-    settings.contact.friction = friction;
-    Plant::new(ROBOT, spheres(), Terrain::FLAT, settings)
+/// A simulator of the robot.
+pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
+
+/// The robot in a simulator.
+pub(crate) fn plant(sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
+    let limits = LIMITS.map(|mut limits| {
+        limits.damping *= disturbance.joint_friction;
+        limits.friction *= disturbance.joint_friction;
+        limits
+    });
+    let mut settings = Settings::new(&limits, &MOTORS);
+    settings.contact.friction = disturbance.friction;
+    let robot = disturbance.robot(&ROBOT)?;
+    Ok(match sim {
+        Sim::Native => Box::new(NativeSimulator::new(
+            robot,
+            spheres(),
+            Terrain::FLAT,
+            settings,
+        )),
+        Sim::Mujoco => mujoco(&robot, settings)?,
+    })
+}
+
+/// MuJoCo, with the soles as boxes.
+#[cfg(feature = "mujoco")]
+fn mujoco(
+    robot: &TableModel<f64, JOINTS>,
+    mut settings: Settings<f64, JOINTS>,
+) -> Result<Plant, String> {
+    use contact_sim::{Geom, MujocoSimulator};
+
+    // Each sole is one box; its force counts for the first of its corners.
+    let geoms: Vec<Geom> = SOLES
+        .iter()
+        .enumerate()
+        .map(|(i, sole)| Geom::of(sole, 4 * i))
+        .collect();
+    settings.substeps = 1;
+    let sim = MujocoSimulator::new(robot, &geoms, &Terrain::FLAT, settings);
+    Ok(Box::new(sim.map_err(|error| error.to_string())?))
+}
+
+#[cfg(not(feature = "mujoco"))]
+fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant, String> {
+    Err(crate::jump::plant::NO_MUJOCO.into())
 }
 
 #[cfg(test)]

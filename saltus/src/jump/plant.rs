@@ -94,9 +94,12 @@ impl Disturbance {
     }
 
     /// The disturbed robot.
-    fn robot(&self) -> Result<TableModel<f64, JOINTS>, String> {
-        let mut base: BaseBody<f64> = *Tree::<f64, JOINTS>::base(&ROBOT);
-        let mut bodies: [Body<f64>; JOINTS] = *Tree::<f64, JOINTS>::bodies(&ROBOT);
+    pub(crate) fn robot<M: Tree<f64, N>, const N: usize>(
+        &self,
+        planned: &M,
+    ) -> Result<TableModel<f64, N>, String> {
+        let mut base: BaseBody<f64> = *planned.base();
+        let mut bodies: [Body<f64>; N] = *planned.bodies();
         base.mass *= self.mass;
         base.first = base.first.map(|x| x * self.mass);
         base.second = base.second.map(|x| x * self.mass);
@@ -125,7 +128,7 @@ impl Disturbance {
 pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
     let mut plant = match sim {
         Sim::Native => Box::new(NativeSimulator::new(
-            disturbance.robot()?,
+            disturbance.robot(&ROBOT)?,
             spheres(),
             terrain(task),
             disturbance.settings(),
@@ -155,15 +158,19 @@ fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
     });
     let mut settings = disturbance.settings();
     settings.substeps = 1;
-    let robot = disturbance.robot()?;
+    let robot = disturbance.robot(&ROBOT)?;
     let sim = MujocoSimulator::new(&robot, &geoms, &terrain(task), settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 
 #[cfg(not(feature = "mujoco"))]
 fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
-    Err("this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`".into())
+    Err(NO_MUJOCO.into())
 }
+
+/// What a build without MuJoCo says.
+#[cfg(not(feature = "mujoco"))]
+pub(crate) const NO_MUJOCO: &str = "this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`";
 
 /// The world of a task. The robot starts at height zero: on the floor, or on a box with the floor below.
 pub(crate) fn terrain(task: &Task) -> Terrain<f64> {

@@ -4,8 +4,10 @@
 //! stated: on 10 to 27 % of plausible states the equalities contradict contacts and limits, and then nothing comes out at
 //! all. How far each was from holding is part of the answer ([`Residuals`]).
 
+mod torque;
 mod velocity;
 
+pub use torque::{TorqueJump, TorqueJumpSettings, TorqueTick};
 pub use velocity::{VelocityJump, VelocityJumpSettings, VelocityTick};
 
 use nalgebra::Vector3;

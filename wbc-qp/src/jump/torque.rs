@@ -1,0 +1,178 @@
+//! The torque controller, paper B eqs. (6a) to (6f).
+//!
+//! The paper prints the posture's s̈* = K_d ṡ − K_p (s − s_d): with that sign damping would drive the joints away from rest, so
+//! it is a slip of the pen; s̈* = −K_d ṡ − K_p (s − s_d) here. Likewise K_p and K_d of eq. (6b) act on the errors in
+//! position and velocity, with a minus sign each. Its A f = −K H_ω is Ḣ_ω = −K H_ω written in forces: the program's elimination of
+//! the base turns the one into the other.
+
+use nalgebra::Vector3;
+use rbd_core::{JointLimits, Motor, Tree, joint_friction};
+use so3::Scalar;
+
+use super::{ComReference, Residuals, distance};
+use crate::task::position_error;
+use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueAnswer, TorqueQp, torque_range};
+
+/// Gains and weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueJumpSettings<T, const N: usize> {
+    /// Of the centre of mass, eq. (6b).
+    pub com: Gains<T>,
+    /// K of eq. (6d), 1/s.
+    pub momentum_gain: T,
+    /// Of the posture, eq. (6a).
+    pub posture: Gains<T>,
+    /// Λ of eq. (6a), per joint.
+    pub posture_weight: [T; N],
+    /// Δ of eq. (6a): weight of a change of torque.
+    pub continuity_weight: T,
+    /// Weight of the centre of mass's rows.
+    pub com_weight: T,
+    /// Weight of the angular momentum's rows; zero leaves eq. (6d) out.
+    pub momentum_weight: T,
+    /// Weight of the tangential forces and moments of the contacts, per N² and (N m)²: what redundant contacts share is
+    /// decided by it.
+    pub force_weight: T,
+    /// How limits act.
+    pub horizon: Horizon<T>,
+    /// Largest mechanical power of a joint, W; ∞ for none.
+    pub max_power: T,
+    /// Whether damping and friction of the joints are known to the program; the paper's did not know them.
+    pub knows_friction: bool,
+}
+
+impl<T: Scalar, const N: usize> TorqueJumpSettings<T, N> {
+    /// Gains found for iCub: centre of mass 100 and 20, posture 50 and 14, momentum 10, Λ = 1, Δ = 1e-3.
+    #[must_use]
+    pub fn icub() -> Self {
+        Self {
+            com: Gains {
+                stiffness: T::of(100.0),
+                damping: T::of(20.0),
+            },
+            momentum_gain: T::of(10.0),
+            posture: Gains {
+                stiffness: T::of(50.0),
+                damping: T::of(14.0),
+            },
+            posture_weight: [T::ONE; N],
+            continuity_weight: T::of(1e-3),
+            com_weight: T::of(1e5),
+            momentum_weight: T::of(1e5),
+            force_weight: T::of(1e-3),
+            horizon: Horizon {
+                position: T::of(0.04),
+                velocity: T::of(0.01),
+                acceleration: T::of(1000.0),
+            },
+            max_power: T::INFINITY,
+            knows_friction: true,
+        }
+    }
+}
+
+/// The controller with its memory.
+#[derive(Clone, Debug)]
+pub struct TorqueJump<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize> {
+    /// Gains and weights.
+    pub settings: TorqueJumpSettings<T, N>,
+    /// s_d: the posture to stay near.
+    pub posture: [T; N],
+    qp: TorqueQp<T, N, K, V, M>,
+    previous: Option<[T; N]>,
+}
+
+/// The result of a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueTick<T, const N: usize, const K: usize> {
+    /// What the program found; `answer.torques` is the command.
+    pub answer: TorqueAnswer<T, N, K>,
+    /// How far the paper's equalities were from holding.
+    pub residuals: Residuals<T>,
+}
+
+impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
+    TorqueJump<T, N, K, V, M>
+{
+    /// At rest in a posture.
+    #[must_use]
+    pub fn new(settings: TorqueJumpSettings<T, N>, posture: [T; N]) -> Self {
+        Self {
+            settings,
+            posture,
+            qp: TorqueQp::new(),
+            previous: None,
+        }
+    }
+
+    /// One tick.
+    ///
+    /// # Errors
+    /// As [`TorqueQp::solve`]; the last command, or damping, is then safe.
+    pub fn tick<R: Tree<T, N>>(
+        &mut self,
+        model: &R,
+        snapshot: &Snapshot<T, N>,
+        contacts: &[Contact<T>],
+        joints: (&[JointLimits<T>; N], &[Motor<T>; N]),
+        wanted: &ComReference<T>,
+    ) -> Result<TorqueTick<T, N, K>, Error> {
+        let s = &self.settings;
+        let (limits, motors) = joints;
+        let (q, qd) = (&snapshot.configuration.joints, &snapshot.velocity.joints);
+        let friction = if s.knows_friction {
+            joint_friction(limits, qd, T::of(0.1))
+        } else {
+            [T::ZERO; N]
+        };
+        self.qp.begin(model, snapshot, contacts, &friction)?; // (6c), (6f)
+        let com = snapshot.com(); // (6b)
+        let com_target = com.acceleration(
+            wanted.acceleration_w.into(),
+            wanted.velocity_w.into(),
+            position_error(&wanted.position_w, &snapshot.com_w()),
+            s.com,
+        );
+        self.qp.minimise(&com, &com_target, &[s.com_weight; 3]);
+        let momentum = snapshot.angular_momentum(); // (6d)
+        let rate: Vector3<T> = -snapshot.momentum_w.angular * s.momentum_gain;
+        let momentum_target = rate.into();
+        self.qp
+            .minimise(&momentum, &momentum_target, &[s.momentum_weight; 3]);
+        let mut posture = self.posture; // (6a)
+        for (x, (q, qd)) in posture.iter_mut().zip(q.iter().zip(qd)) {
+            *x = s.posture.stiffness * (*x - *q) - s.posture.damping * *qd;
+        }
+        self.qp.minimise_joints(&posture, &s.posture_weight);
+        if let Some(previous) = &self.previous {
+            self.qp
+                .minimise_torques(previous, &[s.continuity_weight; N]);
+        }
+        self.qp.minimise_forces(&[T::ZERO; K], &[s.force_weight; K]);
+        self.qp.limit_joints(snapshot, limits, &s.horizon); // (6e)
+        let mut ranges = [[T::ZERO; 2]; N];
+        for (range, (motor, qd)) in ranges.iter_mut().zip(motors.iter().zip(qd)) {
+            *range = torque_range(motor, *qd, s.max_power);
+        }
+        self.qp.limit_torques(&ranges)?;
+        let answer = self.qp.solve()?;
+        self.previous = Some(answer.torques);
+        let reached = |x: [T; 3], drift: [T; 3]| {
+            let (x, drift) = (Vector3::from(x), Vector3::from(drift));
+            <[T; 3]>::from(x + drift)
+        };
+        Ok(TorqueTick {
+            answer,
+            residuals: Residuals {
+                com: distance(
+                    &reached(com.of(&answer.acceleration), com.drift),
+                    &com_target,
+                ),
+                momentum: distance(
+                    &reached(momentum.of(&answer.acceleration), momentum.drift),
+                    &momentum_target,
+                ),
+            },
+        })
+    }
+}

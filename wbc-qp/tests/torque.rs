@@ -1,0 +1,209 @@
+//! The torque program against the equations of motion, its limits, and Clarabel.
+#![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
+
+mod common;
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+};
+use common::{N, Rng, snapshot};
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use rbd_core::{Axes, Configuration, Force, FrameJacobian, Tangent, Transform};
+use rbd_core::{frame_jacobian, joint_friction, rnea};
+use wbc_qp::{Contact, Horizon, Snapshot, TorqueQp, Yielded, anchored, torque_range};
+
+const K: usize = 12;
+const V: usize = 35;
+const M: usize = 55;
+
+/// A crouch on both soles, every joint displaced and moving a little.
+fn crouch(rng: &mut Rng, spread: f64, speed: f64) -> (Configuration<f64, N>, Tangent<f64, N>) {
+    let mut q = [0.0; N];
+    for leg in [0, 6] {
+        (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
+    }
+    for arm in [15, 19] {
+        (q[arm], q[arm + 1], q[arm + 3]) = (-0.5, 0.4, 0.8);
+    }
+    // Both legs alike, so that both soles stay on the ground.
+    for i in 0..6 {
+        let shift = if matches!(i, 0 | 3 | 4) {
+            spread * rng.next()
+        } else {
+            0.0
+        };
+        (q[i], q[i + 6]) = (q[i] + shift, q[i + 6] + shift);
+    }
+    for x in &mut q[12..] {
+        *x += spread * rng.next();
+    }
+    let qd: [f64; N] = core::array::from_fn(|_| speed * rng.next());
+    anchored(&Icub23, &q, &qd, &SOLES[0].frame, &Transform::IDENTITY)
+}
+
+fn contacts(friction: f64) -> [Contact<f64>; 2] {
+    SOLES.map(|sole| Contact::new(&sole, friction, 1000.0))
+}
+
+const HORIZON: Horizon<f64> = Horizon {
+    position: 0.04,
+    velocity: 0.01,
+    acceleration: 1000.0,
+};
+
+/// A program like the push-off's.
+fn program(
+    qp: &mut TorqueQp<f64, N, K, V, M>,
+    s: &Snapshot<f64, N>,
+    rng: &mut Rng,
+    torque_share: f64,
+) -> [f64; N] {
+    let friction = joint_friction(&LIMITS, &s.velocity.joints, 0.1);
+    qp.begin(&Icub23, s, &contacts(0.5), &friction).unwrap();
+    let up = [rng.next(), rng.next(), 6.0 * rng.next()];
+    qp.minimise(&s.com(), &up, &[1e3; 3]);
+    qp.minimise(&s.angular_momentum(), &[0.0; 3], &[1e3; 3]);
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+    qp.limit_joints(s, &LIMITS, &HORIZON);
+    let ranges = core::array::from_fn(|i| {
+        torque_range(&MOTORS[i], s.velocity.joints[i], f64::INFINITY).map(|x| x * torque_share)
+    });
+    qp.limit_torques(&ranges).unwrap();
+    friction
+}
+
+#[test]
+fn an_answer_obeys_the_equations_of_motion_and_every_limit() {
+    let mut rng = Rng(1);
+    let mut qp = TorqueQp::new();
+    for _ in 0..60 {
+        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+        let s = snapshot(&q, &v);
+        let friction = program(&mut qp, &s, &mut rng, 1.0);
+        let a = qp.solve().unwrap();
+        // M ν̇ + h = S τ + τ_fric + Jᵀ f
+        let mut rest = rnea(&Icub23, &s.posture, &v, &a.acceleration);
+        for (i, tau) in rest.joints.iter_mut().enumerate() {
+            *tau -= a.torques[i] + friction[i];
+        }
+        for (sole, f) in SOLES.iter().zip(a.forces.chunks(6)) {
+            let mut j = FrameJacobian::ZERO;
+            frame_jacobian(&Icub23, &s.kinematics, &sole.frame, Axes::Local, &mut j);
+            let f = Force::from_array(core::array::from_fn(|i| f[i]));
+            rest = rest - j.tr_mul(&f);
+        }
+        let worst = rest.base.to_array().into_iter().chain(rest.joints);
+        let worst = worst.fold(0.0, |m: f64, x| m.max(x.abs()));
+        assert!(worst < 1e-8, "{worst}");
+
+        assert_eq!(a.yielded, Yielded::Nothing);
+        assert!(
+            a.contact_violation < 1e-6 && a.limit_violation < 1e-6,
+            "{a:?}"
+        );
+        for (tau, motor) in a.torques.iter().zip(&MOTORS) {
+            assert!(tau.abs() <= motor.torque + 1e-6);
+        }
+        for (contact, f) in contacts(0.5).iter().zip(a.forces.chunks(6)) {
+            let mut k = 0;
+            while let Some(row) = contact.cone(k) {
+                let value: f64 = row.iter().zip(f).map(|(r, f)| r * f).sum();
+                assert!(value < 1e-6, "row {k}: {value}");
+                k += 1;
+            }
+            assert!(k == 10 && f[2] >= -1e-6);
+        }
+    }
+}
+
+/// Optimal cost of the program as it stands, by Clarabel.
+fn oracle(problem: &dense_qp::Problem<'_, f64, V, M>) -> Option<f64> {
+    let h: Vec<Vec<f64>> = problem.hessian.iter().map(|r| r.to_vec()).collect();
+    let p = CscMatrix::from(&h).to_triu();
+    let (mut rows, mut b) = (Vec::new(), Vec::new());
+    let mut add = |row: Vec<f64>, low: f64, high: f64| {
+        if high < f64::INFINITY {
+            rows.push(row.clone());
+            b.push(high);
+        }
+        if low > f64::NEG_INFINITY {
+            rows.push(row.iter().map(|x| -x).collect());
+            b.push(-low);
+        }
+    };
+    for i in 0..M {
+        add(
+            problem.rows[i].to_vec(),
+            problem.row_lower[i],
+            problem.row_upper[i],
+        );
+    }
+    for i in 0..V {
+        let mut row = vec![0.0; V];
+        row[i] = 1.0;
+        add(row, problem.lower.unwrap()[i], problem.upper.unwrap()[i]);
+    }
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .tol_gap_abs(1e-10)
+        .tol_gap_rel(1e-10)
+        .tol_feas(1e-10)
+        .build()
+        .unwrap();
+    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
+    let a = CscMatrix::from(&rows);
+    let mut solver = DefaultSolver::new(&p, problem.gradient, &a, &b, &cones, settings).unwrap();
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {
+            let x: [f64; V] = core::array::from_fn(|i| solver.solution.x[i]);
+            Some(problem.cost(&x))
+        }
+        _ => None,
+    }
+}
+
+#[test]
+fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
+    let mut rng = Rng(2);
+    let (mut solved, mut yielded) = (0, 0);
+    for k in 0..60 {
+        let mut qp = TorqueQp::new();
+        // From states well inside the limits to such where torques or speeds do not allow both contacts.
+        let (speed, share) = if k % 3 == 0 { (12.0, 0.1) } else { (0.3, 0.6) };
+        let (q, v) = crouch(&mut rng, 0.1, speed);
+        let s = snapshot(&q, &v);
+        program(&mut qp, &s, &mut rng, share);
+        let wanted = oracle(&qp.problem());
+        let a = qp.solve().unwrap();
+        if a.yielded == Yielded::Nothing {
+            let mut z = [0.0; V];
+            let unit = s.centroidal.mass * 0.981;
+            for (i, x) in z.iter_mut().enumerate() {
+                *x = if i < N {
+                    a.acceleration.joints[i]
+                } else {
+                    a.forces[i - N] / unit
+                };
+            }
+            let (cost, wanted) = (qp.problem().cost(&z), wanted.unwrap());
+            assert!(
+                (cost - wanted).abs() < 1e-6 * (1.0 + wanted.abs()),
+                "{cost} {wanted}"
+            );
+            solved += 1;
+        } else {
+            assert_eq!(wanted, None, "Clarabel found a solution where rows yielded");
+            yielded += 1;
+        }
+        for (tau, motor) in a.torques.iter().zip(&MOTORS) {
+            assert!(tau.abs() <= share * motor.torque + 1e-6);
+        }
+    }
+    assert!(
+        solved > 20 && yielded > 0,
+        "{solved} solved, {yielded} yielded"
+    );
+}
