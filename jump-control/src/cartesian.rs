@@ -36,13 +36,15 @@ pub struct CartesianPd<T, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
-    /// The command of one 1 kHz tick.
+    /// The command of one 1 kHz tick: torques and joint targets of the `reference` for now, feet compared with the reference `then`,
+    /// for when the measurement was taken. Feedback on late sensors must not answer for the plan's own motion.
     #[must_use]
     pub fn command<M: Tree<T, N>>(
         &self,
         model: &M,
         measured: &Measurement<T, N, F>,
         reference: &Reference<T, N>,
+        then: &Reference<T, N>,
     ) -> JointCommand<T, N> {
         let seen = |joints: &[T; N]| {
             let q = Configuration {
@@ -53,7 +55,7 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
             forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
             kinematics
         };
-        let (now, wanted) = (seen(&measured.joints), seen(&reference.joints));
+        let (now, wanted) = (seen(&measured.joints), seen(&then.joints));
         let (mut j, mut j_d) = (FrameJacobian::ZERO, FrameJacobian::ZERO);
         let mut feed_forward = reference.torques;
         let (kp, kd) = (
@@ -65,7 +67,7 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
             frame_jacobian(model, &wanted, foot, Axes::LocalWorldAligned, &mut j_d);
             let position = wanted.frame(foot).translation - now.frame(foot).translation;
             let velocity =
-                speed(&j_d, &reference.joint_velocities) - speed(&j, &measured.joint_velocities);
+                speed(&j_d, &then.joint_velocities) - speed(&j, &measured.joint_velocities);
             let pull = kp.component_mul(&position) + kd.component_mul(&velocity);
             let effort = j.tr_mul(&Force::new(pull, Vector3::zeros()));
             for (tau, x) in feed_forward.iter_mut().zip(effort.joints) {

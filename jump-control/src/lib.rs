@@ -8,6 +8,7 @@ pub mod minimum_jerk;
 pub mod phase;
 pub mod plan;
 pub mod sample;
+pub mod slew;
 pub mod watch;
 
 pub use cartesian::{CartesianGains, CartesianPd};
@@ -17,4 +18,5 @@ pub use minimum_jerk::MinimumJerk;
 pub use phase::{Event, Phase, TRANSITIONS, next_phase};
 pub use plan::{Node, Plan, PlanError};
 pub use sample::{Reference, Torques, sample};
+pub use slew::Slew;
 pub use watch::{Fault, Measurement, Watch};

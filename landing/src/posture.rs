@@ -32,7 +32,7 @@ pub struct PreLanding<T, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
-    /// Half of at most 0.6 rad, 0.12 s of lead up to 8 cm, joints within 0.5 rad.
+    /// Half of at most 0.6 rad, 0.12 s of lead up to 12 cm, joints within 0.5 rad.
     #[must_use]
     pub fn new(feet: [Frame<T>; F], joints: [T; N]) -> Self {
         Self {

@@ -3,17 +3,17 @@
 use super::log::Sample;
 use super::plant::{Disturbance, Plant, Sim, plant};
 use super::reference::{Reference, heading_matrix};
-use super::sensors::Sensors;
+use super::sensors::{Sensors, Told};
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, ROBOT, TRUNK, feet, kinematics};
-use a1_model::MOTORS;
+use a1_model::{MOTORS, a1};
 use jump_control::{
     CartesianGains, CartesianPd, Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan,
-    Torques, Watch, next_phase, sample,
+    Slew, Torques, Watch, next_phase, sample,
 };
-use landing::{ContactFilter, Landing, Outcome, Settings, Target, TouchdownState, Workspace};
+use landing::{Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace};
 use nalgebra::Vector3;
-use rbd_core::Tangent;
+use rbd_core::{Tangent, joint_friction};
 
 /// Time of standing still before the jump, s.
 pub(crate) const HOLD: f64 = 0.3;
@@ -25,6 +25,12 @@ const STAND_HEIGHT: f64 = 0.25;
 const LEAN: f64 = 0.03;
 /// Damping of the safe command, N m s/rad.
 const SAFE_DAMPING: f64 = 2.0;
+/// Speed at which the joints' Coulomb friction fades, rad/s.
+const FRICTION_SMOOTHING: f64 = 0.1;
+/// Time before the planned touchdown from which the posture follows the tilt, s.
+const LEVELLING: f64 = 0.12;
+/// Largest rate of a joint's torque, N m/s.
+const SLEW: f64 = 1e4;
 /// Ticks of the plant per tick of the controller.
 const RATIO: usize = 10;
 
@@ -53,26 +59,35 @@ struct Controller<'a> {
     pd: CartesianPd<f64, JOINTS, FOOT_COUNT>,
     landing: Landing<f64, JOINTS, FOOT_COUNT, 12, 28>,
     workspace: Workspace<f64, 12, 28>,
-    filter: ContactFilter<f64>,
-    touchdown: TouchdownState<f64, FOOT_COUNT>,
+    detector: Detector<f64, JOINTS, FOOT_COUNT>,
+    contact: DetectorState<f64, JOINTS, FOOT_COUNT>,
     phase: Phase,
     hint: usize,
     goal_w: Vector3<f64>,
     target: Target<f64>,
-    waiting: [f64; JOINTS],
+    posture: PreLanding<f64, JOINTS, FOOT_COUNT>,
     calm: f64,
     fault: Option<Fault>,
 }
 
 impl Controller<'_> {
     /// What has happened, if anything, at plan time `t`.
-    fn event(&mut self, t: f64, measured: &Measurement<f64, JOINTS, FOOT_COUNT>) -> Option<Event> {
+    fn event(&mut self, t: f64, told: &Told) -> Option<Event> {
+        let measured = &told.measured;
         self.fault = Watch { max_age: 0.005 }.fault(measured).or(self.fault);
         if self.fault.is_some() {
             return Some(Event::Fault);
         }
-        self.filter
-            .update(&mut self.touchdown, &measured.foot_forces, 1e-3);
+        let (q, v) = state(measured);
+        self.detector.update(
+            &ROBOT,
+            &mut self.contact,
+            &q,
+            &v,
+            &told.felt,
+            &measured.foot_forces,
+            1e-3,
+        );
         let moving = measured.base_velocity.linear.norm() > 0.05
             || measured.base_velocity.angular.norm() > 0.2;
         self.calm = if moving { 0.0 } else { self.calm + 1e-3 };
@@ -80,7 +95,7 @@ impl Controller<'_> {
             Phase::Hold => (t >= 0.0).then_some(Event::Start),
             Phase::Stance => (t >= self.plan.takeoff).then_some(Event::Takeoff),
             Phase::Flight => (t >= self.plan.posing).then_some(Event::Posing),
-            Phase::PreLanding if self.touchdown.any() => Some(Event::Touchdown),
+            Phase::PreLanding if self.contact.any() => Some(Event::Touchdown),
             Phase::PreLanding => (t > self.plan.touchdown + 0.5).then_some(Event::Overdue),
             Phase::Landing => (self.calm > 0.2).then_some(Event::Settled),
             Phase::Stand => (self.calm == 0.0).then_some(Event::Disturbed),
@@ -89,21 +104,22 @@ impl Controller<'_> {
     }
 
     /// One tick at 1 kHz.
-    fn tick(
-        &mut self,
-        t: f64,
-        measured: &Measurement<f64, JOINTS, FOOT_COUNT>,
-        run: &mut Run,
-    ) -> JointCommand<f64, JOINTS> {
-        if let Some(event) = self.event(t, measured) {
+    fn tick(&mut self, t: f64, told: &Told, run: &mut Run) -> JointCommand<f64, JOINTS> {
+        if let Some(event) = self.event(t, told) {
             self.phase = next_phase(self.phase, event);
         }
+        let measured = &told.measured;
         match self.phase {
             Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding => {
                 run.ticks[1] += 1;
-                let reference = sample(&self.plan, t, self.hint);
-                self.hint = reference.node;
-                self.pd.command(&ROBOT, measured, &reference)
+                let mut then = sample(&self.plan, t - measured.age, self.hint);
+                let mut reference = sample(&self.plan, t, then.node);
+                self.hint = then.node;
+                if self.phase == Phase::PreLanding && t > self.plan.touchdown - LEVELLING {
+                    then.joints = self.meeting(measured);
+                    reference.joints = then.joints;
+                }
+                self.pd.command(&ROBOT, measured, &reference, &then)
             }
             Phase::Landing | Phase::Stand => {
                 run.ticks[2] += 1;
@@ -113,19 +129,19 @@ impl Controller<'_> {
         }
     }
 
+    /// Where legs meet the ground: the plan's landing posture, turned against the measured tilt.
+    fn meeting(&self, measured: &Measurement<f64, JOINTS, FOOT_COUNT>) -> [f64; JOINTS] {
+        let up_b = measured.base.rotation.inverse() * Vector3::z();
+        self.posture
+            .joints(&ROBOT, &up_b, &measured.base_velocity.linear)
+    }
+
     fn land(
         &mut self,
         measured: &Measurement<f64, JOINTS, FOOT_COUNT>,
         run: &mut Run,
     ) -> JointCommand<f64, JOINTS> {
-        let q = super::State {
-            base: measured.base,
-            joints: measured.joints,
-        };
-        let v = Tangent {
-            base: measured.base_velocity,
-            joints: measured.joint_velocities,
-        };
+        let (q, v) = state(measured);
         let poses = kinematics::poses(&q);
         let middle: Vector3<f64> = feet()
             .iter()
@@ -138,9 +154,9 @@ impl Controller<'_> {
             &ROBOT,
             &q,
             &v,
-            &self.touchdown.contacts,
+            &self.contact.contacts,
             &self.target,
-            &self.waiting,
+            &self.posture.joints,
             &mut self.workspace,
         );
         match c.outcome {
@@ -164,6 +180,19 @@ impl Controller<'_> {
             }),
         }
     }
+}
+
+/// Configuration and velocity as measured.
+fn state(measured: &Measurement<f64, JOINTS, FOOT_COUNT>) -> (super::State, Tangent<f64, JOINTS>) {
+    let q = super::State {
+        base: measured.base,
+        joints: measured.joints,
+    };
+    let v = Tangent {
+        base: measured.base_velocity,
+        joints: measured.joint_velocities,
+    };
+    (q, v)
 }
 
 /// Whether a motor gives no more than its limit at this speed.
@@ -212,8 +241,8 @@ pub(crate) fn run(
         },
         landing: Landing::new(feet(), Settings::a1(), MOTORS.map(|motor| motor.torque)),
         workspace: Workspace::new(),
-        filter: ContactFilter::new(),
-        touchdown: TouchdownState::new(),
+        detector: Detector::new(feet()),
+        contact: DetectorState::new(),
         phase: Phase::Hold,
         hint: 0,
         goal_w: kinematics::com(&task.start) + task.goal,
@@ -222,7 +251,11 @@ pub(crate) fn run(
             rot_wb: heading_matrix(task.heading),
             offset_w: [0.0; 2],
         },
-        waiting: reference.landing_joints,
+        posture: PreLanding {
+            // The plan has put the feet where they belong for its speed.
+            lead: 0.0,
+            ..PreLanding::new(feet(), reference.landing_joints)
+        },
         calm: 0.0,
         fault: None,
     };
@@ -243,20 +276,26 @@ pub(crate) fn run(
         estimate_errors: [0.0; 2],
     };
     let end = reference.touchdown + SETTLE + 0.5;
+    let (mut slew, mut felt) = (Slew::new(SLEW), [0.0; JOINTS]);
     let mut k = 0_u64;
     loop {
         let t = k as f64 * 1e-3 - HOLD;
         if t > end {
             break;
         }
-        let measured = sensors.measure(&plant);
-        let command = controller.tick(t, &measured, &mut run);
+        let told = sensors.measure(&plant, &felt);
+        let command = controller.tick(t, &told, &mut run);
+        felt = [0.0; JOINTS];
         run.samples.push(record(&plant, &controller, t));
         for _ in 0..RATIO {
             let (q, v) = sensors.encoders(&plant);
-            let torques = command.torques(&q, &v, &MOTORS);
+            let torques = slew.limit(&command.torques(&q, &v, &MOTORS), plant.tick());
             let speeds = plant.velocity().joints;
             plant.step(&torques).map_err(|error| error.to_string())?;
+            let losses = joint_friction(&a1::LIMITS, &speeds, FRICTION_SMOOTHING);
+            for ((felt, tau), loss) in felt.iter_mut().zip(plant.delivered()).zip(losses) {
+                *felt += (tau + loss) / RATIO as f64;
+            }
             observe(&mut run, &plant, &torques, &speeds, controller.phase, t);
         }
         if k.is_multiple_of(10) {

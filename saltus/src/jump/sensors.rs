@@ -11,7 +11,13 @@ use rbd_core::{GRAVITY, Transform};
 use state_est::{Estimator, Foot, Sample, Settings, Status};
 use std::collections::VecDeque;
 
-type Told = Measurement<f64, JOINTS, FOOT_COUNT>;
+/// What arrives at 1 kHz.
+#[derive(Clone, Copy)]
+pub(crate) struct Told {
+    pub(crate) measured: Measurement<f64, JOINTS, FOOT_COUNT>,
+    /// Torques of the joints over the millisecond before, friction included, N m.
+    pub(crate) felt: [f64; JOINTS],
+}
 
 /// Force at which a foot is certainly loaded, N.
 const LOADED: f64 = 15.0;
@@ -81,11 +87,11 @@ impl Sensors {
         (q, v)
     }
 
-    /// The measurement that arrives in this millisecond.
-    pub(crate) fn measure(&mut self, plant: &Plant) -> Told {
+    /// What arrives in this millisecond, given the torques since the last one.
+    pub(crate) fn measure(&mut self, plant: &Plant, felt: &[f64; JOINTS]) -> Told {
         let (joints, joint_velocities) = self.encoders(plant);
         let forces = plant.contact_forces_w();
-        let mut told = Measurement {
+        let mut measured = Measurement {
             base: plant.configuration().base,
             base_velocity: plant.velocity().base,
             joints,
@@ -93,19 +99,27 @@ impl Sensors {
             foot_forces: core::array::from_fn(|i| forces[i].norm()),
             age: 0.0,
         };
-        self.estimate(plant.configuration(), plant.velocity(), &mut told);
-        self.waiting.push_back(told);
+        self.estimate(plant.configuration(), plant.velocity(), &mut measured);
+        self.waiting.push_back(Told {
+            measured,
+            felt: *felt,
+        });
         while self.waiting.len() > self.disturbance.latency_ms + 1 {
             self.waiting.pop_front();
         }
         let late = (self.waiting.len() - 1) as f64 * PERIOD;
         let mut told = self.waiting[0];
-        told.age += late;
+        told.measured.age += late;
         told
     }
 
     /// Puts the estimate of the base in the place of the truth.
-    fn estimate(&mut self, q: &State, v: &Velocity, told: &mut Told) {
+    fn estimate(
+        &mut self,
+        q: &State,
+        v: &Velocity,
+        told: &mut Measurement<f64, JOINTS, FOOT_COUNT>,
+    ) {
         let (Some(observer), Some(imu)) = (&mut self.observer, self.disturbance.imu) else {
             return;
         };
