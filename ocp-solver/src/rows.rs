@@ -141,6 +141,19 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
+    /// Multiplies all multipliers by a factor.
+    pub(crate) fn scale_multipliers(&mut self, factor: T) {
+        for y in self
+            .costate
+            .iter_mut()
+            .chain(&mut self.row_multiplier)
+            .chain(&mut self.lower.multiplier)
+            .chain(&mut self.upper.multiplier)
+        {
+            *y *= factor;
+        }
+    }
+
     /// Weights and targets of the condensed rows.
     pub(crate) fn condense_rows(&mut self, mu: T) {
         for i in 0..self.row_count() {

@@ -64,9 +64,9 @@ impl<T: Scalar> Settings<T> {
     #[must_use]
     pub fn new() -> Self {
         Self {
-            max_iterations: 400,
+            max_iterations: 600,
             attempt_iterations: 200,
-            restoration_iterations: 100,
+            restoration_iterations: 300,
             primal_tolerance: T::of(2e-7),
             dual_tolerance: T::of(1e-6),
             complementarity_tolerance: T::of(1e-6),

@@ -34,6 +34,8 @@ struct Run<T, const NX: usize> {
     limit: usize,
     /// Give of the rows, see [`crate::rows`].
     elastic: T,
+    /// The next attempt goes on from the slacks and multipliers of the last.
+    warm: bool,
     /// Sums of violations of the last iterates.
     recent: [T; 4],
     best: Residual<T>,
@@ -66,7 +68,7 @@ impl<T: Scalar> Solver<T> {
         // What is left of the limit is for the search of a point of least violation.
         let limit = self.settings.max_iterations;
         let reserve = self.settings.restoration_iterations;
-        run.limit = if limit > reserve.saturating_mul(2) {
+        run.limit = if limit >= reserve.saturating_mul(2) {
             limit.saturating_sub(reserve)
         } else {
             limit
@@ -133,10 +135,19 @@ impl<T: Scalar> Solver<T> {
         run.attempt = run.attempt.saturating_add(1);
         let mut before = T::INFINITY;
         let mut violation = T::INFINITY;
-        for (elastic, mu) in [(1e-3, 1.0), (1e-6, 1.0)] {
+        for elastic in [1e-2, 1e-3, 1e-4, 1e-5] {
+            let mu = self.settings.initial_mu;
+            if run.elastic > T::ZERO {
+                // Multipliers grow as the give shrinks.
+                let growth = run.elastic / T::of(elastic);
+                stages
+                    .iter_mut()
+                    .for_each(|stage| stage.scale_multipliers(growth));
+                run.warm = true;
+            }
             run.elastic = T::of(elastic);
-            let mu = self.settings.initial_mu * T::of(mu);
             let outcome = self.attempt(problem, stages, run, mu, observer);
+            run.warm = false;
             if outcome != Status::Solved {
                 run.elastic = T::ZERO;
                 return if outcome == Status::Cancelled {
@@ -149,7 +160,7 @@ impl<T: Scalar> Solver<T> {
         }
         run.elastic = T::ZERO;
         let far = T::of(100.0) * self.settings.primal_tolerance;
-        if violation > far && violation > before * T::of(0.1) {
+        if violation > far && violation > before * T::of(0.3) {
             run.best = Residual {
                 primal: violation,
                 ..run.best
@@ -183,6 +194,9 @@ impl<T: Scalar> Solver<T> {
         let last_iteration = run.iterations.saturating_add(settings.attempt_iterations);
         for stage in stages.iter_mut() {
             stage.elastic = run.elastic;
+            if run.warm {
+                continue;
+            }
             stage.costate = [T::ZERO; NX];
             let mu = (!run.adaptive).then_some(initial_mu);
             stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
@@ -377,6 +391,7 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
             attempt: 0,
             limit: 0,
             elastic: T::ZERO,
+            warm: false,
             recent: [T::ZERO; 4],
             best: none,
             best_cost: T::INFINITY,
