@@ -55,7 +55,8 @@ pub struct Watch<T> {
 }
 
 impl<T: Scalar> Watch<T> {
-    /// The first fault of a measurement; `None` where it may be acted on.
+    /// The first fault of a measurement; `None` where it may be acted on. Numbers beyond 10⁶ in units of the SI are as little a
+    /// robot's as infinite ones.
     #[must_use]
     pub fn fault<const N: usize, const F: usize>(
         &self,
@@ -65,7 +66,8 @@ impl<T: Scalar> Watch<T> {
         if !fresh {
             return Some(Fault::Stale);
         }
-        let finite = |x: &T| x.is_finite_number();
+        // False for NaN.
+        let finite = |x: &T| so3::math::abs(*x) <= T::of(1e6);
         let mut joints = measured.joints.iter().zip(&measured.joint_velocities);
         if let Some(i) = joints.position(|(q, qd)| !(finite(q) && finite(qd))) {
             return Some(Fault::Joint(i));

@@ -9,7 +9,9 @@ use rbd_core::{
     Axes, Configuration, Frame, FrameJacobian, Kinematics, Posture, Tangent, Tree,
     forward_kinematics, frame_jacobian, rnea,
 };
-use so3::Scalar;
+use so3::{Scalar, math};
+
+use crate::touchdown::is_step;
 
 /// The observer of a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +22,8 @@ pub struct ForceObserver<T, const N: usize, const F: usize> {
     pub time_constant: T,
     /// Tikhonov term on the force, m²: keeps a stretched leg from seeing endless forces along itself.
     pub damping: T,
+    /// A torque beyond which a sample is no measurement, N m.
+    pub max_torque: T,
 }
 
 /// Memory of the observer.
@@ -47,18 +51,20 @@ impl<T: Scalar, const N: usize> Default for ObserverState<T, N> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> ForceObserver<T, N, F> {
-    /// 6 ms, 1e-3 m².
+    /// 6 ms, 1e-3 m², 10 kN m.
     #[must_use]
     pub fn new(feet: [Frame<T>; F]) -> Self {
         Self {
             feet,
             time_constant: T::of(0.006),
             damping: T::of(1e-3),
+            max_torque: T::of(1e4),
         }
     }
 
     /// One tick of `dt` seconds: state, and the torques that the joints had since the last tick, friction included.
-    /// Gives the force of the ground on each foot, world axes, N; `None` on the first tick and where a number is not finite.
+    /// Gives the force of the ground on each foot, world axes, N; `None` on the first tick and where numbers are impossible,
+    /// after which it starts anew.
     pub fn update<M: Tree<T, N>>(
         &self,
         model: &M,
@@ -68,16 +74,24 @@ impl<T: Scalar, const N: usize, const F: usize> ForceObserver<T, N, F> {
         torques: &[T; N],
         dt: T,
     ) -> Option<[Vector3<T>; F]> {
+        if !is_step(dt) {
+            *state = ObserverState::new();
+            return None;
+        }
         let last = state.last.replace(*velocity);
         let acceleration = (*velocity + last? * -T::ONE) * (T::ONE / dt);
         let posture = Posture::new(model, configuration);
         let needed = rnea(model, &posture, velocity, &acceleration).joints;
         let mut residual = state.residual;
         let share = dt / (self.time_constant + dt);
+        let mut sane = true;
         for ((r, needed), tau) in residual.iter_mut().zip(needed).zip(torques) {
-            *r += share * (needed - *tau - *r);
+            let now = needed - *tau;
+            // False for NaN.
+            sane &= math::abs(now) <= self.max_torque;
+            *r += share * (now - *r);
         }
-        if !residual.iter().all(|r| r.is_finite_number()) {
+        if !sane || !residual.iter().all(|r| r.is_finite_number()) {
             *state = ObserverState::new();
             return None;
         }

@@ -57,8 +57,9 @@ impl<T: Scalar> ContactFilter<T> {
     }
 
     /// Takes the forces of one tick of `dt` seconds. A force that is not a number is no evidence either way: the foot
-    /// keeps its state.
+    /// keeps its state. A step that is not one counts as no time.
     pub fn update<const F: usize>(&self, state: &mut TouchdownState<T, F>, forces: &[T; F], dt: T) {
+        let dt = if is_step(dt) { dt } else { T::ZERO };
         let feet = state.contacts.iter_mut().zip(&mut state.unloaded);
         for ((contact, unloaded), force) in feet.zip(forces) {
             if *force >= self.threshold {
@@ -70,6 +71,11 @@ impl<T: Scalar> ContactFilter<T> {
             }
         }
     }
+}
+
+/// Whether a time step is positive and no longer than a second; false for NaN.
+pub(crate) fn is_step<T: Scalar>(dt: T) -> bool {
+    dt > T::ZERO && dt <= T::ONE
 }
 
 impl<T: Scalar> Default for ContactFilter<T> {
