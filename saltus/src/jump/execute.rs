@@ -213,6 +213,18 @@ pub(crate) fn run(
     reference: &Reference,
     sim: Sim,
     seed: u64,
+    progress: impl FnMut(f64, Phase),
+) -> Result<Run, String> {
+    run_tampered(task, reference, sim, seed, |_, _| {}, progress)
+}
+
+/// As [`run`]; `tamper` may change what the controller is told at each millisecond since the start.
+pub(super) fn run_tampered(
+    task: &Task,
+    reference: &Reference,
+    sim: Sim,
+    seed: u64,
+    mut tamper: impl FnMut(u64, &mut Told),
     mut progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let disturbance = Disturbance::draw(seed);
@@ -283,7 +295,8 @@ pub(crate) fn run(
         if t > end {
             break;
         }
-        let told = sensors.measure(&plant, &felt);
+        let mut told = sensors.measure(&plant, &felt);
+        tamper(k, &mut told);
         let command = controller.tick(t, &told, &mut run);
         felt = [0.0; JOINTS];
         run.samples.push(record(&plant, &controller, t));

@@ -1,6 +1,8 @@
 //! The main job: a jump planned, simulated and judged.
 
 pub(crate) mod execute;
+#[cfg(test)]
+mod fuzz;
 pub(crate) mod judge;
 pub(crate) mod kinematics;
 pub(crate) mod log;
