@@ -1,6 +1,7 @@
 //! Options, progress and outcome of a solve.
 
 use so3::Scalar;
+use so3::math::max;
 
 /// How the barrier parameter µ goes to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -60,16 +61,18 @@ pub struct Settings<T> {
 }
 
 impl<T: Scalar> Settings<T> {
-    /// The defaults.
+    /// The defaults; tolerances are those that the scalar type can reach: 1e-4, 1e-2, 1e-4 in `f32`.
     #[must_use]
     pub fn new() -> Self {
+        let noise = so3::math::sqrt(T::EPSILON);
+        let at_least = |tolerance: f64, share: f64| max(T::of(tolerance), T::of(share) * noise);
         Self {
             max_iterations: 600,
             attempt_iterations: 200,
             restoration_iterations: 300,
-            primal_tolerance: T::of(2e-7),
-            dual_tolerance: T::of(1e-6),
-            complementarity_tolerance: T::of(1e-6),
+            primal_tolerance: at_least(2e-7, 0.3),
+            dual_tolerance: at_least(1e-6, 30.0),
+            complementarity_tolerance: at_least(1e-6, 0.3),
             barrier: Barrier::default(),
             initial_mu: T::of(0.02),
             mu_factor: T::of(0.2),
@@ -78,7 +81,7 @@ impl<T: Scalar> Settings<T> {
             adaptive_factor: T::of(0.03),
             initial_multiplier: T::ONE,
             bound_push: T::of(0.2),
-            rank_tolerance: T::of(0.007) * so3::math::sqrt(T::EPSILON),
+            rank_tolerance: T::of(0.007) * noise,
             stall_count: 3,
             stall_step: T::of(0.03),
         }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 use nalgebra::{Matrix3, Vector3};
+use so3::Scalar;
 use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
 
 pub(crate) const NX: usize = 16;
@@ -9,40 +10,46 @@ pub(crate) const NU: usize = 12;
 pub(crate) const NI: usize = 40;
 
 pub(crate) fn jump() -> Problem<f64, 4, 4> {
-    let phase = |contacts, intervals, duration_guess| Phase {
+    jump_in()
+}
+
+pub(crate) fn jump_in<T: Scalar>() -> Problem<T, 4, 4> {
+    let s = T::of;
+    let v = |x: f64, y: f64, z: f64| Vector3::new(s(x), s(y), s(z));
+    let phase = |contacts, intervals, duration_guess: f64| Phase {
         contacts,
         intervals,
-        duration_guess,
-        min_duration: 0.1,
-        max_duration: 1.0,
-        reference_angle: 0.0,
+        duration_guess: s(duration_guess),
+        min_duration: s(0.1),
+        max_duration: s(1.0),
+        reference_angle: s(0.0),
     };
     let feet = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(x, y)| Foot {
-        pos_wf: Vector3::new(0.18 * x, 0.13 * y, 0.0),
-        nominal_b: Vector3::new(0.18 * x, 0.13 * y, 0.0),
+        pos_wf: v(0.18 * x, 0.13 * y, 0.0),
+        nominal_b: v(0.18 * x, 0.13 * y, 0.0),
     });
     let mut corners = [Vector3::zeros(); 8];
     for (i, corner) in corners.iter_mut().enumerate() {
         let side = |bit: usize| if i >> bit & 1 == 0 { 1.0 } else { -1.0 };
-        *corner = Vector3::new(0.18 * side(0), 0.097 * side(1), 0.057 * side(2));
+        *corner = v(0.18 * side(0), 0.097 * side(1), 0.057 * side(2));
     }
     Problem {
-        mass: 12.0,
-        inertia_b: Matrix3::new(0.017, 0.001, 0.0, 0.001, 0.056, 0.002, 0.0, 0.002, 0.065),
-        gravity: 9.81,
+        mass: s(12.0),
+        inertia_b: Matrix3::new(0.017, 0.001, 0.0, 0.001, 0.056, 0.002, 0.0, 0.002, 0.065).map(s),
+        gravity: s(9.81),
         feet,
-        reach_lower: Vector3::new(-0.12, -0.10, -0.33),
-        reach_upper: Vector3::new(0.12, 0.10, -0.10),
-        friction: 0.6,
-        max_force: 160.0,
+        reach_lower: v(-0.12, -0.10, -0.33),
+        reach_upper: v(0.12, 0.10, -0.10),
+        friction: s(0.6),
+        max_force: s(160.0),
         corners,
-        clearance: 0.03,
+        clearance: s(0.03),
         edge: Some(Edge {
-            drop: 0.2,
+            drop: s(0.2),
             axis: 0,
-            sign: 1.0,
-            distance: 0.25,
-            width: 0.03,
+            sign: s(1.0),
+            distance: s(0.25),
+            width: s(0.03),
         }),
         phases: [
             phase([true; 4], 10, 0.4),
@@ -51,19 +58,19 @@ pub(crate) fn jump() -> Problem<f64, 4, 4> {
             phase([false; 4], 0, 0.0),
         ],
         phase_count: 3,
-        min_total: 0.5,
-        max_total: 1.2,
-        start_w: Vector3::new(0.0, 0.0, 0.25),
-        goal_w: Vector3::new(0.4, -0.1, 0.05),
+        min_total: s(0.5),
+        max_total: s(1.2),
+        start_w: v(0.0, 0.0, 0.25),
+        goal_w: v(0.4, -0.1, 0.05),
         axis: Vector3::z(),
-        angle: 0.6,
-        min_final_trace: 2.5,
+        angle: s(0.6),
+        min_final_trace: s(2.5),
         reference: Reference::Linear,
         weights: Weights {
-            omega: 1e-2,
-            force: 1e-5,
-            rotation: 1.0,
+            omega: s(1e-2),
+            force: s(1e-5),
+            rotation: s(1.0),
         },
-        log_epsilon: 1e-6,
+        log_epsilon: s(1e-6),
     }
 }
