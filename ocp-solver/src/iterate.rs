@@ -1,7 +1,7 @@
 //! Passes over all nodes: evaluate, differentiate, residuals, trial points.
 
 use crate::kernel::{add_scaled, add_transposed_product, larger};
-use crate::problem::{Evaluated, Problem, Values};
+use crate::problem::{Evaluated, Problem};
 use crate::rows::Complementarity;
 use crate::settings::Residual;
 use crate::stage::Stage;
@@ -175,32 +175,31 @@ pub(crate) fn merit<T: Scalar, X: Copy, const NX: usize, const NU: usize, const 
         sum: T::ZERO,
     };
     for stage in stages {
-        merit.add(stage, &stage.values, T::ZERO);
+        merit.add(stage, T::ZERO);
     }
     merit
 }
 
 impl<T: Scalar> Merit<T> {
-    /// Adds a node with the given values and its slacks moved by `slack_step` of their steps.
+    /// Adds a node with its slacks moved by `slack_step` of their steps.
     #[inline(always)]
     fn add<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         stage: &Stage<T, X, NX, NU, NI>,
-        values: &Values<T, NX, NI>,
         slack_step: T,
     ) {
-        self.cost += values.cost;
-        for gap in &values.gap {
+        self.cost += stage.values.cost;
+        for gap in &stage.values.gap {
             self.worst = larger(self.worst, *gap);
             self.sum += abs(*gap);
         }
-        let (worst, sum) = stage.row_violation(&values.rows, slack_step);
+        let (worst, sum) = stage.row_violation(slack_step);
         self.worst = larger(self.worst, worst);
         self.sum += sum;
     }
 }
 
-/// Trial point at step length `alpha` and its merit.
+/// Trial point at step length `alpha` and its merit; the values of the stages are those of the trial point.
 pub(crate) fn try_step<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
@@ -228,13 +227,13 @@ pub(crate) fn try_step<
             let before = (&stage.trial.state, &stage.trial.control);
             next.move_to_trial(problem, after, alpha, Some(before));
         }
-        let trial = &mut stage.trial;
         let next = tail.first().map(|next| &next.trial.state);
-        problem.evaluate(k, &trial.state, &trial.control, next, &mut trial.values);
+        let trial = &stage.trial;
+        problem.evaluate(k, &trial.state, &trial.control, next, &mut stage.values);
         if next.is_none() {
-            trial.values.gap = [T::ZERO; NX];
+            stage.values.gap = [T::ZERO; NX];
         }
-        merit.add(stage, &stage.trial.values, alpha);
+        merit.add(stage, alpha);
         rest = tail;
         k = after;
     }
@@ -267,14 +266,14 @@ pub(crate) fn accept<T: Scalar, X: Copy, const NX: usize, const NU: usize, const
     primal: T,
     dual: T,
     mu: T,
+    floor: T,
 ) {
     for stage in stages.iter_mut() {
         stage.state = stage.trial.state;
         stage.control = stage.trial.control;
-        stage.values = stage.trial.values;
         for (costate, full) in stage.costate.iter_mut().zip(&stage.step.costate) {
             *costate += primal * (*full - *costate);
         }
-        stage.accept_rows(primal, dual, mu);
+        stage.accept_rows(primal, dual, mu, floor);
     }
 }

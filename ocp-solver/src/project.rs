@@ -27,6 +27,8 @@ pub(crate) struct Work<T, const NX: usize, const NU: usize> {
     pub(crate) uu: [[T; NU]; NU],
     pub(crate) u: [[T; 1]; NU],
     pub(crate) elimination: Elimination<T, NX, NU>,
+    /// Diagonal of the whitened `Q_uu`: ±1.
+    sign: [T; NU],
     /// Per pivot: −K, S_x, and Q_dx − Σ_d K.
     minus: [[T; NX]; NU],
     s: [[T; NX]; NU],
@@ -50,14 +52,13 @@ struct Free<T, const NX: usize, const NU: usize> {
     u: [[T; 1]; NU],
 }
 
-/// Coordinates `w` of the controls in which their cost is `½ wᵀ diag(sign) w`: `u = L⁻ᵀ S⁻¹ w`.
+/// Coordinates `w` of the controls in which their cost is `½ wᵀ diag(±1) w`: `u = L⁻ᵀ S⁻¹ w`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whitening<T, const NU: usize> {
     /// Columns of `L` below the diagonal.
     lower: [[T; NU]; NU],
     /// Diagonal of `S⁻¹`.
     pub(crate) scale: [T; NU],
-    sign: [T; NU],
 }
 
 impl<T: Scalar, const NU: usize> Whitening<T, NU> {
@@ -65,7 +66,6 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
         Self {
             lower: [[T::ZERO; NU]; NU],
             scale: [T::ONE; NU],
-            sign: [T::ONE; NU],
         }
     }
 
@@ -74,7 +74,7 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
     /// A pivot that is nothing but rounding is taken as zero where nothing couples to it, and is otherwise
     /// replaced by a small one, which changes the Hessian by as little.
     #[inline(always)]
-    fn set(&mut self, uu: &mut [[T; NU]; NU], n: usize) {
+    fn set(&mut self, uu: &mut [[T; NU]; NU], sign: &mut [T; NU], n: usize) {
         let mut diagonal = [T::ZERO; NU];
         for (j, (value, column)) in diagonal.iter_mut().zip(uu.iter()).enumerate().take(n) {
             *value = abs(column[j]);
@@ -119,7 +119,7 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
             let square = max(abs(pivot), max(noise * diagonal[j], T::EPSILON));
             self.lower[j] = column;
             self.scale[j] = T::ONE / sqrt(square);
-            self.sign[j] = pivot / square;
+            sign[j] = pivot / square;
         }
     }
 
@@ -178,6 +178,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
             uu: [[T::ZERO; NU]; NU],
             u: [[T::ZERO; 1]; NU],
             elimination: Elimination::new(),
+            sign: [T::ONE; NU],
             minus: [[T::ZERO; NX]; NU],
             s: [[T::ZERO; NX]; NU],
             shifted: [[T::ZERO; NX]; NU],
@@ -198,7 +199,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
     /// Turns to whitened coordinates of the first `n` controls.
     #[inline(always)]
     pub(crate) fn whiten(&mut self, n: usize, whitening: &mut Whitening<T, NU>) {
-        whitening.set(&mut self.uu, n);
+        whitening.set(&mut self.uu, &mut self.sign, n);
         solve_lower(&whitening.lower, &mut self.xu, n);
         solve_lower(&whitening.lower, &mut self.u, n);
         let rows = self.xu.iter_mut().zip(&mut self.u);
@@ -221,7 +222,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
         n: usize,
         (gain, feedforward): (&mut [[T; NX]; NU], &mut [[T; 1]; NU]),
     ) -> bool {
-        self.project((xx, x), &whitening.sign);
+        self.project((xx, x));
         let Self {
             free,
             reduced,
@@ -275,8 +276,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
 
     /// Puts the dependent controls in and gathers what is left of the free ones.
     #[inline(never)]
-    fn project(&mut self, (xx, x): (&mut [[T; NX]; NX], &mut [T; NX]), sign: &[T; NU]) {
-        let rows = &self.elimination;
+    fn project(&mut self, (xx, x): (&mut [[T; NX]; NX], &mut [T; NX])) {
+        let (rows, sign) = (&self.elimination, &self.sign);
         let mut count = 0usize;
         for (column, i) in rows.pivots() {
             let (Some(q_xd), Some(q_d), Some(k)) = (

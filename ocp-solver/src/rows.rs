@@ -66,23 +66,14 @@ impl<T: Scalar> Complementarity<T> {
 }
 
 impl<T: Scalar, const NI: usize> Side<T, NI> {
-    /// Newton step of the multipliers for slack steps `toward` the far side.
-    fn newton(&mut self, i: usize, mu: T, slack_step: T) {
+    /// Newton step of multiplier `i` for a slack step away from the bound.
+    fn newton(&self, i: usize, mu: T, slack_step: T) -> T {
         let (d, z) = (self.distance[i], self.multiplier[i]);
         if d < T::INFINITY {
-            self.multiplier_step[i] = (mu - z * slack_step) / d - z;
+            (mu - z * slack_step) / d - z
+        } else {
+            T::ZERO
         }
-    }
-
-    /// Largest step in (0, 1] that keeps `1 − fraction` of every multiplier.
-    fn dual_step(&self, rows: usize, fraction: T) -> T {
-        let mut alpha = T::ONE;
-        for (z, dz) in self.multiplier.iter().zip(&self.multiplier_step).take(rows) {
-            if *dz < T::ZERO && alpha * *dz < -fraction * *z {
-                alpha = -fraction * *z / *dz;
-            }
-        }
-        alpha
     }
 }
 
@@ -113,7 +104,6 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             for side in [&mut self.lower, &mut self.upper] {
                 side.distance[i] = T::INFINITY;
                 side.multiplier[i] = T::ZERO;
-                side.multiplier_step[i] = T::ZERO;
             }
             if l == h {
                 self.slack[i] = l;
@@ -198,7 +188,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance and
     /// multiplier.
     pub(crate) fn step_rows(&mut self, mu: T, fraction: T) -> (T, T) {
-        let mut primal = T::ONE;
+        let (mut primal, mut dual) = (T::ONE, T::ONE);
         for i in 0..self.row_count() {
             let change = self.row_change(i);
             let mut ds = self.values.rows[i] - self.slack[i] + change;
@@ -213,8 +203,12 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             if self.is_equality(i) {
                 continue;
             }
-            self.lower.newton(i, mu, ds);
-            self.upper.newton(i, mu, -ds);
+            for (side, ds) in [(&self.lower, ds), (&self.upper, -ds)] {
+                let (z, dz) = (side.multiplier[i], side.newton(i, mu, ds));
+                if dz < T::ZERO && dual * dz < -fraction * z {
+                    dual = -fraction * z / dz;
+                }
+            }
             let limit = if ds < T::ZERO {
                 self.lower.distance[i]
             } else {
@@ -225,11 +219,6 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 primal = fraction * limit / reach;
             }
         }
-        let rows = self.row_count();
-        let dual = min(
-            self.lower.dual_step(rows, fraction),
-            self.upper.dual_step(rows, fraction),
-        );
         (primal, dual)
     }
 
@@ -250,7 +239,9 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     }
 
     /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
-    pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T) {
+    ///
+    /// `mu` is that of the step, `floor` bounds how small a multiplier becomes.
+    pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T, floor: T) {
         for i in 0..self.row_count() {
             let ds = self.step.slack[i];
             if self.is_equality(i) {
@@ -267,22 +258,28 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 if side.distance[i] == T::INFINITY {
                     continue;
                 }
+                let step = side.newton(i, mu, sign * ds);
                 // The distance is kept positive even where rounding would close it.
                 let distance = max(sign * (s - bound), T::EPSILON * side.distance[i]);
                 side.distance[i] = distance;
-                let z = side.multiplier[i] + dual * side.multiplier_step[i];
+                let z = side.multiplier[i] + dual * step;
                 // Kept within 1e10 of the central path, as IPOPT does, so that the Hessian stays exact.
                 let far = T::of(1e10);
-                side.multiplier[i] = max(min(z, mu * far / distance), mu / (far * distance));
+                side.multiplier[i] = max(min(z, floor * far / distance), floor / (far * distance));
             }
             self.row_multiplier[i] = self.upper.multiplier[i] - self.lower.multiplier[i];
         }
     }
 
     /// Largest and summed violation of `c − s = e y` (`s = l` in an equality).
-    pub(crate) fn row_violation(&self, values: &[T; NI], slack_step: T) -> (T, T) {
+    pub(crate) fn row_violation(&self, slack_step: T) -> (T, T) {
         let (mut worst, mut sum) = (T::ZERO, T::ZERO);
-        let rows = values.iter().zip(&self.slack).zip(&self.step.slack);
+        let rows = self
+            .values
+            .rows
+            .iter()
+            .zip(&self.slack)
+            .zip(&self.step.slack);
         for (i, ((value, slack), step)) in rows.enumerate().take(self.row_count()) {
             let moved = if self.is_equality(i) {
                 T::ZERO

@@ -258,7 +258,7 @@ impl<T: Scalar> Solver<T> {
             }
             run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
             let floor = max(run.mu, settings.smallest_mu(run.elastic));
-            iterate::accept(stages, primal_step, dual_step, floor);
+            iterate::accept(stages, primal_step, dual_step, run.mu, floor);
             point = if run.elastic > T::ZERO {
                 // The give of the rows has moved with their multipliers.
                 iterate::merit(stages)
@@ -550,7 +550,6 @@ fn prepare<
             }
         }
         stage.values = crate::problem::Values::new();
-        stage.trial.values = crate::problem::Values::new();
         stage.derivatives = crate::problem::Derivatives::new();
         stage.guess = (stage.state, stage.control);
     }

@@ -12,8 +12,6 @@ pub(crate) struct Side<T, const NI: usize> {
     pub(crate) distance: [T; NI],
     /// Multiplier of the bound, ≥ 0; 0 where there is no bound.
     pub(crate) multiplier: [T; NI],
-    /// Newton step of the multiplier.
-    pub(crate) multiplier_step: [T; NI],
 }
 
 impl<T: Scalar, const NI: usize> Side<T, NI> {
@@ -21,7 +19,6 @@ impl<T: Scalar, const NI: usize> Side<T, NI> {
         Self {
             distance: [T::ZERO; NI],
             multiplier: [T::ZERO; NI],
-            multiplier_step: [T::ZERO; NI],
         }
     }
 }
@@ -51,7 +48,7 @@ pub struct Stage<T, X, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) values: Values<T, NX, NI>,
     pub(crate) derivatives: Derivatives<T, NX, NU, NI>,
     /// Trial point of the line search.
-    pub(crate) trial: Trial<T, X, NX, NU, NI>,
+    pub(crate) trial: Trial<T, X, NU>,
     /// Newton step.
     pub(crate) step: Step<T, NX, NU, NI>,
     pub(crate) riccati: Riccati<T, NX, NU>,
@@ -61,12 +58,11 @@ pub struct Stage<T, X, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) best: (X, [T; NU]),
 }
 
-/// A trial point and its values.
+/// A trial point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial<T, X, const NX: usize, const NU: usize, const NI: usize> {
+pub(crate) struct Trial<T, X, const NU: usize> {
     pub(crate) state: X,
     pub(crate) control: [T; NU],
-    pub(crate) values: Values<T, NX, NI>,
 }
 
 /// The Newton step of a node.
@@ -125,7 +121,6 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             trial: Trial {
                 state,
                 control: [T::ZERO; NU],
-                values: Values::new(),
             },
             step: Step {
                 state: [T::ZERO; NX],
