@@ -128,37 +128,37 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
     #[inline(never)]
     pub(crate) fn new(bodies: &'a [Body<T>; N], q: &[T; N], qd: &[T; N], qdd: &[T; N]) -> Self {
         let ground = Joint::ground();
-        let mut joints = [ground; N];
-        let mut moments = [Moments::zero(); N];
+        // Filled in place: the tables are too large to be moved around.
+        let mut sweep = Self {
+            bodies,
+            joints: [ground; N],
+            own: [Moments::zero(); N],
+            moments: [Moments::zero(); N],
+        };
         let (sin, cos) = so3::math::sin_cos_array(q);
         for i in 0..N {
             let body = &bodies[i];
             let parent = match body.parent {
-                Link::Joint(p) => joints.get(p).copied().unwrap_or(ground),
-                Link::Base => ground,
+                Link::Joint(p) => sweep.joints.get(p).unwrap_or(&ground),
+                Link::Base => &ground,
             };
             let joint = parent.child(body, (sin[i], cos[i]), q[i], qd[i], qdd[i]);
-            joints[i] = joint;
             if body.mass > T::ZERO {
                 let (v, a) = (&joint.velocity, &joint.acceleration);
-                moments[i] = Moments::of(body, &joint.rot, &joint.pos, v, a);
+                let own = Moments::of(body, &joint.rot, &joint.pos, v, a);
+                (sweep.own[i], sweep.moments[i]) = (own, own);
             }
+            sweep.joints[i] = joint;
         }
-        let own = moments;
         for i in (0..N).rev() {
             if let Link::Joint(p) = bodies[i].parent {
-                let below = moments[i];
-                if let Some(slot) = moments.get_mut(p) {
+                let below = sweep.moments[i];
+                if let Some(slot) = sweep.moments.get_mut(p) {
                     *slot = *slot + below;
                 }
             }
         }
-        Self {
-            bodies,
-            joints,
-            own,
-            moments,
-        }
+        sweep
     }
 
     fn body(&self, link: usize) -> &Joint<T> {

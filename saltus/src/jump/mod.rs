@@ -11,6 +11,7 @@ pub(crate) mod reference;
 pub(crate) mod report;
 mod sensors;
 pub(crate) mod task;
+pub(crate) mod whole_body;
 
 use a1_model::{A1Geared, FEET};
 use contact_sim::ContactSphere;

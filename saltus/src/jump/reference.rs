@@ -179,7 +179,7 @@ fn swing_torques(q: &State, joints: &[f64; JOINTS], rates: &[f64; JOINTS]) -> [f
 }
 
 /// The pre-landing posture: feet below and outside the hips.
-fn landing_posture(task: &Task) -> Result<[f64; JOINTS], String> {
+pub(super) fn landing_posture(task: &Task) -> Result<[f64; JOINTS], String> {
     let hips = &task.problem.feet;
     let com_b = com(&task.start) - task.start.base.translation;
     let mut q = State {

@@ -1,5 +1,6 @@
 //! `saltus plan`: solve a reference problem.
 
+mod product;
 mod srb;
 mod whole_body;
 
@@ -21,8 +22,9 @@ pub(crate) struct Args {
     /// JSON description to take tasks from instead of the shipped nine.
     #[arg(long)]
     problem: Option<PathBuf>,
-    /// Stage to solve.
-    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"])]
+    /// Stage to solve: the reference problems `srb` and `whole-body`, or `product`, both for the robot that executes
+    /// the task, with margins.
+    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body", "product"])]
     stage: String,
     /// SRB solution that the whole-body stage follows; default: the shipped one of the reference task, or,
     /// for tasks of a problem file, one that is solved first.
@@ -78,7 +80,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let file = File::parse(&text)?;
     let name = file.pick(args.reference.as_deref())?;
     let mut report = json!({ "task": name });
-    let (key, planned) = if args.stage == "whole-body" {
+    let (key, planned) = if args.stage == "product" {
+        if args.problem.is_some() || args.srb.is_some() {
+            return Err("--stage product plans the shipped tasks from its own rigid body".into());
+        }
+        let (srb, planned) = product::solve(args, name)?;
+        report["srb"] = srb;
+        ("whole_body", planned)
+    } else if args.stage == "whole-body" {
         let srb = match &args.srb {
             Some(path) => read(path)?,
             None => match shipped(name).filter(|_| args.problem.is_none()) {

@@ -63,14 +63,7 @@ pub(super) fn solve(args: &Args, file: &File, name: &str, srb: &str) -> Result<P
 
 /// The arrays the reference checkers read, at the midpoints of the intervals.
 fn layout(samples: &[Sample<f64, N, FEET>], order: EulerOrder) -> Value {
-    // From the order of the chain to x, y, z, roll, pitch, yaw.
-    let filed = |x: &[f64; N]| {
-        let mut out = x.to_vec();
-        for (value, column) in x.iter().zip(order.columns()) {
-            out[column] = *value;
-        }
-        out
-    };
+    let filed = |x: &[f64; N]| filed(x, order);
     let rows = |row: &dyn Fn(&Sample<f64, N, FEET>) -> Value| -> Value {
         samples.iter().map(row).collect()
     };
@@ -81,4 +74,13 @@ fn layout(samples: &[Sample<f64, N, FEET>], order: EulerOrder) -> Value {
         "tau": rows(&|s| json!(s.effort[BASE..])),
         "F": rows(&|s| s.forces_w.iter().map(|f| json!(f.as_slice())).collect()),
     })
+}
+
+/// From the order of the chain to x, y, z, roll, pitch, yaw.
+pub(super) fn filed(x: &[f64; N], order: EulerOrder) -> Vec<f64> {
+    let mut out = x.to_vec();
+    for (value, column) in x.iter().zip(order.columns()) {
+        out[column] = *value;
+    }
+    out
 }

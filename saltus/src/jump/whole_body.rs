@@ -1,0 +1,294 @@
+//! The whole-body plan of a task as it is to be executed: the geared A1 on rolling ball feet, with margins.
+
+use super::kinematics::com;
+use super::reference::landing_posture;
+use super::task::{SrbPlan, Task};
+use super::{FOOT_COUNT, JOINTS, ROBOT, feet};
+use a1_model::FOOT_RADIUS;
+use core::ops::ControlFlow;
+use nalgebra::Vector3;
+use ocp_solver::{Progress, Solution, Stage, Status};
+use wb_opt::{
+    BASE, Clearance, EulerOrder, Foot, Gains, Judgement, Phase, Point, Problem, Robot, Sample,
+    State, Weights,
+};
+
+/// Coordinates of the robot.
+pub(crate) const N: usize = BASE + JOINTS;
+const NX: usize = 2 * N;
+const NU: usize = N + 3 * FOOT_COUNT;
+/// Trunk corners and knees.
+const CLEARANCES: usize = 12;
+const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, CLEARANCES, true);
+
+/// Longest interval in contact, s: the rate at which a controller is given new torques.
+const CONTACT_DT: f64 = 0.01;
+/// Longest interval in flight, s: no forces change, but the turn must be right.
+const FLIGHT_DT: f64 = 0.005;
+/// Time before touchdown in which the legs rest in the landing posture, s.
+const POSED: f64 = 0.05;
+/// Torques that plans may use of the motors' 33.5 N m: the first with which the task is solved.
+const PLANNED_TORQUES: [f64; 3] = [24.0, 28.0, 30.0];
+/// Iterations after which more torque is tried; a task that is solved takes a third of it.
+const PATIENCE: usize = 100;
+/// How much farther than it is a box edge is taken to be, m.
+const EDGE_MARGIN: f64 = 0.05;
+/// How far a ball may roll from where it stood, per axis, m.
+const ROLL: f64 = 0.03;
+/// How far below standing height a foot in the air may be, m.
+const GRAZE: f64 = 0.005;
+const KNEE_CLEARANCE: f64 = 0.03;
+const FRICTION_SMOOTHING: f64 = 0.3;
+const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
+const WEIGHTS: Weights<f64> = Weights {
+    position: 1.0,
+    effort: 1e-4,
+    goal: 10.0,
+};
+
+/// A solved whole-body plan.
+pub(crate) struct WholeBodyPlan {
+    pub(crate) outcome: Solution<f64>,
+    pub(crate) judged: Judgement<f64>,
+    /// Torque that the plan was allowed, N m.
+    pub(crate) torque_limit: f64,
+    /// Order of the base coordinates.
+    pub(crate) order: EulerOrder,
+    pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
+    pub(crate) intervals: Vec<Interval>,
+}
+
+/// One interval of a plan; torques and forces are held over it.
+pub(crate) struct Interval {
+    /// Start and length, s.
+    pub(crate) start: f64,
+    pub(crate) dt: f64,
+    /// State at the start.
+    pub(crate) state: State<f64, N>,
+    /// The middle.
+    pub(crate) sample: Sample<f64, N, FOOT_COUNT>,
+    pub(crate) gains: Gains<f64, N, FOOT_COUNT>,
+}
+
+/// Plans the whole body along a single-rigid-body plan.
+pub(crate) fn plan(
+    task: &Task,
+    srb: &SrbPlan,
+    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<WholeBodyPlan, String> {
+    let rigid = &task.problem;
+    // The axis of the turn is the last of the chain, or the first: never the middle one.
+    let order = if rigid.axis.y.abs() > 0.5 {
+        EulerOrder::Zxy
+    } else {
+        EulerOrder::Zyx
+    };
+    let landing_joints = landing_posture(task)?;
+    let coordinates = |pos: &Vector3<f64>, angles: [f64; 3], joints: &[f64; JOINTS]| {
+        core::array::from_fn(|i| match i {
+            0..3 => pos[i],
+            3..BASE => angles[i - 3],
+            _ => joints[i - BASE],
+        })
+    };
+    let level = [0.0; 3];
+    let standing = &task.start.base.translation;
+    let start: [f64; N] = coordinates(standing, level, &task.start.joints);
+
+    let mut phases = Vec::new();
+    for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
+        let longest = if phase.contacts.contains(&true) {
+            CONTACT_DT
+        } else {
+            FLIGHT_DT
+        };
+        let intervals = (duration / longest).ceil().max(1.0);
+        phases.push(Phase {
+            contacts: phase.contacts,
+            intervals: intervals as usize,
+            dt: duration / intervals,
+        });
+    }
+    let track = Track::new(task, srb, order);
+    let mut times = vec![0.0];
+    for phase in &phases {
+        let begin = times[times.len() - 1];
+        times.extend((1..=phase.intervals).map(|i| begin + phase.dt * i as f64));
+    }
+    let flight = phases.last().map_or(0, |phase| phase.intervals);
+    let take_off = times.len() - 1 - flight;
+    let mut nodes: Vec<[f64; N]> = Vec::with_capacity(times.len());
+    for (k, time) in times.iter().enumerate() {
+        let joints = if k <= take_off {
+            &task.start.joints
+        } else {
+            &landing_joints
+        };
+        let (pos, angles) = track.at(*time);
+        nodes.push(coordinates(&pos, angles, joints));
+    }
+    let turn = rigid.axis * rigid.angle;
+    let columns = order.columns();
+    let goal_angles = core::array::from_fn(|i| turn[columns[3 + i] - 3]);
+    let moved = rigid.goal_w - rigid.start_w;
+    let goal: [f64; N] = coordinates(&(standing + moved), goal_angles, &landing_joints);
+    let reference: Vec<[f64; N]> = nodes
+        .windows(2)
+        .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
+        .collect();
+
+    let frames = feet();
+    let com_b = com(&task.start) - standing;
+    let corner = |corner: &Vector3<f64>| Clearance {
+        point: Point {
+            link: BASE - 1,
+            // The single rigid body's corners are seen from its centre of mass.
+            offset_l: corner + com_b,
+        },
+        height: rigid.clearance,
+    };
+    let knee = |leg: usize| Clearance {
+        point: Point {
+            link: BASE + 3 * leg + 2,
+            offset_l: Vector3::zeros(),
+        },
+        height: KNEE_CLEARANCE,
+    };
+    let clearances: Vec<_> = rigid
+        .corners
+        .iter()
+        .map(corner)
+        .chain((0..FOOT_COUNT).map(knee))
+        .collect();
+    let edge = rigid.edge.map(|mut edge| {
+        edge.distance += EDGE_MARGIN;
+        edge
+    });
+    let mut problem = Problem {
+        robot: Robot::on_euler_base(&ROBOT, order),
+        feet: core::array::from_fn(|i| Foot {
+            point: Robot::<f64, N>::point(&frames[i]),
+            pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, FOOT_RADIUS),
+            radius: FOOT_RADIUS,
+        }),
+        clearances: &clearances,
+        swing_height: FOOT_RADIUS - GRAZE,
+        edge,
+        phases: &phases,
+        reference: &reference,
+        start,
+        goal,
+        goal_tolerance: GOAL_TOLERANCE,
+        landing_intervals: (POSED / FLIGHT_DT) as usize,
+        friction_smoothing: FRICTION_SMOOTHING,
+        friction: rigid.friction,
+        drift: ROLL,
+        weights: WEIGHTS,
+    };
+    let mut stages: Vec<Stage<f64, State<f64, N>, NX, NU, NI>> =
+        vec![Stage::new(State::at_rest(start)); problem.intervals() + 1];
+    let mut settings = wb_opt::settings();
+    (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
+    let mut solved = None;
+    for torque in PLANNED_TORQUES {
+        for limit in problem.robot.limits.iter_mut().skip(BASE) {
+            limit.effort = torque;
+        }
+        let force = |k: usize, foot: usize| track.force(times[k], foot);
+        problem.write_guess(&mut stages, &nodes, force, || 0.0);
+        let outcome = problem
+            .plan(&settings, &mut stages, &mut observer)
+            .map_err(|error| format!("task {}: {error}", task.name))?;
+        solved = Some((outcome, torque));
+        if matches!(outcome.status, Status::Solved | Status::Cancelled) {
+            break;
+        }
+    }
+    let (outcome, torque_limit) = solved.ok_or("no torque to plan with")?;
+    let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
+    let intervals = stages[..problem.intervals()].iter().enumerate();
+    let intervals = intervals.map(|(k, stage)| Interval {
+        start: times[k],
+        dt: problem.dt(k),
+        state: stage.state,
+        sample: problem.sample(k, &stage.state, &stage.control),
+        gains: problem.gains(k, &stage.state, &stage.control, stage.gain()),
+    });
+    Ok(WholeBodyPlan {
+        outcome,
+        judged,
+        torque_limit,
+        order,
+        intervals: intervals.collect(),
+        phases,
+    })
+}
+
+fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
+    let state = srb.stages.first().map(|stage| stage.state.durations);
+    state.into_iter().flatten()
+}
+
+/// The single-rigid-body plan over time, as motion of the robot's base.
+struct Track<'a> {
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    times: Vec<f64>,
+    /// Base position and angles, without jumps, at the nodes.
+    base: Vec<(Vector3<f64>, [f64; 3])>,
+}
+
+impl<'a> Track<'a> {
+    fn new(task: &'a Task, srb: &'a SrbPlan, order: EulerOrder) -> Self {
+        let problem = &task.problem;
+        let com_b = com(&task.start) - task.start.base.translation;
+        let mut time = 0.0;
+        let mut times = Vec::new();
+        let mut base: Vec<(Vector3<f64>, [f64; 3])> = Vec::new();
+        for (k, stage) in srb.stages.iter().enumerate() {
+            let state = &stage.state;
+            times.push(time);
+            if let Some((i, phase)) = problem.phase_of(k) {
+                time += state.durations[i] / phase.intervals as f64;
+            }
+            let mut angles = order.angles(&state.rot_wb);
+            if let Some((_, before)) = base.last() {
+                for (x, x0) in angles.iter_mut().zip(before) {
+                    let turns = (*x - x0) / core::f64::consts::TAU;
+                    *x -= core::f64::consts::TAU * turns.round();
+                }
+            }
+            base.push((state.pos_w - state.rot_wb * com_b, angles));
+        }
+        Self {
+            task,
+            srb,
+            times,
+            base,
+        }
+    }
+
+    fn index(&self, time: f64) -> usize {
+        let after = self.times.partition_point(|t| *t <= time + 1e-9);
+        after.saturating_sub(1).min(self.times.len() - 2)
+    }
+
+    fn at(&self, time: f64) -> (Vector3<f64>, [f64; 3]) {
+        let i = self.index(time);
+        let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);
+        let ((p, a), (p1, a1)) = (&self.base[i], &self.base[i + 1]);
+        (
+            p + (p1 - p) * share,
+            core::array::from_fn(|c| a[c] + share * (a1[c] - a[c])),
+        )
+    }
+
+    fn force(&self, time: f64, foot: usize) -> Vector3<f64> {
+        let k = self.index(time);
+        let stage = &self.srb.stages[k];
+        self.task
+            .problem
+            .sample(k, &stage.state, &stage.control)
+            .forces_w[foot]
+    }
+}
