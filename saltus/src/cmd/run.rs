@@ -27,6 +27,9 @@ pub(crate) struct Args {
     /// Humanoid tasks: leave the angular momentum alone.
     #[arg(long)]
     no_momentum: bool,
+    /// Humanoid tasks: share of the joints' torque limits that there is.
+    #[arg(long, default_value_t = 1.0)]
+    torque_share: f64,
     /// Print one JSON object instead of text.
     #[arg(long)]
     json: bool,
@@ -37,7 +40,13 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
-    if let Some(task) = humanoid::Task::named(&args.task, args.height, !args.no_momentum) {
+    if let Some(task) = humanoid::Task::named(&args.task) {
+        let task = humanoid::Task {
+            height: args.height,
+            momentum: !args.no_momentum,
+            torque_share: args.torque_share,
+            ..task
+        };
         return run_humanoid(args, &task);
     }
     let task = Task::load(&args.task)?;

@@ -2,7 +2,7 @@
 
 use super::{GRAVITY, JOINTS, Level, ROBOT, State, Task, Velocity, landing_posture};
 use icub_model::gazebo::joint;
-use icub_model::{LIMITS, MOTORS, SOLES};
+use icub_model::{LIMITS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
 use nalgebra::Vector3;
 use rbd_core::{JointLimits, Transform};
@@ -17,14 +17,12 @@ pub(crate) const TICK: f64 = 1e-3;
 const AERIAL: f64 = 0.12;
 /// Factors on the servos' gains of legs and torso once the ground is there: the hold of paper B, but compliant, since the
 /// stiff one throws the robot back into the air.
-const LANDING_STIFFNESS: f64 = 0.2;
-const LANDING_DAMPING: f64 = 2.0;
+const LANDING_STIFFNESS: f64 = 0.1;
+const LANDING_DAMPING: f64 = 1.4;
 /// Force on both soles that counts as touchdown, N.
 const TOUCH: f64 = 20.0;
 /// Ground friction that the controller counts on.
 const FRICTION: f64 = 0.5;
-/// Share of the joints' speed limits that the program may use.
-const SPEED_MARGIN: f64 = 0.96;
 /// Residuals up to which an equality of the paper counts as held: m/s and kg m²/s.
 const HELD_VELOCITY: Residuals<f64> = Residuals {
     com: 0.02,
@@ -76,20 +74,25 @@ pub(crate) struct Controller {
 fn servo_gains() -> [JointGains<f64>; JOINTS] {
     core::array::from_fn(|i| {
         let (stiffness, damping) = match i {
-            0..12 if i % 6 == 4 || i % 6 == 5 => (1500.0, 15.0),
-            0..12 => (3000.0, 40.0),
-            12..15 => (2000.0, 30.0),
-            _ => (300.0, 5.0),
+            0..12 if i % 6 == 4 || i % 6 == 5 => (4000.0, 20.0),
+            0..12 => (6000.0, 60.0),
+            12..15 => (4000.0, 50.0),
+            _ => (600.0, 8.0),
         };
         JointGains { stiffness, damping }
     })
 }
 
-/// The joints' limits with a margin on speed: a servo overshoots its command by a per cent.
+/// The joints' limits with a margin on speed: servos overshoot their commands a little, the light arms more.
 fn guarded_limits() -> [JointLimits<f64>; JOINTS] {
-    LIMITS.map(|limits| JointLimits {
-        speed: SPEED_MARGIN * limits.speed,
-        ..limits
+    core::array::from_fn(|i| JointLimits {
+        speed: LIMITS[i].speed
+            * if i < joint::L_SHOULDER_PITCH {
+                0.95
+            } else {
+                0.9
+            },
+        ..LIMITS[i]
     })
 }
 
@@ -258,7 +261,7 @@ impl Controller {
             &ROBOT,
             &self.snapshot,
             &self.contacts,
-            (&guarded_limits(), &MOTORS),
+            (&guarded_limits(), &self.task.motors()),
             &self.reference,
         );
         self.servo = self.snapshot.configuration.joints;

@@ -5,7 +5,7 @@ use super::log::Sample;
 use super::{Plant, ROBOT, State, Task, Velocity, on_the_floor, plant, poses, spheres, squat};
 use crate::jump::plant::{Disturbance, Sim};
 use crate::noise::Noise;
-use icub_model::{LIMITS, MOTORS};
+use icub_model::LIMITS;
 use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
 use rbd_core::{CentroidalMap, Posture, Tangent, centroidal_map, centroidal_state};
@@ -50,7 +50,7 @@ pub(crate) fn run(
     seed: u64,
     mut progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
-    let mut plant = plant(sim, disturbance)?;
+    let mut plant = plant(task, sim, disturbance)?;
     let mut noise = Noise::new(seed, 1.0);
     let mut sensed = VecDeque::new();
     let start = on_the_floor(squat());
@@ -70,6 +70,7 @@ pub(crate) fn run(
         qp: QpLog::default(),
     };
     let mut command = JointCommand::damp(0.0);
+    let motors = task.motors();
     let substeps = (TICK / plant.tick()).round() as usize;
     for k in 0_u64.. {
         let t = k as f64 * TICK - HOLD;
@@ -88,7 +89,7 @@ pub(crate) fn run(
         run.samples.push(sample);
         for _ in 0..substeps {
             let (q, v) = (plant.configuration().joints, plant.velocity().joints);
-            let torques = command.torques(&q, &v, &MOTORS);
+            let torques = command.torques(&q, &v, &motors);
             plant.step(&torques).map_err(|error| error.to_string())?;
         }
         if k.is_multiple_of(10) {

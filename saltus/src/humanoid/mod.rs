@@ -12,7 +12,8 @@ use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, takeoff_speed};
 use nalgebra::Vector3;
 use rbd_core::{
-    Configuration, Kinematics, Posture, TableModel, Tangent, center_of_mass, forward_kinematics,
+    Configuration, Kinematics, Motor, Posture, TableModel, Tangent, center_of_mass,
+    forward_kinematics,
 };
 
 /// Joints of the robot.
@@ -47,11 +48,13 @@ pub(crate) struct Task {
     pub(crate) height: f64,
     /// Whether the angular momentum is controlled.
     pub(crate) momentum: bool,
+    /// Share of the joints' torque limits that there is, for motors and controller alike.
+    pub(crate) torque_share: f64,
 }
 
 impl Task {
     /// The task of this name, `None` if it is none of a humanoid.
-    pub(crate) fn named(name: &str, height: f64, momentum: bool) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         let level = match name {
             "icub/velocity" => Level::Velocity,
             "icub/torque" => Level::Torque,
@@ -59,8 +62,17 @@ impl Task {
         };
         Some(Self {
             level,
-            height,
-            momentum,
+            height: 0.04,
+            momentum: true,
+            torque_share: 1.0,
+        })
+    }
+
+    /// The motors there are.
+    pub(crate) fn motors(&self) -> [Motor<f64>; JOINTS] {
+        MOTORS.map(|motor| Motor {
+            torque: self.torque_share * motor.torque,
+            ..motor
         })
     }
 
@@ -150,13 +162,13 @@ pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
 pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
 
 /// The robot in a simulator.
-pub(crate) fn plant(sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
+pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
     let limits = LIMITS.map(|mut limits| {
         limits.damping *= disturbance.joint_friction;
         limits.friction *= disturbance.joint_friction;
         limits
     });
-    let mut settings = Settings::new(&limits, &MOTORS);
+    let mut settings = Settings::new(&limits, &task.motors());
     settings.contact.friction = disturbance.friction;
     let robot = disturbance.robot(&ROBOT)?;
     Ok(match sim {
@@ -196,7 +208,9 @@ fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant
 
 #[cfg(test)]
 mod tests {
-    use super::{com, on_the_floor, poses, squat};
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Task, com, execute, on_the_floor, poses, squat};
+    use crate::jump::plant::{Disturbance, Sim};
     use icub_model::{LIMITS, SOLES};
 
     #[test]
@@ -213,6 +227,75 @@ mod tests {
         assert!(c.x > -0.03 && c.x < 0.08, "{c:?}");
         for (q, limits) in q.joints.iter().zip(&LIMITS) {
             assert!(*q > limits.lower && *q < limits.upper);
+        }
+    }
+
+    /// However the plant differs: every program is solved, and no command leaves its limits. The jump itself may suffer.
+    #[test]
+    fn no_program_fails_whatever_the_plant_does() {
+        let nominal = Disturbance::NOMINAL;
+        let cases = [
+            (0.6, nominal),
+            (
+                1.0,
+                Disturbance {
+                    mass: 1.1,
+                    ..nominal
+                },
+            ),
+            (
+                1.0,
+                Disturbance {
+                    mass: 0.9,
+                    ..nominal
+                },
+            ),
+            (
+                1.0,
+                Disturbance {
+                    friction: 0.4,
+                    ..nominal
+                },
+            ),
+            (
+                1.0,
+                Disturbance {
+                    latency_ms: 2,
+                    ..nominal
+                },
+            ),
+            (
+                1.0,
+                Disturbance {
+                    encoder: (1e-3, 0.05),
+                    ..nominal
+                },
+            ),
+            (
+                0.6,
+                Disturbance {
+                    mass: 1.1,
+                    friction: 0.4,
+                    latency_ms: 2,
+                    encoder: (1e-3, 0.05),
+                    ..nominal
+                },
+            ),
+        ];
+        for name in ["icub/velocity", "icub/torque"] {
+            for (torque_share, disturbance) in cases {
+                let task = Task {
+                    torque_share,
+                    ..Task::named(name).unwrap()
+                };
+                let run = execute::run(&task, Sim::Native, &disturbance, 1, |_, _| {}).unwrap();
+                assert_eq!(run.qp.failures, 0, "{name} {torque_share} {disturbance:?}");
+                for sample in &run.samples {
+                    for (tau, motor) in sample.torques.iter().zip(task.motors()) {
+                        assert!(tau.abs() <= motor.torque + 1e-9);
+                    }
+                }
+            }
         }
     }
 }
