@@ -24,6 +24,8 @@ enum Command {
     Import(cmd::import::Args),
     /// Plan a jump, execute it in simulation, and report.
     Run(cmd::run::Args),
+    /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
+    Envelope(cmd::envelope::Args),
 }
 
 fn main() -> ExitCode {
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Command::Plan(args) => cmd::plan::run(&args),
         Command::Import(args) => Ok(cmd::import::run(&args)),
         Command::Run(args) => cmd::run::run(&args),
+        Command::Envelope(args) => cmd::envelope::run(&args),
     };
     match outcome {
         Ok(code) => code,

@@ -33,3 +33,13 @@ impl Noise {
         self.deviation * radius * so3::math::cos(2.0 * core::f64::consts::PI * self.uniform())
     }
 }
+
+/// A seed for sample `index` of a study with this seed.
+pub(crate) fn mix(seed: u64, index: u64) -> u64 {
+    let mut z = seed
+        .wrapping_mul(0xff51_afd7_ed55_8ccd)
+        .wrapping_add(index.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

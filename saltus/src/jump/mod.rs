@@ -1,5 +1,6 @@
 //! The main job: a jump planned, simulated and judged.
 
+pub(crate) mod envelope;
 pub(crate) mod execute;
 #[cfg(test)]
 mod fuzz;

@@ -1,0 +1,49 @@
+//! Studies of many runs: shards, resumption, and what is refused.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn envelope(out: &Path, more: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command.args(["envelope", "a1/lateral", "--samples", "4", "--out"]);
+    command.arg(out).args(more).output().unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).unwrap()
+}
+
+#[test]
+fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
+    let (whole, parts) = (folder("whole"), folder("parts"));
+    assert!(envelope(&whole, &[]).status.success());
+    assert!(envelope(&parts, &["--shard", "2/2"]).status.success());
+    assert!(envelope(&parts, &["--shard", "1/2"]).status.success());
+    let table = read(&whole, "table.csv");
+    assert_eq!(read(&parts, "table.csv"), table);
+    assert!(table.contains("\nall,,,,,,4,"), "{table}");
+    assert!(read(&parts, "picture.svg").ends_with("</svg>\n"));
+
+    // Stopped in the middle of a line: the cut sample is run again, the others are not.
+    let file = whole.join("shard-1-of-1.csv");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let cut = &text[..text.len() - 9];
+    std::fs::write(&file, cut).unwrap();
+    assert!(envelope(&whole, &[]).status.success());
+    assert_eq!(read(&whole, "table.csv"), table);
+    let now = std::fs::read_to_string(&file).unwrap();
+    assert!(now.starts_with(cut) && now.lines().count() == text.lines().count() + 1);
+
+    // Another study does not mix with this one.
+    let other = envelope(&whole, &["--seed", "2"]);
+    assert!(!other.status.success());
+    assert!(String::from_utf8_lossy(&other.stderr).contains("another study"));
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), now);
+}
