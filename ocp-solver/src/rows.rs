@@ -131,6 +131,29 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         }
     }
 
+    /// Places slacks inside bounds that may have moved since the last solve, and keeps its multipliers within
+    /// a factor of ten of the central path of `mu`.
+    pub(crate) fn resume_rows(&mut self, push: T, mu: T) {
+        let kept = (
+            self.lower.multiplier,
+            self.upper.multiplier,
+            self.row_multiplier,
+        );
+        self.start_rows(min(push, so3::math::sqrt(mu)), T::ONE, Some(mu));
+        let ten = T::of(10.0);
+        for i in 0..self.row_count() {
+            if self.is_equality(i) {
+                self.row_multiplier[i] = kept.2[i];
+                continue;
+            }
+            for (side, z) in [(&mut self.lower, kept.0[i]), (&mut self.upper, kept.1[i])] {
+                let central = side.multiplier[i];
+                side.multiplier[i] = max(min(z, central * ten), central / ten);
+            }
+            self.row_multiplier[i] = self.upper.multiplier[i] - self.lower.multiplier[i];
+        }
+    }
+
     /// Multiplies all multipliers by a factor.
     pub(crate) fn scale_multipliers(&mut self, factor: T) {
         for y in self

@@ -38,6 +38,10 @@ pub struct Settings<T> {
     pub barrier: Barrier,
     /// First µ of the monotone rule.
     pub initial_mu: T,
+    /// The first attempt keeps the multipliers that the last solve left in the stages, for a problem that has
+    /// changed little: combine it with the monotone rule, or the portfolio, and an `initial_mu` of 1e-5
+    /// (nearly the same problem) to 1e-2.
+    pub warm_start: bool,
     /// The monotone rule multiplies µ by this, or raises it to the power of `mu_power`, whichever is less.
     pub mu_factor: T,
     /// See `mu_factor`.
@@ -75,6 +79,7 @@ impl<T: Scalar> Settings<T> {
             complementarity_tolerance: at_least(1e-6, 0.3),
             barrier: Barrier::default(),
             initial_mu: T::of(0.02),
+            warm_start: false,
             mu_factor: T::of(0.2),
             mu_power: T::of(1.5),
             mu_margin: T::of(30.0),

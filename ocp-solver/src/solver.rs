@@ -81,7 +81,14 @@ impl<T: Scalar> Solver<T> {
                 let _ = iterate::evaluate(problem, stages);
             }
             (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
+            if i == 0 && self.settings.warm_start {
+                for stage in stages.iter_mut() {
+                    stage.resume_rows(self.settings.bound_push, mu);
+                }
+                run.warm = true;
+            }
             status = self.attempt(problem, stages, &mut run, mu, &mut observer);
+            run.warm = false;
             if matches!(status, Status::Solved | Status::Cancelled) || run.iterations >= run.limit {
                 break;
             }

@@ -222,3 +222,29 @@ fn derivatives_agree_with_differences() {
         }
     }
 }
+
+#[test]
+fn a_warm_start_follows_a_problem_that_has_changed_little() {
+    let problem = Vertical {
+        intervals: 80,
+        lander: true,
+    };
+    let (cold, mut stages) = solve(&problem, [10.0, -2.0, 3.0]);
+    let mut settings = Settings::new();
+    (settings.warm_start, settings.initial_mu) = (true, 1e-5);
+    let mut again = |height: f64| {
+        stages[0].state[0] = height;
+        let solution = Solver::new(settings)
+            .solve(&problem, &mut stages, |_| ControlFlow::Continue(()))
+            .unwrap();
+        assert_eq!(solution.status, Status::Solved, "{solution:?}");
+        solution
+    };
+    let same = again(10.0);
+    assert!((same.cost - cold.cost).abs() < 1e-5);
+    assert!(2 * same.iterations < cold.iterations, "{same:?} {cold:?}");
+    let higher = again(10.01);
+    assert!(higher.iterations < cold.iterations, "{higher:?} {cold:?}");
+    let (wanted, _) = solve(&problem, [10.01, -2.0, 3.0]);
+    assert!((higher.cost - wanted.cost).abs() < 1e-5);
+}
