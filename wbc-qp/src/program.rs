@@ -98,6 +98,21 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         }
     }
 
+    /// Number of rows so far.
+    pub(crate) const fn used(&self) -> usize {
+        self.used
+    }
+
+    /// Limits of row `i`; none beyond the end.
+    pub(crate) fn row_limits(&self, i: usize) -> (T, T) {
+        let lower = self.row_lower.get(i).copied();
+        let upper = self.row_upper.get(i).copied();
+        (
+            lower.unwrap_or(T::NEG_INFINITY),
+            upper.unwrap_or(T::INFINITY),
+        )
+    }
+
     /// Row `i`; zero beyond the end.
     pub(crate) fn row(&self, i: usize) -> [T; V] {
         self.rows.get(i).copied().unwrap_or([T::ZERO; V])

@@ -11,9 +11,14 @@
 //!
 //! # What yields
 //! Limits on torque and friction never do: a command is safe and possible. Where everything together is impossible, first the
-//! limits on acceleration go (positions and speeds of joints), then the contacts become costs of a stated weight. The last program
-//! always has a solution: no force, no torque, free fall. The answer says which one it comes from and by how much the rows that
-//! yielded were missed.
+//! held tasks become costs of a stated weight, then the limits on acceleration go (positions and speeds of joints), then the
+//! contacts become costs as well. The last program always has a solution: no force, no torque, free fall. The answer says which
+//! one it comes from and by how much the rows that yielded were missed.
+//!
+//! # Priorities
+//! A task is held ([`TorqueQp::hold`]: an equality, eliminated before the solve, so that what is left is well scaled and single
+//! precision is enough) or weighed ([`TorqueQp::minimise`]). Held tasks come strictly first; the weighed solution tends to the
+//! held one as its weight grows.
 
 use dense_qp::{Settings, Status, Workspace, solve_warm};
 use rbd_core::linear::{ldl_back_substitute, ldl_factor};
@@ -31,14 +36,16 @@ pub enum Yielded {
     /// None.
     #[default]
     Nothing,
-    /// Limits on the joints' accelerations, and so on positions and speeds.
+    /// Held tasks ([`TorqueQp::hold`]).
+    Tasks,
+    /// These, and the limits on the joints' accelerations, and so on positions and speeds.
     MotionLimits,
     /// These, and the contacts' accelerations.
     Contacts,
 }
 
 /// A torque program for N joints and K force coordinates, V = N + K variables, at most M rows: K for the contacts, four per
-/// ball or ten per rectangle for their cones, N for the torques.
+/// ball or ten per rectangle for their cones, N for the torques, one per row of a held task.
 #[derive(Clone, Debug)]
 pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize> {
     program: Program<T, V, M>,
@@ -63,6 +70,10 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     pub contact_damping: T,
     /// Weight of a contact row that has yielded.
     pub contact_weight: T,
+    /// Weight of a held task's row that has yielded.
+    pub task_weight: T,
+    /// First row of the held tasks, and one past the last.
+    held: [usize; 2],
 }
 
 /// What a torque program found.
@@ -110,6 +121,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             },
             contact_damping: T::of(20.0),
             contact_weight: T::of(1e5),
+            task_weight: T::of(1e3),
+            held: [0; 2],
         }
     }
 
@@ -162,7 +175,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             }
             self.program.constrain(&a, low, high)?;
         }
-        self.write_cones(contacts)
+        self.write_cones(contacts)?;
+        self.held = [self.program.used(); 2];
+        Ok(())
     }
 
     /// Writes a_b and τ as functions of z.
@@ -239,6 +254,24 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             *x = direct + base.dot(&row.base);
         }
         (a, self.base_constant.dot(&row.base))
+    }
+
+    /// Holds a task: ẍ = ẍ* comes before every cost. To be called before the limits on torque.
+    ///
+    /// # Errors
+    /// [`Error::NoRoomForRows`]: a held task takes R rows.
+    pub fn hold<const R: usize>(
+        &mut self,
+        task: &Task<T, N, R>,
+        target: &[T; R],
+    ) -> Result<(), Error> {
+        let rows = task.jacobian.iter().zip(target.iter().zip(&task.drift));
+        for (row, (x, drift)) in rows {
+            let (a, constant) = self.row(row);
+            let wanted = *x - *drift - constant;
+            self.held[1] = self.program.constrain(&a, wanted, wanted)? + 1;
+        }
+        Ok(())
     }
 
     /// Adds ½ Σ wᵢ (ẍᵢ − ẍᵢ*)².
@@ -326,9 +359,21 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     pub fn solve(&mut self) -> Result<TorqueAnswer<T, N, K>, Error> {
         let mut iterations = 0;
         let mut last = Status::Infeasible;
-        for yielded in [Yielded::Nothing, Yielded::MotionLimits, Yielded::Contacts] {
+        let [first, end] = self.held;
+        for yielded in [
+            Yielded::Nothing,
+            Yielded::Tasks,
+            Yielded::MotionLimits,
+            Yielded::Contacts,
+        ] {
             match yielded {
                 Yielded::Nothing => {}
+                Yielded::Tasks if first == end => continue,
+                Yielded::Tasks => {
+                    for i in first..end {
+                        self.soften(i, self.task_weight);
+                    }
+                }
                 Yielded::MotionLimits => {
                     for i in 0..N {
                         self.program.bound(i, -T::INFINITY, T::INFINITY);
@@ -337,9 +382,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
                 Yielded::Contacts => {
                     for k in 0..K {
                         if self.on.get(k) == Some(&true) {
-                            let (row, wanted) = (self.program.row(k), get(&self.wanted, k));
-                            self.program.limit_row(k, -T::INFINITY, T::INFINITY);
-                            self.program.minimise(&row, wanted, self.contact_weight);
+                            self.soften(k, self.contact_weight);
                         }
                     }
                 }
@@ -355,6 +398,13 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             self.workspace.forget();
         }
         Err(Error::Unsolved(last))
+    }
+
+    /// Makes an equality row a cost.
+    fn soften(&mut self, i: usize, weight: T) {
+        let (row, (wanted, _)) = (self.program.row(i), self.program.row_limits(i));
+        self.program.limit_row(i, -T::INFINITY, T::INFINITY);
+        self.program.minimise(&row, wanted, weight);
     }
 
     fn answer(&self, z: &[T; V], yielded: Yielded, iterations: u32) -> TorqueAnswer<T, N, K> {

@@ -11,6 +11,7 @@ use common::{N, Rng, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use rbd_core::{Axes, Configuration, Force, FrameJacobian, Tangent, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};
+use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Contact, Horizon, Snapshot, TorqueQp, Yielded, anchored, torque_range};
 
 const K: usize = 12;
@@ -206,4 +207,119 @@ fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
         solved > 20 && yielded > 0,
         "{solved} solved, {yielded} yielded"
     );
+}
+
+/// As the tasks' weight grows, the weighed solution tends to the one that holds them.
+#[test]
+fn weights_tend_to_strict_priority() {
+    let mut rng = Rng(3);
+    for _ in 0..10 {
+        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+        let s = snapshot(&q, &v);
+        let solve = |weight: Option<f64>| {
+            let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
+            qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
+            let (com, turn) = (s.com(), s.angular_momentum());
+            match weight {
+                Some(w) => {
+                    qp.minimise(&com, &[0.1, 0.0, 2.0], &[w; 3]);
+                    qp.minimise(&turn, &[0.0, 0.5, 0.0], &[w; 3]);
+                }
+                None => {
+                    qp.hold(&com, &[0.1, 0.0, 2.0]).unwrap();
+                    qp.hold(&turn, &[0.0, 0.5, 0.0]).unwrap();
+                }
+            }
+            qp.minimise_joints(&[0.0; N], &[1.0; N]);
+            qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+            qp.limit_torques(&core::array::from_fn(|i| {
+                [-1.0, 1.0].map(|x| x * MOTORS[i].torque)
+            }))
+            .unwrap();
+            let answer = qp.solve().unwrap();
+            assert_eq!(answer.yielded, Yielded::Nothing);
+            answer.torques
+        };
+        let held = solve(None);
+        let gap = |weight| {
+            let torques = solve(Some(weight));
+            let pairs = torques.iter().zip(&held);
+            pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+        };
+        let gaps = [1e2, 1e4, 1e6].map(gap);
+        assert!(
+            gaps[1] < 0.1 * gaps[0] && gaps[2] < 0.1 * gaps[1],
+            "{gaps:?}"
+        );
+    }
+}
+
+/// A held task that limits make impossible yields, is reported, and everything harder stays.
+#[test]
+fn a_held_task_yields_before_limits_and_contacts() {
+    let mut rng = Rng(6);
+    let (q, v) = crouch(&mut rng, 0.05, 0.0);
+    let s = snapshot(&q, &v);
+    let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
+    qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
+    // No ground pulls a robot down at 3 g.
+    qp.hold(&s.com(), &[0.0, 0.0, -30.0]).unwrap();
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.yielded, Yielded::Tasks);
+    assert!(answer.contact_violation < 1e-6);
+    let reached = s.com().of(&answer.acceleration)[2];
+    assert!(reached < -5.0 && reached > -9.82, "{reached}");
+}
+
+fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
+    TorqueJumpSettings {
+        strict: true,
+        ..TorqueJumpSettings::icub()
+    }
+}
+
+#[test]
+fn single_precision_follows() {
+    let mut rng = Rng(4);
+    let posture = [0.0; N];
+    let mut double = TorqueJump::<f64, N, K, V, 61>::new(strict(), posture);
+    let mut single = TorqueJump::<f32, N, K, V, 61>::new(strict(), [0.0; N]);
+    let f = |x: f64| x as f32;
+    let soles = icub_model::hardware::SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+    for _ in 0..30 {
+        let (q, v) = crouch(&mut rng, 0.02, 0.1);
+        let s = snapshot(&q, &v);
+        let wanted = ComReference {
+            position_w: s.com_w(),
+            velocity_w: nalgebra::Vector3::z() * 0.1,
+            acceleration_w: nalgebra::Vector3::z() * 2.0,
+        };
+        let a = double
+            .tick(&Icub23, &s, &contacts(0.5), (&LIMITS, &MOTORS), &wanted)
+            .unwrap();
+        let (q, v) = anchored(
+            &Icub23,
+            &q.joints.map(f),
+            &v.joints.map(f),
+            &soles[0].frame,
+            &Transform::IDENTITY,
+        );
+        let mut s = Snapshot::<f32, N>::ZERO;
+        s.update(&Icub23, &q, &v);
+        let wanted = ComReference {
+            position_w: s.com_w(),
+            velocity_w: nalgebra::Vector3::z() * 0.1,
+            acceleration_w: nalgebra::Vector3::z() * 2.0,
+        };
+        let limits = (
+            &icub_model::limits::LIMITS_F32,
+            &icub_model::hardware::MOTORS_F32,
+        );
+        let b = single.tick(&Icub23, &s, &soles, limits, &wanted).unwrap();
+        for (x, y) in a.answer.torques.iter().zip(b.answer.torques) {
+            assert!((x - f64::from(y)).abs() < 0.05, "{x} {y}");
+        }
+    }
 }

@@ -26,6 +26,9 @@ pub struct TorqueJumpSettings<T, const N: usize> {
     pub posture_weight: [T; N],
     /// Δ of eq. (6a): weight of a change of torque.
     pub continuity_weight: T,
+    /// Whether centre of mass and angular momentum are held (strictly before posture and continuity, as the paper
+    /// writes them; six rows more) instead of weighed. Single precision needs it.
+    pub strict: bool,
     /// Weight of the centre of mass's rows.
     pub com_weight: T,
     /// Weight of the angular momentum's rows; zero leaves eq. (6d) out.
@@ -57,6 +60,7 @@ impl<T: Scalar, const N: usize> TorqueJumpSettings<T, N> {
             },
             posture_weight: [T::ONE; N],
             continuity_weight: T::of(1e-3),
+            strict: false,
             com_weight: T::of(1e5),
             momentum_weight: T::of(1e5),
             force_weight: T::of(1e-3),
@@ -133,12 +137,20 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             position_error(&wanted.position_w, &snapshot.com_w()),
             s.com,
         );
-        self.qp.minimise(&com, &com_target, &[s.com_weight; 3]);
+        if s.strict {
+            self.qp.hold(&com, &com_target)?;
+        } else {
+            self.qp.minimise(&com, &com_target, &[s.com_weight; 3]);
+        }
         let momentum = snapshot.angular_momentum(); // (6d)
         let rate: Vector3<T> = -snapshot.momentum_w.angular * s.momentum_gain;
         let momentum_target = rate.into();
-        self.qp
-            .minimise(&momentum, &momentum_target, &[s.momentum_weight; 3]);
+        if s.strict && s.momentum_weight > T::ZERO {
+            self.qp.hold(&momentum, &momentum_target)?;
+        } else {
+            let weights = [s.momentum_weight; 3];
+            self.qp.minimise(&momentum, &momentum_target, &weights);
+        }
         let mut posture = self.posture; // (6a)
         for (x, (q, qd)) in posture.iter_mut().zip(q.iter().zip(qd)) {
             *x = s.posture.stiffness * (*x - *q) - s.posture.damping * *qd;
