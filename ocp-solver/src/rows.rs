@@ -184,7 +184,11 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                     T::ONE / self.upper.distance[i],
                 );
                 let weight = self.lower.multiplier[i] * below + self.upper.multiplier[i] * above;
-                let give = T::ONE / (T::ONE + self.elastic * weight);
+                let give = if self.elastic > T::ZERO {
+                    T::ONE / (T::ONE + self.elastic * weight)
+                } else {
+                    T::ONE
+                };
                 self.step.weight[i] = weight * give;
                 self.step.target[i] = (mu * (above - below) + weight * residual) * give;
             }
