@@ -1,4 +1,4 @@
-//! Minimum-jerk motion of joints to a posture at rest: the aerial phase of paper B, III-C (its reference [10]).
+//! Minimum-jerk motion of joints to a posture at rest: the aerial phase of paper B, III-C (its reference \[10\]).
 //!
 //! q(t) = a + (b − a)(10 x³ − 15 x⁴ + 6 x⁵) + v T (x − 6 x³ + 8 x⁴ − 3 x⁵), x = t/T: of all motions from position a, velocity v
 //! and no acceleration to rest at b the one of least ∫ |d³q/dt³|² dt. With the velocity of the push-off for v the soles leave

@@ -38,6 +38,20 @@ const STEPS: &[Step] = &[
     ("host equals target", &["xtask", "qemu"]),
     ("instruction counts", &["xtask", "icount"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
+    (
+        "MuJoCo agrees",
+        &[
+            "xtask",
+            "mujoco",
+            "test",
+            "--package",
+            "contact-sim",
+            "--features",
+            "mujoco",
+            "--test",
+            "mujoco",
+        ],
+    ),
 ];
 
 /// Runs every step; stops at the first that fails, and names it.
