@@ -4,10 +4,11 @@
 //! file, so a run that was stopped goes on where it was, and the files of all shards in one folder make one table.
 
 use crate::jump::envelope::{Sample, picture, table};
+use crate::jump::execute;
 use crate::jump::judge::Verdict;
+use crate::jump::planned::Planner;
 use crate::jump::plant::{Disturbance, Sim};
 use crate::jump::task::Task;
-use crate::jump::{execute, reference};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashSet;
 use std::fs::{self, OpenOptions};
@@ -60,7 +61,7 @@ fn shard(text: &str) -> Result<Shard, String> {
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let task = Task::load(&args.task)?;
     let plan = task.solve()?;
-    let reference = reference::build(&task, &plan)?;
+    let reference = Planner::WholeBody.plan(&task, &plan)?;
     let folder = args.out.clone().unwrap_or_else(|| {
         Path::new("out").join(format!("envelope-{}", task.name.replace('/', "-")))
     });

@@ -120,8 +120,15 @@ impl Verdict {
                 "max_iterations": run.qp_max_iterations,
             },
             "plan": {
-                "reference": "srb+kinematics",
+                "reference": if reference.whole_body.is_some() { "whole-body" } else { "srb+kinematics" },
                 "durations_s": reference.durations,
+                "whole_body": reference.whole_body.map(|solved| json!({
+                    "wall_ms": solved.wall_ms,
+                    "iterations": solved.iterations,
+                    "cost": solved.cost,
+                    "max_violation": solved.max_violation,
+                    "torque_limit_nm": solved.torque_limit,
+                })),
                 "solver_ms": plan.wall_ms,
                 "iterations": plan.iterations,
                 "violation": plan.max_violation,

@@ -7,6 +7,7 @@ mod fuzz;
 pub(crate) mod judge;
 pub(crate) mod kinematics;
 pub(crate) mod log;
+pub(crate) mod planned;
 pub(crate) mod plant;
 pub(crate) mod reference;
 pub(crate) mod report;

@@ -1,4 +1,4 @@
-//! The whole-body reference: single-rigid-body plan + kinematics, the paper's baseline of section V-A.
+//! The reference by leg kinematics along the single-rigid-body plan: the paper's baseline of section V-A.
 //!
 //! The plan gives the motion of the centre of mass and the angular momentum about it; base and legs follow because the
 //! balls of the feet roll on the ground without slip. (Giving the base the rigid body's angular velocity instead would
@@ -7,6 +7,7 @@
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
 use super::kinematics::{com, contact_frame, jacobian, place_feet, poses, rolling_velocity};
+use super::planned::Solved;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
 use a1_model::a1;
@@ -45,6 +46,8 @@ pub(crate) struct Reference {
     pub(crate) peak_friction: f64,
     /// Largest wrench on the base that the forces do not balance: N or N m.
     pub(crate) base_residual: f64,
+    /// How the whole-body problem was solved; none for leg kinematics.
+    pub(crate) whole_body: Option<Solved>,
 }
 
 /// Motion of the single rigid body over one interval.
@@ -297,6 +300,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         peak_torque,
         peak_friction,
         base_residual,
+        whole_body: None,
     })
 }
 

@@ -26,7 +26,7 @@ const CONTACT_DT: f64 = 0.01;
 /// Longest interval in flight, s: no forces change, but the turn must be right.
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
-const POSED: f64 = 0.05;
+pub(crate) const POSED: f64 = 0.05;
 /// Torques that plans may use of the motors' 33.5 N m: the first with which the task is solved.
 const PLANNED_TORQUES: [f64; 3] = [24.0, 28.0, 30.0];
 /// Iterations after which more torque is tried; a task that is solved takes a third of it.

@@ -1,0 +1,121 @@
+//! From a task to what the controller follows: which planner, and its plan node by node.
+
+use super::reference::{self, Reference, landing_posture};
+use super::task::{SrbPlan, Task};
+use super::whole_body::{self, Interval, N, WholeBodyPlan};
+use super::{FOOT_COUNT, Node};
+use core::ops::ControlFlow;
+use nalgebra::{Unit, Vector3};
+use ocp_solver::Status;
+use rbd_core::{Motion, Transform};
+use wb_opt::{BASE, EulerOrder, Phase, State};
+
+/// How the legs are planned along the single rigid body's motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Planner {
+    /// Whole-body trajectory optimisation, paper A, III-B.
+    WholeBody,
+    /// Leg kinematics and inverse dynamics, the baseline of paper A, V-A.
+    Kinematics,
+}
+
+/// How a whole-body problem was solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solved {
+    pub(crate) wall_ms: f64,
+    pub(crate) iterations: usize,
+    pub(crate) cost: f64,
+    pub(crate) max_violation: f64,
+    /// Torque that the plan was allowed, N m.
+    pub(crate) torque_limit: f64,
+}
+
+impl Planner {
+    /// Plans the legs along a plan of the body.
+    pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+        if self == Self::Kinematics {
+            return reference::build(task, srb);
+        }
+        let clock = std::time::Instant::now();
+        let plan = whole_body::plan(task, srb, |_| ControlFlow::Continue(()))?;
+        let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
+        if plan.outcome.status != Status::Solved {
+            return Err(format!(
+                "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
+                 ask for less, or try --planner kinematics",
+                task.name, plan.outcome.status, plan.outcome.iterations, plan.judged.max_violation
+            ));
+        }
+        follow(task, &plan, wall_ms)
+    }
+}
+
+/// A whole-body plan as the controller follows it.
+fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, String> {
+    let stands = |phase: &&Phase<f64, FOOT_COUNT>| phase.contacts.contains(&true);
+    let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
+    let takeoff: f64 = plan.phases.iter().take_while(stands).map(duration).sum();
+    let touchdown: f64 = plan.phases.iter().map(duration).sum();
+    let first = plan.intervals.first().ok_or("the plan has no intervals")?;
+    let start = node(plan.order, 0.0, &first.state, first);
+    let mut nodes = vec![Node {
+        time: -1e-3,
+        ..start
+    }];
+    nodes.extend(
+        plan.intervals
+            .iter()
+            .map(|interval| node(plan.order, interval.start, &interval.state, interval)),
+    );
+    let (mut peak_torque, mut peak_friction) = (0.0, 0.0);
+    for interval in plan.intervals.iter().filter(|i| i.start < takeoff) {
+        let torques = interval.sample.effort[BASE..].iter();
+        peak_torque = torques.fold(peak_torque, |m, t| f64::max(m, t.abs()));
+        for f in interval.sample.forces_w.iter().filter(|f| f.z > 5.0) {
+            peak_friction = f64::max(peak_friction, f.x.abs().max(f.y.abs()) / f.z);
+        }
+    }
+    Ok(Reference {
+        nodes,
+        takeoff,
+        posing: touchdown - whole_body::POSED,
+        touchdown,
+        landing_joints: landing_posture(task)?,
+        durations: plan.phases.iter().map(duration).collect(),
+        peak_torque,
+        peak_friction,
+        base_residual: plan.judged.max_violation,
+        whole_body: Some(Solved {
+            wall_ms,
+            iterations: plan.outcome.iterations as usize,
+            cost: plan.judged.cost,
+            max_violation: plan.judged.max_violation,
+            torque_limit: plan.torque_limit,
+        }),
+    })
+}
+
+/// A node of the plan: a state, and what is held over the interval that starts there.
+fn node(order: EulerOrder, time: f64, state: &State<f64, N>, interval: &Interval) -> Node {
+    let (q, v) = (&state.q, &state.v);
+    // Angles turn one after the other, each about an axis of the frame so far.
+    let [first, second, third] = match order {
+        EulerOrder::Zyx => [Vector3::z_axis(), Vector3::y_axis(), Vector3::x_axis()],
+        EulerOrder::Zxy => [Vector3::z_axis(), Vector3::x_axis(), Vector3::y_axis()],
+    };
+    let turn = |axis: &Unit<Vector3<f64>>, angle: f64| so3::rotation_about(axis, angle);
+    let last = turn(&third, q[5]);
+    let inner = turn(&second, q[4]) * last;
+    let rot_wb = turn(&first, q[3]) * inner;
+    let omega_b =
+        inner.inverse() * (*first * v[3]) + last.inverse() * (*second * v[4]) + *third * v[5];
+    Node {
+        time,
+        base: Transform::new(rot_wb, Vector3::new(q[0], q[1], q[2])),
+        base_velocity: Motion::new(rot_wb.inverse() * Vector3::new(v[0], v[1], v[2]), omega_b),
+        joints: core::array::from_fn(|i| q[BASE + i]),
+        joint_velocities: core::array::from_fn(|i| v[BASE + i]),
+        torques: core::array::from_fn(|i| interval.sample.effort[BASE + i]),
+        forces_w: interval.sample.forces_w,
+    }
+}
