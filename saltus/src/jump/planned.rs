@@ -87,7 +87,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
         base_residual: plan.judged.max_violation,
         whole_body: Some(Solved {
             wall_ms,
-            iterations: plan.outcome.iterations as usize,
+            iterations: plan.outcome.iterations,
             cost: plan.judged.cost,
             max_violation: plan.judged.max_violation,
             torque_limit: plan.torque_limit,
