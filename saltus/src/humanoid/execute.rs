@@ -143,6 +143,7 @@ fn record(plant: &Plant, controller: &Controller, time: f64) -> Sample {
         phase: controller.phase,
         position: q.base.translation,
         orientation: so3::quat::from_rotation(&q.base.rotation),
+        base_velocity: v.base,
         com: state.com_w,
         com_velocity: state.com_velocity_w,
         wanted_height: controller.wanted_height(time),

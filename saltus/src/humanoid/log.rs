@@ -4,7 +4,7 @@ use super::{JOINTS, ROBOT};
 use core::fmt::Write;
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
-use rbd_core::Model;
+use rbd_core::{Model, Motion};
 
 /// One sample.
 #[derive(Clone, Debug)]
@@ -13,6 +13,7 @@ pub(crate) struct Sample {
     pub(crate) phase: Phase,
     pub(crate) position: Vector3<f64>,
     pub(crate) orientation: UnitQuaternion<f64>,
+    pub(crate) base_velocity: Motion<f64>,
     pub(crate) com: Vector3<f64>,
     pub(crate) com_velocity: Vector3<f64>,
     /// Height that the push-off's reference asks for.
@@ -42,7 +43,7 @@ impl Sample {
 /// The samples as CSV.
 pub(crate) fn csv(samples: &[Sample]) -> String {
     let mut out = String::from(
-        "time,phase,x,y,z,qx,qy,qz,qw,com_x,com_y,com_z,com_vx,com_vy,com_vz,com_z_plan,h_x,h_y,h_z,\
+        "time,phase,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,com_x,com_y,com_z,com_vx,com_vy,com_vz,com_z_plan,h_x,h_y,h_z,\
          locked_x,locked_y,locked_z",
     );
     for kind in ["q", "qd", "tau"] {
@@ -53,10 +54,12 @@ pub(crate) fn csv(samples: &[Sample]) -> String {
     out.push_str(",f_left_x,f_left_y,f_left_z,f_right_x,f_right_y,f_right_z,clearance\n");
     for s in samples {
         let _ = write!(out, "{:.4},{:?}", s.time, s.phase);
+        let base_velocity = s.base_velocity.to_array();
         let numbers = s
             .position
             .iter()
             .chain(s.orientation.coords.iter())
+            .chain(&base_velocity)
             .chain(s.com.iter())
             .chain(s.com_velocity.iter())
             .chain(core::iter::once(&s.wanted_height))

@@ -209,9 +209,17 @@ fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{Task, com, execute, on_the_floor, poses, squat};
+    use super::{JOINTS, ROBOT, State, Task, Velocity, com, execute, on_the_floor, poses, squat};
     use crate::jump::plant::{Disturbance, Sim};
+    use icub_model::MOTORS;
+    use icub_model::hardware::{MOTORS_F32, SOLES_F32};
+    use icub_model::limits::LIMITS_F32;
     use icub_model::{LIMITS, SOLES};
+    use jump_control::Phase;
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Motion, Tangent, Transform};
+    use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
+    use wbc_qp::{Contact, Snapshot};
 
     #[test]
     fn the_squat_stands_on_both_soles_inside_its_limits() {
@@ -296,6 +304,86 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// The same states through the torque program in both precisions, tasks held: torques of a whole push-off.
+    #[test]
+    fn single_precision_follows_over_a_whole_push_off() {
+        let task = Task::named("icub/torque").unwrap();
+        let run = execute::run(&task, Sim::Native, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
+        let profile = task.profile().unwrap();
+        let f = |x: f64| x as f32;
+        let start = com(&on_the_floor(squat()));
+        let mut double = TorqueJump::<f64, JOINTS, 12, 35, 61>::new(strict(), squat());
+        let mut single = TorqueJump::<f32, JOINTS, 12, 35, 61>::new(strict(), squat().map(f));
+        let soles = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+        let soles_f32 = SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+        let (mut s, mut s_f32) = (Snapshot::<f64, JOINTS>::ZERO, Snapshot::<f32, JOINTS>::ZERO);
+        let (mut worst, mut ticks) = (0.0_f64, 0);
+        for sample in run.samples.iter().filter(|s| s.phase == Phase::Stance) {
+            let point = profile.at(sample.time);
+            let wanted = |rise: f64, speed: f64, acceleration: f64| {
+                (
+                    start + Vector3::z() * rise,
+                    Vector3::z() * speed,
+                    Vector3::z() * acceleration,
+                )
+            };
+            let (position_w, velocity_w, acceleration_w) =
+                wanted(point.rise, point.speed, point.acceleration);
+            let q = State {
+                base: Transform::new(sample.orientation.to_rotation_matrix(), sample.position),
+                joints: sample.joints,
+            };
+            let v = Velocity {
+                base: sample.base_velocity,
+                joints: sample.joint_velocities,
+            };
+            s.update(&ROBOT, &q, &v);
+            let reference = ComReference {
+                position_w,
+                velocity_w,
+                acceleration_w,
+            };
+            let joints = (&LIMITS, &MOTORS);
+            let a = double.tick(&ROBOT, &s, &soles, joints, &reference).unwrap();
+            let q = Configuration {
+                base: Transform::new(
+                    nalgebra::Rotation3::from_matrix_unchecked(q.base.rotation.matrix().map(f)),
+                    q.base.translation.map(f),
+                ),
+                joints: q.joints.map(f),
+            };
+            let v = Tangent {
+                base: Motion::from_array(v.base.to_array().map(f)),
+                joints: v.joints.map(f),
+            };
+            s_f32.update(&ROBOT, &q, &v);
+            let reference = ComReference {
+                position_w: position_w.map(f),
+                velocity_w: velocity_w.map(f),
+                acceleration_w: acceleration_w.map(f),
+            };
+            let joints = (&LIMITS_F32, &MOTORS_F32);
+            let b = single
+                .tick(&ROBOT, &s_f32, &soles_f32, joints, &reference)
+                .unwrap();
+            for (x, y) in a.answer.torques.iter().zip(b.answer.torques) {
+                worst = worst.max((x - f64::from(y)).abs());
+            }
+            ticks += 1;
+        }
+        assert!(
+            ticks > 400 && worst < 0.05,
+            "{worst} N m over {ticks} ticks"
+        );
+    }
+
+    fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, JOINTS> {
+        TorqueJumpSettings {
+            strict: true,
+            ..TorqueJumpSettings::icub()
         }
     }
 }
