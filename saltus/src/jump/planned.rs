@@ -1,6 +1,6 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
-use super::reference::{self, Reference, landing_posture};
+use super::reference::{self, Reference, landing_posture, standing};
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, WholeBodyPlan};
 use super::{FOOT_COUNT, Node};
@@ -56,12 +56,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
     let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
     let takeoff: f64 = plan.phases.iter().take_while(stands).map(duration).sum();
     let touchdown: f64 = plan.phases.iter().map(duration).sum();
-    let first = plan.intervals.first().ok_or("the plan has no intervals")?;
-    let start = node(plan.order, 0.0, &first.state, first);
-    let mut nodes = vec![Node {
-        time: -1e-3,
-        ..start
-    }];
+    let mut nodes = vec![standing(task)?];
     nodes.extend(
         plan.intervals
             .iter()

@@ -201,6 +201,29 @@ pub(super) fn landing_posture(task: &Task) -> Result<[f64; JOINTS], String> {
     Ok(q.joints)
 }
 
+/// The node before the plan begins: at rest, with the torques that hold the robot.
+pub(crate) fn standing(task: &Task) -> Result<Node, String> {
+    let q = task.start;
+    let weight = task.problem.mass * task.problem.gravity;
+    let share = Vector3::new(0.0, 0.0, weight / FOOT_COUNT as f64);
+    let all = [true; FOOT_COUNT];
+    let held = load(
+        &q,
+        &Velocity::ZERO,
+        &Velocity::ZERO,
+        &all,
+        &[share; FOOT_COUNT],
+    )?;
+    Ok(Node {
+        time: -1e-3,
+        base: q.base,
+        joints: q.joints,
+        torques: held.torques,
+        forces_w: held.forces_w,
+        ..Node::ZERO
+    })
+}
+
 /// The whole-body reference of a solved plan.
 pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let intervals = intervals(task, &plan.stages);
@@ -208,21 +231,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let mut q = task.start;
     let mut swing = [0.0; JOINTS];
     let mut nodes = Vec::new();
-    let standing = load(
-        &q,
-        &Velocity::ZERO,
-        &Velocity::ZERO,
-        &[true; FOOT_COUNT],
-        &intervals[0].forces_w,
-    )?;
-    nodes.push(Node {
-        time: -1e-3,
-        base: q.base,
-        joints: q.joints,
-        torques: standing.torques,
-        forces_w: standing.forces_w,
-        ..Node::ZERO
-    });
+    nodes.push(standing(task)?);
     let (mut peak_torque, mut peak_friction, mut base_residual) = (0.0, 0.0, 0.0);
     let stance = intervals
         .iter()
