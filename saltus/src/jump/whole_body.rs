@@ -29,6 +29,8 @@ const FLIGHT_DT: f64 = 0.005;
 pub(crate) const POSED: f64 = 0.05;
 /// Torques that plans may use of the motors' 33.5 N m: the first with which the task is solved.
 const PLANNED_TORQUES: [f64; 3] = [24.0, 28.0, 30.0];
+/// Share of the motors' speeds that plans may use: on the falling part of their line feedback needs torque as well.
+const PLANNED_SPEED: f64 = 0.85;
 /// Iterations after which more torque is tried; a task that is solved takes a third of it.
 const PATIENCE: usize = 100;
 /// How much farther than it is a box edge is taken to be, m.
@@ -185,6 +187,10 @@ pub(crate) fn plan(
         drift: ROLL,
         weights: WEIGHTS,
     };
+    for motor in problem.robot.motors.iter_mut().flatten() {
+        motor.corner_speed *= PLANNED_SPEED;
+        motor.no_load_speed *= PLANNED_SPEED;
+    }
     let mut stages: Vec<Stage<f64, State<f64, N>, NX, NU, NI>> =
         vec![Stage::new(State::at_rest(start)); problem.intervals() + 1];
     let mut settings = wb_opt::settings();
