@@ -34,11 +34,11 @@ const PLANNED_SPEED: f64 = 0.85;
 /// Iterations after which more torque is tried; a task that is solved takes a third of it.
 const PATIENCE: usize = 100;
 /// How much farther than it is a box edge is taken to be, m.
-const EDGE_MARGIN: f64 = 0.05;
+const EDGE_MARGIN: f64 = 0.08;
 /// How far a ball may roll from where it stood, per axis, m.
 const ROLL: f64 = 0.03;
 /// How far below standing height a foot in the air may be, m.
-const GRAZE: f64 = 0.005;
+const GRAZE: f64 = 0.0;
 const KNEE_CLEARANCE: f64 = 0.03;
 const FRICTION_SMOOTHING: f64 = 0.3;
 const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
