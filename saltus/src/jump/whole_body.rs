@@ -37,8 +37,6 @@ const PATIENCE: usize = 100;
 const EDGE_MARGIN: f64 = 0.08;
 /// How far a ball may roll from where it stood, per axis, m.
 const ROLL: f64 = 0.03;
-/// How far below standing height a foot in the air may be, m.
-const GRAZE: f64 = 0.0;
 const KNEE_CLEARANCE: f64 = 0.03;
 const FRICTION_SMOOTHING: f64 = 0.3;
 const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
@@ -174,7 +172,8 @@ pub(crate) fn plan(
             radius: FOOT_RADIUS,
         }),
         clearances: &clearances,
-        swing_height: FOOT_RADIUS - GRAZE,
+        // A foot that grazes the edge of a box turns the robot over.
+        swing_height: FOOT_RADIUS,
         edge,
         phases: &phases,
         reference: &reference,
