@@ -10,6 +10,7 @@ pub mod plan;
 pub mod sample;
 pub mod slew;
 pub mod watch;
+mod weigh;
 
 pub use cartesian::{CartesianGains, CartesianPd};
 pub use com_profile::{ComPoint, ComProfile, Curve, takeoff_speed};
@@ -20,3 +21,4 @@ pub use plan::{Node, Plan, PlanError};
 pub use sample::{Reference, Torques, sample};
 pub use slew::Slew;
 pub use watch::{Fault, Measurement, Watch};
+pub use weigh::Scales;

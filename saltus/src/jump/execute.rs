@@ -9,7 +9,7 @@ use super::{FOOT_COUNT, JOINTS, ROBOT, TRUNK, feet, kinematics};
 use a1_model::{MOTORS, a1};
 use jump_control::{
     CartesianGains, CartesianPd, Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan,
-    Slew, Torques, Watch, next_phase, sample,
+    Scales, Slew, Torques, Watch, next_phase, sample,
 };
 use landing::{Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace};
 use nalgebra::Vector3;
@@ -29,6 +29,8 @@ const SAFE_DAMPING: f64 = 2.0;
 const FRICTION_SMOOTHING: f64 = 0.1;
 /// Time before the planned touchdown from which the posture follows the tilt, s.
 const LEVELLING: f64 = 0.12;
+/// Largest share of the planned weight that counts as payload.
+const MOST_PAYLOAD: f64 = 0.15;
 /// Largest rate of a joint's torque, N m/s.
 const SLEW: f64 = 1e4;
 /// Ticks of the plant per tick of the controller.
@@ -66,6 +68,9 @@ struct Controller<'a> {
     goal_w: Vector3<f64>,
     target: Target<f64>,
     posture: PreLanding<f64, JOINTS, FOOT_COUNT>,
+    scales: Scales<f64>,
+    /// Weight that was planned with, N.
+    weight: f64,
     calm: f64,
     fault: Option<Fault>,
 }
@@ -118,6 +123,15 @@ impl Controller<'_> {
                 if self.phase == Phase::PreLanding && t > self.plan.touchdown - LEVELLING {
                     then.joints = self.meeting(measured);
                     reference.joints = then.joints;
+                }
+                match self.phase {
+                    // Its weight has settled on the feet by then.
+                    Phase::Hold if t > -0.5 * HOLD => self.scales.add(&measured.foot_forces),
+                    Phase::Stance => {
+                        let factor = self.scales.factor(self.weight, MOST_PAYLOAD);
+                        reference.torques = reference.torques.map(|torque| torque * factor);
+                    }
+                    _ => {}
                 }
                 self.pd.command(&ROBOT, measured, &reference, &then)
             }
@@ -269,6 +283,8 @@ pub(super) fn run_tampered(
             lead: 0.04,
             ..PreLanding::new(feet(), reference.landing_joints)
         },
+        scales: Scales::new(),
+        weight: task.problem.mass * task.problem.gravity,
         calm: 0.0,
         fault: None,
     };
