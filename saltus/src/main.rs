@@ -5,6 +5,7 @@ mod humanoid;
 mod jump;
 mod noise;
 mod reference;
+mod track;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

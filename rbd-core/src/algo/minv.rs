@@ -250,7 +250,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// W = B ᵀ M⁻¹ B for efforts in columns, which are used up.
+    /// W = Bᵀ M⁻¹ B for efforts in columns, which are used up.
     ///
     /// With z = L⁻ᵀ b_J and r = b_b − Xᵀ b_J, W = zᵀ D⁻¹ z + rᵀ Ã⁻¹ r: half a solve. Contacts touch few joints each, so
     /// zeros are skipped.

@@ -4,6 +4,7 @@ use super::kinematics::com;
 use super::reference::landing_posture;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS, ROBOT, feet};
+use crate::track::Track;
 use a1_model::FOOT_RADIUS;
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
@@ -109,7 +110,7 @@ pub(crate) fn plan(
             dt: duration / intervals,
         });
     }
-    let track = Track::new(task, srb, order);
+    let track = track(task, srb, order);
     let mut times = vec![0.0];
     for phase in &phases {
         let begin = times[times.len() - 1];
@@ -124,8 +125,8 @@ pub(crate) fn plan(
         } else {
             &landing_joints
         };
-        let (pos, angles) = track.at(*time);
-        nodes.push(coordinates(&pos, angles, joints));
+        let [x, y, z, angles @ ..] = track.at(*time);
+        nodes.push(coordinates(&Vector3::new(x, y, z), angles, joints));
     }
     let turn = rigid.axis * rigid.angle;
     let columns = order.columns();
@@ -199,7 +200,11 @@ pub(crate) fn plan(
         for limit in problem.robot.limits.iter_mut().skip(BASE) {
             limit.effort = torque;
         }
-        let force = |k: usize, foot: usize| track.force(times[k], foot);
+        let force = |k: usize, foot: usize| {
+            let k = track.interval(times[k]);
+            let stage = &srb.stages[k];
+            rigid.sample(k, &stage.state, &stage.control).forces_w[foot]
+        };
         problem.write_guess(&mut stages, &nodes, force, || 0.0);
         let outcome = problem
             .plan(&settings, &mut stages, &mut observer)
@@ -234,66 +239,18 @@ fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
     state.into_iter().flatten()
 }
 
-/// The single-rigid-body plan over time, as motion of the robot's base.
-struct Track<'a> {
-    task: &'a Task,
-    srb: &'a SrbPlan,
-    times: Vec<f64>,
-    /// Base position and angles, without jumps, at the nodes.
-    base: Vec<(Vector3<f64>, [f64; 3])>,
-}
-
-impl<'a> Track<'a> {
-    fn new(task: &'a Task, srb: &'a SrbPlan, order: EulerOrder) -> Self {
-        let problem = &task.problem;
-        let com_b = com(&task.start) - task.start.base.translation;
-        let mut time = 0.0;
-        let mut times = Vec::new();
-        let mut base: Vec<(Vector3<f64>, [f64; 3])> = Vec::new();
-        for (k, stage) in srb.stages.iter().enumerate() {
-            let state = &stage.state;
-            times.push(time);
-            if let Some((i, phase)) = problem.phase_of(k) {
-                time += state.durations[i] / phase.intervals as f64;
-            }
-            let mut angles = order.angles(&state.rot_wb);
-            if let Some((_, before)) = base.last() {
-                for (x, x0) in angles.iter_mut().zip(before) {
-                    let turns = (*x - x0) / core::f64::consts::TAU;
-                    *x -= core::f64::consts::TAU * turns.round();
-                }
-            }
-            base.push((state.pos_w - state.rot_wb * com_b, angles));
-        }
-        Self {
-            task,
-            srb,
-            times,
-            base,
+/// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
+fn track(task: &Task, srb: &SrbPlan, order: EulerOrder) -> Track {
+    let com_b = com(&task.start) - task.start.base.translation;
+    let mut time = 0.0;
+    let mut times = Vec::new();
+    for (k, stage) in srb.stages.iter().enumerate() {
+        times.push(time);
+        if let Some((i, phase)) = task.problem.phase_of(k) {
+            time += stage.state.durations[i] / phase.intervals as f64;
         }
     }
-
-    fn index(&self, time: f64) -> usize {
-        let after = self.times.partition_point(|t| *t <= time + 1e-9);
-        after.saturating_sub(1).min(self.times.len() - 2)
-    }
-
-    fn at(&self, time: f64) -> (Vector3<f64>, [f64; 3]) {
-        let i = self.index(time);
-        let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);
-        let ((p, a), (p1, a1)) = (&self.base[i], &self.base[i + 1]);
-        (
-            p + (p1 - p) * share,
-            core::array::from_fn(|c| a[c] + share * (a1[c] - a[c])),
-        )
-    }
-
-    fn force(&self, time: f64, foot: usize) -> Vector3<f64> {
-        let k = self.index(time);
-        let stage = &self.srb.stages[k];
-        self.task
-            .problem
-            .sample(k, &stage.state, &stage.control)
-            .forces_w[foot]
-    }
+    let states = srb.stages.iter().map(|stage| &stage.state);
+    let poses = states.map(|state| (state.pos_w - state.rot_wb * com_b, state.rot_wb));
+    Track::new(times, poses, order)
 }

@@ -1,8 +1,8 @@
 //! The whole-body reference problem of a task, from a solution of its SRB problem.
 
 use super::{FEET, File};
+use crate::track::Track;
 use a1_model::{A1Reference, a1_reference::frame};
-use core::f64::consts::{PI, TAU};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Problem, Robot, Weights};
@@ -67,6 +67,35 @@ impl SrbMotion {
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         serde_json::from_str(text).map_err(|error| format!("SRB solution: {error}"))
     }
+
+    /// The motion of the base, for phases of this many intervals.
+    fn track(&self, intervals: &[usize], order: EulerOrder) -> Result<Track, String> {
+        let sol = &self.sol;
+        let total: usize = intervals.iter().sum();
+        let fits = sol.durations.len() == intervals.len()
+            && sol.p.len() == total + 1
+            && sol.rotations.len() == total + 1
+            && sol.f.len() == total;
+        if !fits {
+            return Err(format!(
+                "the SRB solution must have {} durations, {} nodes and {total} forces",
+                intervals.len(),
+                total + 1
+            ));
+        }
+        let mut times = vec![0.0];
+        let mut begin = 0.0;
+        for (n, duration) in intervals.iter().zip(&sol.durations) {
+            if !(*duration > 0.0 && duration.is_finite()) {
+                return Err("durations of the SRB solution must be positive".into());
+            }
+            times.extend((1..=*n).map(|i| begin + duration / *n as f64 * i as f64));
+            begin += duration;
+        }
+        let rotations = sol.rotations.iter().map(|r| Matrix3::from_column_slice(r));
+        let poses = sol.p.iter().map(|p| Vector3::from(*p)).zip(rotations);
+        Ok(Track::new(times, poses, order))
+    }
 }
 
 /// What a whole-body problem borrows, and the guess that comes with it.
@@ -118,11 +147,10 @@ impl Data {
     }
 }
 
-/// A base in the file's order x, y, z, roll, pitch, yaw, with the legs at the landing configuration.
-fn with_landing_legs(order: EulerOrder, base: [f64; BASE]) -> [f64; N] {
-    let columns = order.columns();
+/// A base in the order of the chain, with the legs at the landing configuration.
+fn with_landing_legs(base: [f64; BASE]) -> [f64; N] {
     core::array::from_fn(|i| match i.checked_sub(BASE) {
-        None => base[columns[i]],
+        None => base[i],
         Some(joint) => LANDING[joint % 3],
     })
 }
@@ -146,7 +174,9 @@ impl File {
                 ));
             }
         };
-        let track = Track::new(name, &t.n, srb, order)?;
+        let track = srb
+            .track(&t.n, order)
+            .map_err(|error| format!("task {name}: {error}"))?;
         let phases: Vec<Phase<f64, FEET>> = shared
             .used_phases()
             .iter()
@@ -167,14 +197,17 @@ impl File {
         }
         let nodes: Vec<[f64; N]> = times
             .iter()
-            .map(|time| with_landing_legs(order, track.at(*time)))
+            .map(|time| with_landing_legs(track.at(*time)))
             .collect();
         let intervals = times.len() - 1;
-        let forces = times[..intervals].iter().map(|time| track.force(*time));
+        let forces = times[..intervals]
+            .iter()
+            .map(|time| srb.sol.f[track.interval(*time)]);
         let forces = forces.collect();
         let p = shared.goal_w;
         let turn = shared.axis * shared.angle;
-        let goal = with_landing_legs(order, [p.x, p.y, p.z, turn.x, turn.y, turn.z]);
+        let filed = [p.x, p.y, p.z, turn.x, turn.y, turn.z];
+        let goal = with_landing_legs(order.columns().map(|i| filed[i]));
         let mut reference: Vec<[f64; N]> = nodes
             .windows(2)
             .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
@@ -226,94 +259,10 @@ impl File {
             nodes,
             forces,
             edge: shared.edge,
-            start: with_landing_legs(order, [s.x, s.y, s.z, 0.0, 0.0, 0.0]),
+            start: with_landing_legs([s.x, s.y, s.z, 0.0, 0.0, 0.0]),
             goal,
             friction: shared.friction,
             order,
         })
-    }
-}
-
-/// The SRB solution over time.
-struct Track<'a> {
-    times: Vec<f64>,
-    /// x, y, z, roll, pitch, yaw at the nodes, angles without jumps.
-    base: Vec<[f64; BASE]>,
-    forces: &'a [[f64; 3 * FEET]],
-}
-
-impl<'a> Track<'a> {
-    fn new(
-        name: &str,
-        intervals: &[usize],
-        srb: &'a SrbMotion,
-        order: EulerOrder,
-    ) -> Result<Self, String> {
-        let sol = &srb.sol;
-        let total: usize = intervals.iter().sum();
-        let fits = sol.durations.len() == intervals.len()
-            && sol.p.len() == total + 1
-            && sol.rotations.len() == total + 1
-            && sol.f.len() == total;
-        if !fits {
-            return Err(format!(
-                "task {name}: the SRB solution must have {} durations, {} nodes and {total} forces",
-                intervals.len(),
-                total + 1
-            ));
-        }
-        let mut times = vec![0.0];
-        let mut begin = 0.0;
-        for (n, duration) in intervals.iter().zip(&sol.durations) {
-            if !(*duration > 0.0 && duration.is_finite()) {
-                return Err(format!(
-                    "task {name}: durations of the SRB solution must be positive"
-                ));
-            }
-            times.extend((1..=*n).map(|i| begin + duration / *n as f64 * i as f64));
-            begin += duration;
-        }
-        let mut base: Vec<[f64; BASE]> = Vec::with_capacity(times.len());
-        for (p, r) in sol.p.iter().zip(&sol.rotations) {
-            let angles = order.angles(&Matrix3::from_column_slice(r));
-            let columns = order.columns();
-            let mut row = [p[0], p[1], p[2], 0.0, 0.0, 0.0];
-            for (angle, column) in angles.iter().zip(&columns[3..]) {
-                row[*column] = *angle;
-            }
-            if let Some(before) = base.last() {
-                for (x, x0) in row.iter_mut().zip(before).skip(3) {
-                    // Steps above half a turn are jumps of the principal value.
-                    if (*x - x0).abs() > PI {
-                        *x -= TAU * ((*x - x0) / TAU).round();
-                    }
-                }
-            }
-            base.push(row);
-        }
-        Ok(Self {
-            times,
-            base,
-            forces: &sol.f,
-        })
-    }
-
-    /// Last node at or before a time.
-    fn index(&self, time: f64) -> usize {
-        let after = self.times.partition_point(|t| *t <= time + 1e-9);
-        after.saturating_sub(1)
-    }
-
-    /// Linear interpolation between nodes.
-    fn at(&self, time: f64) -> [f64; BASE] {
-        let i = self.index(time).min(self.times.len() - 2);
-        let (from, to) = (&self.base[i], &self.base[i + 1]);
-        let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);
-        let share = share.clamp(0.0, 1.0);
-        core::array::from_fn(|c| from[c] + share * (to[c] - from[c]))
-    }
-
-    fn force(&self, time: f64) -> [f64; 3 * FEET] {
-        self.forces[self.index(time).min(self.forces.len() - 1)]
     }
 }
