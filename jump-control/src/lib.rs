@@ -3,6 +3,7 @@
 
 pub mod cartesian;
 pub mod com_profile;
+pub mod container;
 pub mod joint;
 pub mod minimum_jerk;
 pub mod phase;
