@@ -19,19 +19,21 @@ pub struct Blocking<T> {
     pub multiplier: T,
 }
 
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: Copy>
+    Stage<T, X, NX, NU, NI, K>
 {
     /// Violation of row `i`: `c − upper` above the upper bound, `c − lower` below the lower bound, else 0.
     ///
     /// Zero for a row that does not exist.
     #[must_use]
     pub fn violation(&self, i: usize) -> T {
-        let bounds = (self.bounds.0.get(i), self.bounds.1.get(i));
-        let (Some(value), (Some(lower), Some(upper))) = (self.values.rows.get(i), bounds) else {
+        let (rows, values) = (&self.node.rows, &self.node.values.rows);
+        let (Some(value), Some(lower), Some(upper)) =
+            (values.get(i), rows.lower.get(i), rows.upper.get(i))
+        else {
             return T::ZERO;
         };
-        if i >= self.row_count() {
+        if i >= self.node.row_count() {
             T::ZERO
         } else if *value > *upper {
             *value - *upper
@@ -44,12 +46,9 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 
     /// Largest violation of a row or of the dynamics that leave this node.
     fn worst(&self) -> T {
-        let gap = self
-            .values
-            .gap
-            .iter()
-            .fold(T::ZERO, |most, gap| larger(most, *gap));
-        (0..self.row_count()).fold(gap, |most, i| larger(most, self.violation(i)))
+        let gaps = self.node.values.gap.iter();
+        let gap = gaps.fold(T::ZERO, |most, gap| larger(most, *gap));
+        (0..self.node.row_count()).fold(gap, |most, i| larger(most, self.violation(i)))
     }
 }
 
@@ -65,17 +64,14 @@ pub fn blocking_rows<
     const NX: usize,
     const NU: usize,
     const NI: usize,
+    K: Copy,
 >(
-    stages: &[Stage<T, X, NX, NU, NI>],
+    stages: &[Stage<T, X, NX, NU, NI, K>],
 ) -> [Option<Blocking<T>>; N] {
     let mut worst: [Option<Blocking<T>>; N] = [None; N];
     for (k, stage) in stages.iter().enumerate() {
-        for (row, multiplier) in stage
-            .row_multiplier
-            .iter()
-            .enumerate()
-            .take(stage.row_count())
-        {
+        let multipliers = stage.row_multipliers();
+        for (row, multiplier) in multipliers.iter().enumerate().take(stage.node.row_count()) {
             let violation = stage.violation(row);
             if violation == T::ZERO {
                 continue;
@@ -105,8 +101,9 @@ pub(crate) fn largest_violation<
     const NX: usize,
     const NU: usize,
     const NI: usize,
+    K: Copy,
 >(
-    stages: &[Stage<T, X, NX, NU, NI>],
+    stages: &[Stage<T, X, NX, NU, NI, K>],
 ) -> T {
     stages
         .iter()

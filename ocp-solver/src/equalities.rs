@@ -2,14 +2,13 @@
 
 use crate::eliminate::{Carried, Elimination, Pivots, Row, Source};
 use crate::kernel::{add_product, add_scaled, add_transposed_product, dot, largest};
+use crate::problem::Derivatives;
 use crate::project::{Work, minimise};
-use crate::stage::Stage;
+use crate::stage::Node;
 use so3::Scalar;
 use so3::math::max;
 
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
-{
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
     /// Least over the controls under the equalities of this node and those its successor hands back; the
     /// rows that no control meets are left to be handed on.
     ///
@@ -18,6 +17,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     #[must_use]
     pub(crate) fn minimise(
         &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
         work: &mut Work<T, NX, NU>,
         next: Option<&Carried<T, NX>>,
         tolerance: T,
@@ -29,7 +29,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         if n == 0 && !self.has_equalities(None) {
             // Nothing to decide: rows pass through, and those that depend are found further back.
             if let Some(next) = next {
-                self.pass_back(next);
+                self.pass_back(d, next);
             }
             return true;
         }
@@ -40,7 +40,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             }
             work.elimination.start(free, tolerance);
             work.whiten(n, &mut self.riccati.pivots.whitening);
-            self.insert_rows(next, &mut work.elimination);
+            self.insert_rows(d, next, &mut work.elimination);
         }
         let r = &mut self.riccati;
         let left = (&mut r.hessian, &mut r.gradient);
@@ -56,14 +56,15 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// Whether there are own equalities or rows handed back by `next`.
     #[inline(always)]
     pub(crate) fn has_equalities(&self, next: Option<&Carried<T, NX>>) -> bool {
-        let own = self.elastic == T::ZERO && (0..self.row_count()).any(|i| self.is_equality(i));
+        let own =
+            self.elastic == T::ZERO && (0..self.row_count()).any(|i| self.rows.is_equality(i));
         own || next.is_some_and(|next| next.count > 0)
     }
 
     /// Puts the rows of the successor through dynamics without controls.
     #[inline(never)]
-    fn pass_back(&mut self, next: &Carried<T, NX>) {
-        let (a, rows) = (&self.derivatives.dynamics_x, self.row_count());
+    fn pass_back(&mut self, d: &Derivatives<T, NX, NU, NI>, next: &Carried<T, NX>) {
+        let (a, rows) = (&d.dynamics_x, self.row_count());
         let carried = &mut self.riccati.carried;
         carried.pass(next, rows, |h, x| {
             add_transposed_product(x, a, h);
@@ -72,16 +73,20 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     }
 
     #[inline(never)]
-    fn insert_rows(&mut self, next: Option<&Carried<T, NX>>, to: &mut Elimination<T, NX, NU>) {
-        let d = &self.derivatives;
+    fn insert_rows(
+        &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
+        next: Option<&Carried<T, NX>>,
+        to: &mut Elimination<T, NX, NU>,
+    ) {
         let (rows, n) = (self.row_count(), self.dims.controls.min(NU));
         let before_mixed = self.dims.state_rows.saturating_add(self.dims.control_rows);
         let pivots = &mut self.riccati.pivots;
         for i in 0..rows {
-            let lower = self.bounds.0[i];
-            if lower != self.bounds.1[i] {
+            if !self.rows.is_equality(i) {
                 continue;
             }
+            let lower = self.rows.lower[i];
             let in_state = i < self.dims.state_rows || i >= before_mixed;
             let in_control = i >= self.dims.state_rows;
             let (x, mut u) = (
@@ -129,12 +134,13 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     #[inline(never)]
     pub(crate) fn recover_multipliers(
         &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
         costate: &[T; NX],
         next: Option<&mut Carried<T, NX>>,
         shift: T,
+        mu: T,
     ) {
         let rows = self.row_count();
-        let d = &self.derivatives;
         let mut own = [T::ZERO; NI];
         let mut handed = [T::ZERO; NX];
         let mut write = |source: Source, y: T| {
@@ -163,13 +169,14 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             }
             add_transposed_product(&mut gradient, &d.dynamics_u, &costate);
             let first = self.dims.state_rows;
-            for (i, own) in own.iter().enumerate().take(rows).skip(first) {
-                let y = if self.is_equality(i) {
-                    *own
+            for i in first..rows {
+                let y = if self.rows.is_equality(i) {
+                    own[i]
                 } else {
                     // The condensed multiplier at the full step.
-                    let change = self.step.slack[i] - (self.values.rows[i] - self.slack[i]);
-                    self.step.target[i] + self.step.weight[i] * change
+                    let (weight, target) = self.condensed(i, mu);
+                    let change = self.step.rows[i] - (self.values.rows[i] - self.rows.slack[i]);
+                    target + weight * change
                 };
                 if y != T::ZERO {
                     add_scaled(&mut gradient, y, &d.rows_u[i]);
@@ -188,9 +195,9 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 }
             });
         }
-        for (i, y) in own.iter().enumerate().take(rows) {
-            if self.is_equality(i) {
-                self.step.target[i] = *y;
+        for i in 0..rows {
+            if self.rows.is_equality(i) {
+                self.step.rows[i] = own[i];
             }
         }
         if let Some(next) = next {

@@ -1,10 +1,11 @@
 //! Passes over all nodes: evaluate, differentiate, residuals, trial points.
 
+use crate::keep::Keep;
 use crate::kernel::{add_scaled, add_transposed_product, larger};
-use crate::problem::{Evaluated, Problem};
+use crate::problem::{Derivatives, Problem};
 use crate::rows::Complementarity;
 use crate::settings::Residual;
-use crate::stage::Stage;
+use crate::stage::{Node, Stage};
 use so3::Scalar;
 use so3::math::{abs, max};
 
@@ -28,29 +29,33 @@ impl<T: Scalar> Merit<T> {
 pub(crate) fn evaluate<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
     const NX: usize,
     const NU: usize,
     const NI: usize,
 >(
     problem: &P,
-    stages: &mut [Stage<T, P::State, NX, NU, NI>],
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
 ) -> Option<usize> {
     let mut rest = stages;
     let mut k = 0usize;
     let mut broken = None;
     while let Some((stage, tail)) = rest.split_first_mut() {
         let next = tail.first().map(|next| &next.state);
-        problem.evaluate(k, &stage.state, &stage.control, next, &mut stage.values);
+        problem.evaluate(
+            k,
+            &stage.state,
+            &stage.control,
+            next,
+            &mut stage.node.values,
+        );
         if next.is_none() {
-            stage.values.gap = [T::ZERO; NX];
+            stage.node.values.gap = [T::ZERO; NX];
         }
-        let total: T = stage
-            .values
-            .gap
-            .iter()
-            .chain(&stage.values.rows)
-            .fold(T::ZERO, |a, b| a + *b);
-        if broken.is_none() && !(total + stage.values.cost).is_finite_number() {
+        let values = &stage.node.values;
+        let entries = values.gap.iter().chain(&values.rows);
+        let total: T = entries.fold(T::ZERO, |a, b| a + *b);
+        if broken.is_none() && !(total + values.cost).is_finite_number() {
             broken = Some(k);
         }
         rest = tail;
@@ -63,12 +68,13 @@ pub(crate) fn evaluate<
 pub(crate) fn differentiate<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
     const NX: usize,
     const NU: usize,
     const NI: usize,
 >(
     problem: &P,
-    stages: &mut [Stage<T, P::State, NX, NU, NI>],
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     free: &[bool; NX],
     primal: T,
     complementarity: &mut Complementarity<T>,
@@ -78,26 +84,14 @@ pub(crate) fn differentiate<
         sum: T::ZERO,
         count: T::ONE,
     };
+    let mut scratch = K::SCRATCH;
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
-        let next = tail.first();
-        let costate = next.map_or([T::ZERO; NX], |next| next.costate);
-        let at = Evaluated {
-            values: &stage.values,
-            dynamics_multiplier: &costate,
-            row_multipliers: &stage.row_multiplier,
-        };
-        problem.differentiate(
-            k,
-            &stage.state,
-            &stage.control,
-            next.map(|next| &next.state),
-            at,
-            &mut stage.derivatives,
-        );
-        dual.add(stage, &costate, (k == 0).then_some(free));
-        stage.add_complementarity(complementarity);
+        let costate = tail.first().map_or([T::ZERO; NX], |next| next.node.costate);
+        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, true);
+        dual.add(node, d, &costate, (k == 0).then_some(free));
+        node.add_complementarity(complementarity);
         rest = tail;
         k = k.wrapping_add(1);
     }
@@ -120,26 +114,24 @@ struct Dual<T> {
 impl<T: Scalar> Dual<T> {
     /// Adds a node; `free` marks the coordinates that count if the state is otherwise fixed.
     #[inline(always)]
-    fn add<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+    fn add<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
-        stage: &Stage<T, X, NX, NU, NI>,
+        node: &Node<T, NX, NU, NI>,
+        d: &Derivatives<T, NX, NU, NI>,
         next_costate: &[T; NX],
         free: Option<&[bool; NX]>,
     ) {
-        let d = &stage.derivatives;
         let (mut in_x, mut in_u) = (d.cost_x, d.cost_u);
         add_transposed_product(&mut in_x, &d.dynamics_x, next_costate);
         add_transposed_product(&mut in_u, &d.dynamics_u, next_costate);
-        let before_mixed = stage
-            .dims
-            .state_rows
-            .saturating_add(stage.dims.control_rows);
-        let rows = d.rows_x.iter().zip(&d.rows_u).zip(&stage.row_multiplier);
-        for (i, ((row_x, row_u), y)) in rows.enumerate().take(stage.row_count()) {
-            if i < stage.dims.state_rows || i >= before_mixed {
+        let before_mixed = node.dims.state_rows.saturating_add(node.dims.control_rows);
+        let multipliers = node.rows.multipliers();
+        let rows = d.rows_x.iter().zip(&d.rows_u).zip(&multipliers);
+        for (i, ((row_x, row_u), y)) in rows.enumerate().take(node.row_count()) {
+            if i < node.dims.state_rows || i >= before_mixed {
                 add_scaled(&mut in_x, *y, row_x);
             }
-            if i >= stage.dims.state_rows {
+            if i >= node.dims.state_rows {
                 add_scaled(&mut in_u, *y, row_u);
             }
             self.sum += abs(*y);
@@ -152,22 +144,22 @@ impl<T: Scalar> Dual<T> {
                 }
             }
             None => {
-                for (value, costate) in in_x.iter().zip(&stage.costate) {
+                for (value, costate) in in_x.iter().zip(&node.costate) {
                     self.largest = larger(self.largest, *value - *costate);
                     self.sum += abs(*costate);
                     self.count += T::ONE;
                 }
             }
         }
-        for value in in_u.iter().take(stage.dims.controls) {
+        for value in in_u.iter().take(node.dims.controls) {
             self.largest = larger(self.largest, *value);
         }
     }
 }
 
 /// Infeasibility and cost of the current iterate.
-pub(crate) fn merit<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
-    stages: &[Stage<T, X, NX, NU, NI>],
+pub(crate) fn merit<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, const NI: usize>(
+    stages: &[Stage<T, X, NX, NU, NI, K>],
 ) -> Merit<T> {
     let mut merit = Merit {
         cost: T::ZERO,
@@ -175,7 +167,7 @@ pub(crate) fn merit<T: Scalar, X: Copy, const NX: usize, const NU: usize, const 
         sum: T::ZERO,
     };
     for stage in stages {
-        merit.add(stage, T::ZERO);
+        merit.add(&stage.node, T::ZERO);
     }
     merit
 }
@@ -183,17 +175,17 @@ pub(crate) fn merit<T: Scalar, X: Copy, const NX: usize, const NU: usize, const 
 impl<T: Scalar> Merit<T> {
     /// Adds a node with its slacks moved by `slack_step` of their steps.
     #[inline(always)]
-    fn add<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+    fn add<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
-        stage: &Stage<T, X, NX, NU, NI>,
+        node: &Node<T, NX, NU, NI>,
         slack_step: T,
     ) {
-        self.cost += stage.values.cost;
-        for gap in &stage.values.gap {
+        self.cost += node.values.cost;
+        for gap in &node.values.gap {
             self.worst = larger(self.worst, *gap);
             self.sum += abs(*gap);
         }
-        let (worst, sum) = stage.row_violation(slack_step);
+        let (worst, sum) = node.row_violation(slack_step);
         self.worst = larger(self.worst, worst);
         self.sum += sum;
     }
@@ -203,12 +195,13 @@ impl<T: Scalar> Merit<T> {
 pub(crate) fn try_step<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
     const NX: usize,
     const NU: usize,
     const NI: usize,
 >(
     problem: &P,
-    stages: &mut [Stage<T, P::State, NX, NU, NI>],
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     alpha: T,
 ) -> Merit<T> {
     let mut merit = Merit {
@@ -224,24 +217,24 @@ pub(crate) fn try_step<
     while let Some((stage, tail)) = rest.split_first_mut() {
         let after = k.wrapping_add(1);
         if let Some(next) = tail.first_mut() {
-            let before = (&stage.trial.state, &stage.trial.control);
+            let before = (&stage.trial.0, &stage.trial.1);
             next.move_to_trial(problem, after, alpha, Some(before));
         }
-        let next = tail.first().map(|next| &next.trial.state);
-        let trial = &stage.trial;
-        problem.evaluate(k, &trial.state, &trial.control, next, &mut stage.values);
+        let next = tail.first().map(|next| &next.trial.0);
+        let (state, control) = &stage.trial;
+        problem.evaluate(k, state, control, next, &mut stage.node.values);
         if next.is_none() {
-            stage.values.gap = [T::ZERO; NX];
+            stage.node.values.gap = [T::ZERO; NX];
         }
-        merit.add(stage, alpha);
+        merit.add(&stage.node, alpha);
         rest = tail;
         k = after;
     }
     merit
 }
 
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
+impl<T: Scalar, X: Copy, K: Copy, const NX: usize, const NU: usize, const NI: usize>
+    Stage<T, X, NX, NU, NI, K>
 {
     /// Moves state and control by `alpha` of their steps into the trial point.
     #[inline(always)]
@@ -253,27 +246,27 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         before: Option<(&X, &[T; NU])>,
     ) {
         let mut step = [T::ZERO; NX];
-        add_scaled(&mut step, alpha, &self.step.state);
-        self.trial.state = problem.retract(k, &self.state, &step, before);
-        self.trial.control = self.control;
-        add_scaled(&mut self.trial.control, alpha, &self.step.control);
+        add_scaled(&mut step, alpha, &self.node.step.state);
+        self.trial.0 = problem.retract(k, &self.state, &step, before);
+        self.trial.1 = self.control;
+        add_scaled(&mut self.trial.1, alpha, &self.node.step.control);
     }
 }
 
 /// Makes the trial point the iterate and moves all multipliers.
-pub(crate) fn accept<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
-    stages: &mut [Stage<T, X, NX, NU, NI>],
+pub(crate) fn accept<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, const NI: usize>(
+    stages: &mut [Stage<T, X, NX, NU, NI, K>],
     primal: T,
     dual: T,
     mu: T,
     floor: T,
 ) {
     for stage in stages.iter_mut() {
-        stage.state = stage.trial.state;
-        stage.control = stage.trial.control;
-        for (costate, full) in stage.costate.iter_mut().zip(&stage.step.costate) {
+        (stage.state, stage.control) = stage.trial;
+        let node = &mut stage.node;
+        for (costate, full) in node.costate.iter_mut().zip(&node.step.costate) {
             *costate += primal * (*full - *costate);
         }
-        stage.accept_rows(primal, dual, mu, floor);
+        node.accept_rows(primal, dual, mu, floor);
     }
 }

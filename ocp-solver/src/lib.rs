@@ -6,6 +6,7 @@ mod check;
 mod eliminate;
 mod equalities;
 mod iterate;
+mod keep;
 mod kernel;
 mod problem;
 mod project;
@@ -17,7 +18,8 @@ mod stage;
 
 pub use blocking::{Blocking, blocking_rows};
 pub use check::{DerivativeErrors, derivative_errors};
+pub use keep::{Keep, Recomputed};
 pub use problem::{Derivatives, Dims, Evaluated, Problem, Values};
 pub use settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
 pub use solver::Solver;
-pub use stage::Stage;
+pub use stage::{LeanStage, Stage};

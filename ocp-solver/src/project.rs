@@ -65,7 +65,7 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
     pub(crate) const fn new() -> Self {
         Self {
             lower: [[T::ZERO; NU]; NU],
-            scale: [T::ONE; NU],
+            scale: [T::ZERO; NU],
         }
     }
 

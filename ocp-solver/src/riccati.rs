@@ -19,12 +19,14 @@
 //! identity to `H` and repeats. With `H_k dx + h_k = 0` the rows a node hands back and `ν` their
 //! multipliers, the costate of a node is `P dx + p + H_kᵀ ν`.
 
+use crate::keep::Keep;
 use crate::kernel::{
     add_outer, add_product, add_scaled, add_transposed_product, dot, mirror_lower, transpose,
 };
+use crate::problem::{Derivatives, Problem};
 use crate::project::Work;
 use crate::rows::RowBarrier;
-use crate::stage::{Riccati, Stage};
+use crate::stage::{Node, Riccati, Stage};
 use so3::Scalar;
 use so3::math::min;
 
@@ -32,39 +34,45 @@ use so3::math::min;
 ///
 /// Returns false if the reduced Hessian is not positive definite.
 #[must_use]
-pub(crate) fn factorise<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
-    stages: &mut [Stage<T, X, NX, NU, NI>],
+pub(crate) fn factorise<T, P, K, const NX: usize, const NU: usize, const NI: usize>(
+    problem: &P,
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     barrier: RowBarrier<T>,
     shift: T,
-) -> bool {
+) -> bool
+where
+    T: Scalar,
+    P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
+{
     let mut work = Work::new();
+    let mut scratch = K::SCRATCH;
     let mut k = stages.len();
     while let Some((head, tail)) = stages.split_at_mut_checked(k) {
         let Some(stage) = head.last_mut() else { break };
-        stage.condense_rows(barrier.mu);
-        let next = tail.first().map(|next| &next.riccati);
-        if !stage.factorise(&mut work, next, barrier.rank_tolerance, shift) {
+        k = k.wrapping_sub(1);
+        let next = tail.first();
+        let (node, d) = stage.linearise(problem, k, next, &mut scratch, false);
+        let next = next.map(|next| &next.node.riccati);
+        if !node.factorise(d, &mut work, next, barrier, shift) {
             return false;
         }
-        k = k.wrapping_sub(1);
     }
     true
 }
 
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
-{
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
     /// One step of the backward recursion.
     #[inline(always)]
     fn factorise(
         &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
         work: &mut Work<T, NX, NU>,
         next: Option<&Riccati<T, NX, NU>>,
-        rank_tolerance: T,
+        barrier: RowBarrier<T>,
         shift: T,
     ) -> bool {
         let n = self.dims.controls.min(NU);
-        let d = &self.derivatives;
         let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         (*q_xx, *q_x) = (d.hessian_xx, d.cost_x);
         for (i, column) in q_xx.iter_mut().enumerate() {
@@ -76,9 +84,8 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 column[i] += shift;
             }
         }
-        self.add_rows(work);
+        self.add_rows(d, work, barrier.mu);
 
-        let d = &self.derivatives;
         let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         if let Some(next) = next {
             // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
@@ -113,7 +120,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             }
         }
         let carried = next.map(|next| &next.carried);
-        if !self.minimise(work, carried, rank_tolerance) {
+        if !self.minimise(d, work, carried, barrier.rank_tolerance) {
             return false;
         }
         // Rounding makes the two triangles differ, and an unstable motion would amplify that.
@@ -123,37 +130,31 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 
     /// Adds the condensed rows to the stage Hessian and gradient.
     #[inline(never)]
-    fn add_rows(&mut self, q: &mut Work<T, NX, NU>) {
-        let d = &self.derivatives;
-        let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
+    fn add_rows(&mut self, d: &Derivatives<T, NX, NU, NI>, q: &mut Work<T, NX, NU>, mu: T) {
         let state_rows = self.dims.state_rows;
         let before_mixed = state_rows.saturating_add(self.dims.control_rows);
-        let rows = d
-            .rows_x
-            .iter()
-            .zip(&d.rows_u)
-            .zip(self.step.weight.iter().zip(&self.step.target));
-        for (i, ((row_x, row_u), (weight, target))) in
-            rows.enumerate().take(self.dims.rows().min(NI))
-        {
-            if self.bounds.0[i] == self.bounds.1[i] && self.elastic == T::ZERO {
+        for i in 0..self.row_count() {
+            if self.rows.is_equality(i) && self.elastic == T::ZERO {
                 continue;
             }
+            let (weight, target) = self.condensed(i, mu);
+            let (row_x, row_u) = (&d.rows_x[i], &d.rows_u[i]);
+            let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
             let (in_state, in_control) = (i < state_rows || i >= before_mixed, i >= state_rows);
             if in_state {
-                add_outer(q_xx, *weight, row_x);
-                add_scaled(q_x, *target, row_x);
+                add_outer(q_xx, weight, row_x);
+                add_scaled(q_x, target, row_x);
             }
             if in_control {
-                add_outer(&mut q.uu, *weight, row_u);
+                add_outer(&mut q.uu, weight, row_u);
                 for (q, entry) in q.u.iter_mut().zip(row_u) {
-                    q[0] += *target * *entry;
+                    q[0] += target * *entry;
                 }
             }
             if in_state && in_control {
                 for (column, entry) in q.xu.iter_mut().zip(row_u) {
                     if *entry != T::ZERO {
-                        add_scaled(column, *weight * *entry, row_x);
+                        add_scaled(column, weight * *entry, row_x);
                     }
                 }
             }
@@ -167,63 +168,81 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 /// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance to a
 /// bound and of every bound multiplier.
 #[inline(never)]
-pub(crate) fn substitute<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>(
-    stages: &mut [Stage<T, X, NX, NU, NI>],
+pub(crate) fn substitute<T, P, K, const NX: usize, const NU: usize, const NI: usize>(
+    problem: &P,
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     start: [T; NX],
     shift: T,
     mu: T,
     fraction: T,
-) -> (T, T) {
+) -> (T, T)
+where
+    T: Scalar,
+    P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
+{
     let mut lengths = (T::ONE, T::ONE);
     if let Some(first) = stages.first_mut() {
-        first.step.state = start;
-        first.step.costate = first.riccati.costate(&start);
+        first.node.step.state = start;
+        first.node.step.costate = first.node.riccati.costate(&start);
     }
+    let mut scratch = K::SCRATCH;
     let mut rest = stages;
+    let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
-        let step = stage.step.state;
-        let n = stage.dims.controls.min(NU);
-        stage.step.control = [T::ZERO; NU];
-        for (((control, gain), feedforward), _) in stage
-            .step
-            .control
-            .iter_mut()
-            .zip(&stage.riccati.gain)
-            .zip(&stage.riccati.feedforward)
-            .zip(0..n)
-        {
+        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, false);
+        let next = tail.first_mut().map(|next| &mut next.node);
+        let (primal, dual) = node.substitute(d, next, shift, mu, fraction);
+        lengths = (min(lengths.0, primal), min(lengths.1, dual));
+        rest = tail;
+        k = k.wrapping_add(1);
+    }
+    lengths
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
+    /// One step of the forward substitution.
+    #[inline(always)]
+    fn substitute(
+        &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
+        next: Option<&mut Self>,
+        shift: T,
+        mu: T,
+        fraction: T,
+    ) -> (T, T) {
+        let step = self.step.state;
+        let n = self.dims.controls.min(NU);
+        self.step.control = [T::ZERO; NU];
+        let r = &self.riccati;
+        let law = r.gain.iter().zip(&r.feedforward).take(n);
+        for (control, (gain, feedforward)) in self.step.control.iter_mut().zip(law) {
             *control = feedforward[0] + dot(gain, &step);
         }
-        let (primal, dual) = stage.step_rows(mu, fraction);
-        lengths = (min(lengths.0, primal), min(lengths.1, dual));
+        let lengths = self.step_rows(d, mu, fraction);
 
         // The costate of this node lacks its rows until here.
-        let carried = &stage.riccati.carried;
+        let carried = &self.riccati.carried;
         let own_rows = carried.rows.iter().zip(&carried.multiplier);
         for (row, y) in own_rows.take(carried.count) {
-            add_scaled(&mut stage.step.costate, *y, row);
+            add_scaled(&mut self.step.costate, *y, row);
         }
         let mut costate = [T::ZERO; NX];
         let mut carried = None;
-        if let Some(next) = tail.first_mut() {
-            let mut step_next = stage.values.gap;
-            add_product(&mut step_next, &stage.derivatives.dynamics_x, &step);
-            add_product(
-                &mut step_next,
-                &stage.derivatives.dynamics_u,
-                &stage.step.control,
-            );
+        if let Some(next) = next {
+            let mut step_next = self.values.gap;
+            add_product(&mut step_next, &d.dynamics_x, &step);
+            add_product(&mut step_next, &d.dynamics_u, &self.step.control);
             next.step.state = step_next;
             costate = next.riccati.costate(&step_next);
             next.step.costate = costate;
             carried = Some(&mut next.riccati.carried);
         }
-        if stage.has_equalities(carried.as_deref()) {
-            stage.recover_multipliers(&costate, carried, shift);
+        if self.has_equalities(carried.as_deref()) {
+            self.recover_multipliers(d, &costate, carried, shift, mu);
         }
-        rest = tail;
+        lengths
     }
-    lengths
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize> Riccati<T, NX, NU> {

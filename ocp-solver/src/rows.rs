@@ -16,9 +16,10 @@
 //! `Σ/(1 + e Σ)` and `(µ/(h−s) − µ/(s−l) + Σ(c − s))/(1 + e Σ)`, and an equality `1/e` and `(c − l)/e`.
 
 use crate::kernel::{dot, larger};
-use crate::stage::{Side, Stage};
+use crate::problem::Derivatives;
+use crate::stage::{Node, Rows};
 use so3::Scalar;
-use so3::math::{max, min};
+use so3::math::{abs, max, min};
 
 /// Parameters of a factorisation.
 #[derive(Clone, Copy, Debug)]
@@ -52,40 +53,79 @@ impl<T: Scalar> Complementarity<T> {
         }
     }
 
-    fn add<const NI: usize>(&mut self, side: &Side<T, NI>, rows: usize) {
-        for (distance, multiplier) in side.distance.iter().zip(&side.multiplier).take(rows) {
-            if *distance < T::INFINITY {
-                let product = *distance * *multiplier;
-                self.sum += product;
-                self.smallest = min(self.smallest, product);
-                self.largest = larger(self.largest, product);
-                self.count += T::ONE;
-            }
-        }
+    fn add(&mut self, product: T) {
+        self.sum += product;
+        self.smallest = min(self.smallest, product);
+        self.largest = larger(self.largest, product);
+        self.count += T::ONE;
     }
 }
 
-impl<T: Scalar, const NI: usize> Side<T, NI> {
-    /// Newton step of multiplier `i` for a slack step away from the bound.
-    fn newton(&self, i: usize, mu: T, slack_step: T) -> T {
-        let (d, z) = (self.distance[i], self.multiplier[i]);
-        if d < T::INFINITY {
-            (mu - z * slack_step) / d - z
-        } else {
-            T::ZERO
-        }
-    }
-}
-
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
-{
+impl<T: Scalar, const NI: usize> Rows<T, NI> {
     /// Whether row `i` is an equality.
     #[inline(always)]
     pub(crate) fn is_equality(&self, i: usize) -> bool {
-        self.bounds.0[i] == self.bounds.1[i]
+        self.lower[i] == self.upper[i]
     }
 
+    /// Multipliers of all rows: upper minus lower side, or that of an equality.
+    #[inline(always)]
+    pub(crate) fn multipliers(&self) -> [T; NI] {
+        let mut y = self.above;
+        for (y, below) in y.iter_mut().zip(&self.below) {
+            *y -= *below;
+        }
+        y
+    }
+
+    /// Distances of slack `i` from its bounds, positive; +∞ where there is no bound.
+    #[inline(always)]
+    pub(crate) fn distances(&self, i: usize) -> (T, T) {
+        (self.slack[i] - self.lower[i], self.upper[i] - self.slack[i])
+    }
+
+    /// The slack `s` of row `i`, moved toward the row's value `c` where that takes it away from both bounds.
+    ///
+    /// Such a move lowers the violation and the barrier at once; without it a slack that was pushed
+    /// against a bound by a bad step stays there and stops the iteration.
+    fn relaxed(&self, i: usize, s: T, c: T) -> T {
+        let (l, h) = (self.lower[i], self.upper[i]);
+        let centre = (l + h) * T::HALF;
+        if c > s && (h == T::INFINITY || s < centre) {
+            if h == T::INFINITY { c } else { min(c, centre) }
+        } else if c < s && (l == -T::INFINITY || s > centre) {
+            if l == -T::INFINITY { c } else { max(c, centre) }
+        } else {
+            s
+        }
+    }
+
+    /// `s`, kept off the bounds of row `i` even where rounding would close the distance.
+    fn inside(&self, i: usize, s: T) -> T {
+        let (l, h) = (self.lower[i], self.upper[i]);
+        let last = |bound: T| max(T::EPSILON * abs(bound), T::EPSILON * T::EPSILON);
+        let mut s = s;
+        if h < T::INFINITY && s >= h {
+            s = h - last(h);
+        }
+        if l > -T::INFINITY && s <= l {
+            s = l + last(l);
+        }
+        s
+    }
+}
+
+/// Newton step of the multiplier `z` of a bound at distance `d`, for a slack step away from the bound.
+#[inline(always)]
+fn newton<T: Scalar>(d: T, z: T, mu: T, slack_step: T) -> T {
+    if d < T::INFINITY {
+        (mu - z * slack_step) / d - z
+    } else {
+        T::ZERO
+    }
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
     /// Rows in use, never more than there is storage.
     #[inline(always)]
     pub(crate) fn row_count(&self) -> usize {
@@ -99,14 +139,11 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// that is given.
     pub(crate) fn start_rows(&mut self, push: T, multiplier: T, mu: Option<T>) {
         for i in 0..self.row_count() {
-            let (l, h, c) = (self.bounds.0[i], self.bounds.1[i], self.values.rows[i]);
-            self.row_multiplier[i] = T::ZERO;
-            for side in [&mut self.lower, &mut self.upper] {
-                side.distance[i] = T::INFINITY;
-                side.multiplier[i] = T::ZERO;
-            }
+            let rows = &mut self.rows;
+            let (l, h, c) = (rows.lower[i], rows.upper[i], self.values.rows[i]);
+            (rows.below[i], rows.above[i]) = (T::ZERO, T::ZERO);
             if l == h {
-                self.slack[i] = l;
+                rows.slack[i] = l;
                 continue;
             }
             let margin = min(push, push * (h - l));
@@ -117,40 +154,37 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             if h.is_finite_number() {
                 s = min(s, h - margin);
             }
-            self.slack[i] = s;
+            rows.slack[i] = rows.inside(i, s);
             let start = |d: T| mu.map_or(multiplier, |mu| mu / d);
+            let (below, above) = rows.distances(i);
             if l.is_finite_number() {
-                self.lower.distance[i] = s - l;
-                self.lower.multiplier[i] = start(s - l);
+                rows.below[i] = start(below);
             }
             if h.is_finite_number() {
-                self.upper.distance[i] = h - s;
-                self.upper.multiplier[i] = start(h - s);
+                rows.above[i] = start(above);
             }
-            self.row_multiplier[i] = self.upper.multiplier[i] - self.lower.multiplier[i];
         }
     }
 
     /// Places slacks inside bounds that may have moved since the last solve, and keeps its multipliers within
     /// a factor of ten of the central path of `mu`.
     pub(crate) fn resume_rows(&mut self, push: T, mu: T) {
-        let kept = (
-            self.lower.multiplier,
-            self.upper.multiplier,
-            self.row_multiplier,
-        );
+        let kept = (self.rows.below, self.rows.above);
         self.start_rows(min(push, so3::math::sqrt(mu)), T::ONE, Some(mu));
         let ten = T::of(10.0);
         for i in 0..self.row_count() {
-            if self.is_equality(i) {
-                self.row_multiplier[i] = kept.2[i];
+            let rows = &mut self.rows;
+            if rows.is_equality(i) {
+                rows.above[i] = kept.1[i];
                 continue;
             }
-            for (side, z) in [(&mut self.lower, kept.0[i]), (&mut self.upper, kept.1[i])] {
-                let central = side.multiplier[i];
-                side.multiplier[i] = max(min(z, central * ten), central / ten);
+            for (z, kept) in [
+                (&mut rows.below[i], kept.0[i]),
+                (&mut rows.above[i], kept.1[i]),
+            ] {
+                let central = *z;
+                *z = max(min(kept, central * ten), central / ten);
             }
-            self.row_multiplier[i] = self.upper.multiplier[i] - self.lower.multiplier[i];
         }
     }
 
@@ -159,46 +193,44 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         for y in self
             .costate
             .iter_mut()
-            .chain(&mut self.row_multiplier)
-            .chain(&mut self.lower.multiplier)
-            .chain(&mut self.upper.multiplier)
+            .chain(&mut self.rows.below)
+            .chain(&mut self.rows.above)
         {
             *y *= factor;
         }
     }
 
-    /// Weights and targets of the condensed rows.
-    pub(crate) fn condense_rows(&mut self, mu: T) {
-        for i in 0..self.row_count() {
-            let residual = self.values.rows[i] - self.slack[i];
-            if self.is_equality(i) {
-                let weight = if self.elastic > T::ZERO {
-                    T::ONE / self.elastic
-                } else {
-                    T::ZERO
-                };
-                (self.step.weight[i], self.step.target[i]) = (weight, weight * residual);
+    /// What row `i`, condensed, adds to the stage: its weight, and its multiplier before the step.
+    #[inline(always)]
+    pub(crate) fn condensed(&self, i: usize, mu: T) -> (T, T) {
+        let rows = &self.rows;
+        let residual = self.values.rows[i] - rows.slack[i];
+        if rows.is_equality(i) {
+            let weight = if self.elastic > T::ZERO {
+                T::ONE / self.elastic
             } else {
-                let (below, above) = (
-                    T::ONE / self.lower.distance[i],
-                    T::ONE / self.upper.distance[i],
-                );
-                let weight = self.lower.multiplier[i] * below + self.upper.multiplier[i] * above;
-                let give = if self.elastic > T::ZERO {
-                    T::ONE / (T::ONE + self.elastic * weight)
-                } else {
-                    T::ONE
-                };
-                self.step.weight[i] = weight * give;
-                self.step.target[i] = (mu * (above - below) + weight * residual) * give;
-            }
+                T::ZERO
+            };
+            return (weight, weight * residual);
         }
+        let (below, above) = rows.distances(i);
+        let (below, above) = (T::ONE / below, T::ONE / above);
+        let weight = rows.below[i] * below + rows.above[i] * above;
+        let give = if self.elastic > T::ZERO {
+            T::ONE / (T::ONE + self.elastic * weight)
+        } else {
+            T::ONE
+        };
+        (
+            weight * give,
+            (mu * (above - below) + weight * residual) * give,
+        )
     }
 
     /// `J d` of row `i` for the state and control steps.
     #[inline(always)]
-    fn row_change(&self, i: usize) -> T {
-        let (d, x_rows) = (&self.derivatives, self.dims.state_rows);
+    fn row_change(&self, d: &Derivatives<T, NX, NU, NI>, i: usize) -> T {
+        let x_rows = self.dims.state_rows;
         let u_rows = x_rows.saturating_add(self.dims.control_rows);
         let mut change = T::ZERO;
         if i < x_rows || i >= u_rows {
@@ -210,38 +242,44 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         change
     }
 
-    /// Slack and multiplier steps from the state and control steps.
+    /// Slack steps, and in elastic mode multipliers of equalities, from the state and control steps.
     ///
     /// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance and
     /// multiplier.
-    pub(crate) fn step_rows(&mut self, mu: T, fraction: T) -> (T, T) {
+    pub(crate) fn step_rows(
+        &mut self,
+        d: &Derivatives<T, NX, NU, NI>,
+        mu: T,
+        fraction: T,
+    ) -> (T, T) {
         let (mut primal, mut dual) = (T::ONE, T::ONE);
         for i in 0..self.row_count() {
-            let change = self.row_change(i);
-            let mut ds = self.values.rows[i] - self.slack[i] + change;
+            let change = self.row_change(d, i);
+            let mut ds = self.values.rows[i] - self.rows.slack[i] + change;
             if self.elastic > T::ZERO {
-                let multiplier = self.step.target[i] + self.step.weight[i] * change;
+                let (weight, target) = self.condensed(i, mu);
+                let multiplier = target + weight * change;
                 ds -= self.elastic * multiplier;
-                if self.is_equality(i) {
-                    self.step.target[i] = multiplier;
+                if self.rows.is_equality(i) {
+                    ds = multiplier;
                 }
             }
-            self.step.slack[i] = ds;
-            if self.is_equality(i) {
+            self.step.rows[i] = ds;
+            if self.rows.is_equality(i) {
                 continue;
             }
-            for (side, ds) in [(&self.lower, ds), (&self.upper, -ds)] {
-                let (z, dz) = (side.multiplier[i], side.newton(i, mu, ds));
+            let (below, above) = self.rows.distances(i);
+            for (d, z, ds) in [
+                (below, self.rows.below[i], ds),
+                (above, self.rows.above[i], -ds),
+            ] {
+                let dz = newton(d, z, mu, ds);
                 if dz < T::ZERO && dual * dz < -fraction * z {
                     dual = -fraction * z / dz;
                 }
             }
-            let limit = if ds < T::ZERO {
-                self.lower.distance[i]
-            } else {
-                self.upper.distance[i]
-            };
-            let reach = so3::math::abs(ds);
+            let limit = if ds < T::ZERO { below } else { above };
+            let reach = abs(ds);
             if primal * reach > fraction * limit {
                 primal = fraction * limit / reach;
             }
@@ -249,80 +287,66 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
         (primal, dual)
     }
 
-    /// The slack `s` of row `i`, moved toward the row's value where that takes it away from both bounds.
-    ///
-    /// Such a move lowers the violation and the barrier at once; without it a slack that was pushed
-    /// against a bound by a bad step stays there and stops the iteration.
-    fn relaxed(&self, i: usize, s: T) -> T {
-        let (l, h, c) = (self.bounds.0[i], self.bounds.1[i], self.values.rows[i]);
-        let centre = (l + h) * T::HALF;
-        if c > s && (h == T::INFINITY || s < centre) {
-            if h == T::INFINITY { c } else { min(c, centre) }
-        } else if c < s && (l == -T::INFINITY || s > centre) {
-            if l == -T::INFINITY { c } else { max(c, centre) }
-        } else {
-            s
-        }
-    }
-
     /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
     ///
     /// `mu` is that of the step, `floor` bounds how small a multiplier becomes.
     pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T, floor: T) {
         for i in 0..self.row_count() {
-            let ds = self.step.slack[i];
-            if self.is_equality(i) {
-                let full = self.step.target[i];
-                self.row_multiplier[i] += primal * (full - self.row_multiplier[i]);
+            let rows = &mut self.rows;
+            let ds = self.step.rows[i];
+            if rows.is_equality(i) {
+                rows.above[i] += primal * (ds - rows.above[i]);
                 continue;
             }
-            let s = self.relaxed(i, self.slack[i] + primal * ds);
-            self.slack[i] = s;
-            for (side, bound, sign) in [
-                (&mut self.lower, self.bounds.0[i], T::ONE),
-                (&mut self.upper, self.bounds.1[i], -T::ONE),
+            let before = rows.distances(i);
+            let s = rows.relaxed(i, rows.slack[i] + primal * ds, self.values.rows[i]);
+            rows.slack[i] = rows.inside(i, s);
+            let now = rows.distances(i);
+            for (z, before, now, ds) in [
+                (&mut rows.below[i], before.0, now.0, ds),
+                (&mut rows.above[i], before.1, now.1, -ds),
             ] {
-                if side.distance[i] == T::INFINITY {
+                if now == T::INFINITY {
                     continue;
                 }
-                let step = side.newton(i, mu, sign * ds);
-                // The distance is kept positive even where rounding would close it.
-                let distance = max(sign * (s - bound), T::EPSILON * side.distance[i]);
-                side.distance[i] = distance;
-                let z = side.multiplier[i] + dual * step;
+                let moved = *z + dual * newton(before, *z, mu, ds);
                 // Kept within 1e10 of the central path, as IPOPT does, so that the Hessian stays exact.
                 let far = T::of(1e10);
-                side.multiplier[i] = max(min(z, floor * far / distance), floor / (far * distance));
+                *z = max(min(moved, floor * far / now), floor / (far * now));
             }
-            self.row_multiplier[i] = self.upper.multiplier[i] - self.lower.multiplier[i];
         }
     }
 
     /// Largest and summed violation of `c − s = e y` (`s = l` in an equality).
     pub(crate) fn row_violation(&self, slack_step: T) -> (T, T) {
         let (mut worst, mut sum) = (T::ZERO, T::ZERO);
-        let rows = self
-            .values
-            .rows
-            .iter()
-            .zip(&self.slack)
-            .zip(&self.step.slack);
-        for (i, ((value, slack), step)) in rows.enumerate().take(self.row_count()) {
-            let moved = if self.is_equality(i) {
+        for i in 0..self.row_count() {
+            let rows = &self.rows;
+            let moved = if rows.is_equality(i) {
                 T::ZERO
             } else {
-                slack_step * *step
+                slack_step * self.step.rows[i]
             };
-            let r = *value - *slack - moved - self.elastic * self.row_multiplier[i];
+            let give = self.elastic * (rows.above[i] - rows.below[i]);
+            let r = self.values.rows[i] - rows.slack[i] - moved - give;
             worst = larger(worst, r);
-            sum += so3::math::abs(r);
+            sum += abs(r);
         }
         (worst, sum)
     }
 
     /// Adds this node's bounds to the complementarity sums.
     pub(crate) fn add_complementarity(&self, to: &mut Complementarity<T>) {
-        to.add(&self.lower, self.row_count());
-        to.add(&self.upper, self.row_count());
+        for i in 0..self.row_count() {
+            if self.rows.is_equality(i) {
+                continue;
+            }
+            let (below, above) = self.rows.distances(i);
+            for (d, z) in [(below, self.rows.below[i]), (above, self.rows.above[i])] {
+                if d < T::INFINITY {
+                    to.add(d * z);
+                }
+            }
+        }
     }
 }

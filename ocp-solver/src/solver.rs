@@ -3,6 +3,7 @@
 use crate::blocking::largest_violation;
 use crate::equalities::solve_start;
 use crate::iterate::{self, Merit};
+use crate::keep::Keep;
 use crate::problem::Problem;
 use crate::riccati::{factorise, substitute};
 use crate::rows::{Complementarity, RowBarrier};
@@ -54,12 +55,16 @@ impl<T: Scalar> Solver<T> {
     ///
     /// # Errors
     /// Data that cannot be solved with, see [`Error`]; outcomes of a solve are [`Status`]es.
-    pub fn solve<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+    pub fn solve<P, K, const NX: usize, const NU: usize, const NI: usize>(
         &self,
         problem: &P,
-        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
-    ) -> Result<Solution<T>, Error> {
+    ) -> Result<Solution<T>, Error>
+    where
+        P: Problem<T, NX, NU, NI>,
+        K: Keep<T, NX, NU, NI>,
+    {
         self.settings.check()?;
         prepare(problem, stages)?;
         let mut run = Run::new(problem);
@@ -83,7 +88,7 @@ impl<T: Scalar> Solver<T> {
             (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
             if i == 0 && self.settings.warm_start {
                 for stage in stages.iter_mut() {
-                    stage.resume_rows(self.settings.bound_push, mu);
+                    stage.node.resume_rows(self.settings.bound_push, mu);
                 }
                 run.warm = true;
             }
@@ -124,14 +129,18 @@ impl<T: Scalar> Solver<T> {
     ///
     /// Where the violation goes to zero with the give of the rows, solves from there; where it stays, the
     /// problem is locally infeasible. Returns `status` where neither comes out.
-    fn restore<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+    fn restore<P, K, const NX: usize, const NU: usize, const NI: usize>(
         &self,
         problem: &P,
-        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         run: &mut Run<T, NX>,
         status: Status,
         observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
-    ) -> Status {
+    ) -> Status
+    where
+        P: Problem<T, NX, NU, NI>,
+        K: Keep<T, NX, NU, NI>,
+    {
         for stage in stages.iter_mut() {
             (stage.state, stage.control) = stage.best;
         }
@@ -149,7 +158,7 @@ impl<T: Scalar> Solver<T> {
                 let growth = run.elastic / T::of(elastic);
                 stages
                     .iter_mut()
-                    .for_each(|stage| stage.scale_multipliers(growth));
+                    .for_each(|stage| stage.node.scale_multipliers(growth));
                 run.warm = true;
             }
             run.elastic = T::of(elastic);
@@ -186,27 +195,32 @@ impl<T: Scalar> Solver<T> {
     }
 
     /// One descent under one barrier rule, from evaluated values.
-    fn attempt<P: Problem<T, NX, NU, NI>, const NX: usize, const NU: usize, const NI: usize>(
+    fn attempt<P, K, const NX: usize, const NU: usize, const NI: usize>(
         &self,
         problem: &P,
-        stages: &mut [Stage<T, P::State, NX, NU, NI>],
+        stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         run: &mut Run<T, NX>,
         initial_mu: T,
         observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
-    ) -> Status {
+    ) -> Status
+    where
+        P: Problem<T, NX, NU, NI>,
+        K: Keep<T, NX, NU, NI>,
+    {
         let settings = &self.settings;
         run.mu = initial_mu;
         run.shift = T::ZERO;
         run.short_steps = 0;
         let last_iteration = run.iterations.saturating_add(settings.attempt_iterations);
         for stage in stages.iter_mut() {
-            stage.elastic = run.elastic;
+            let node = &mut stage.node;
+            node.elastic = run.elastic;
             if run.warm {
                 continue;
             }
-            stage.costate = [T::ZERO; NX];
+            node.costate = [T::ZERO; NX];
             let mu = (!run.adaptive).then_some(initial_mu);
-            stage.start_rows(settings.bound_push, settings.initial_multiplier, mu);
+            node.start_rows(settings.bound_push, settings.initial_multiplier, mu);
         }
         let mut point = iterate::merit(stages);
         run.recent = [point.sum; 4];
@@ -249,7 +263,7 @@ impl<T: Scalar> Solver<T> {
             run.iterations = run.iterations.saturating_add(1);
             self.update_mu(run, &residual, &complementarity);
 
-            (used_shift, primal_step, dual_step) = match self.newton(stages, run) {
+            (used_shift, primal_step, dual_step) = match self.newton(problem, stages, run) {
                 Ok(step) => step,
                 Err(status) => return status,
             };
@@ -329,11 +343,16 @@ impl<T: Scalar> Solver<T> {
     /// Factorises with the least shift that makes the Hessian positive definite and computes the step.
     ///
     /// Returns the shift and the primal and dual step lengths to the boundary.
-    fn newton<X: Copy, const NX: usize, const NU: usize, const NI: usize>(
+    fn newton<P, K, const NX: usize, const NU: usize, const NI: usize>(
         &self,
-        stages: &mut [Stage<T, X, NX, NU, NI>],
+        problem: &P,
+        stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         run: &mut Run<T, NX>,
-    ) -> Result<(T, T, T), Status> {
+    ) -> Result<(T, T, T), Status>
+    where
+        P: Problem<T, NX, NU, NI>,
+        K: Keep<T, NX, NU, NI>,
+    {
         let barrier = RowBarrier {
             mu: run.mu,
             rank_tolerance: self.settings.rank_tolerance,
@@ -342,10 +361,10 @@ impl<T: Scalar> Solver<T> {
         let mut shift = T::ZERO;
         for _ in 0..40 {
             run.factorisations = run.factorisations.saturating_add(1);
-            if factorise(stages, barrier, shift)
+            if factorise(problem, stages, barrier, shift)
                 && let Some(first) = stages.first_mut()
             {
-                let riccati = &mut first.riccati;
+                let riccati = &mut first.node.riccati;
                 let start = solve_start(
                     &riccati.hessian,
                     &riccati.gradient,
@@ -354,7 +373,8 @@ impl<T: Scalar> Solver<T> {
                     barrier.rank_tolerance,
                 );
                 if let Some(start) = start {
-                    let (primal, dual) = substitute(stages, start, shift, run.mu, fraction);
+                    let (primal, dual) =
+                        substitute(problem, stages, start, shift, run.mu, fraction);
                     if shift > T::ZERO {
                         run.shift = shift;
                     }
@@ -419,10 +439,10 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
     }
 
     /// Keeps the iterate if it is the closest to a solution so far.
-    fn remember<X: Copy, const NU: usize, const NI: usize>(
+    fn remember<X: Copy, K, const NU: usize, const NI: usize>(
         &mut self,
         settings: &Settings<T>,
-        stages: &mut [Stage<T, X, NX, NU, NI>],
+        stages: &mut [Stage<T, X, NX, NU, NI, K>],
         point: &Merit<T>,
         residual: &Residual<T>,
     ) {
@@ -519,12 +539,13 @@ impl<T: Scalar> Settings<T> {
 fn prepare<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
     const NX: usize,
     const NU: usize,
     const NI: usize,
 >(
     problem: &P,
-    stages: &mut [Stage<T, P::State, NX, NU, NI>],
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
 ) -> Result<(), Error> {
     let needed = problem.intervals().saturating_add(1);
     if stages.len() != needed {
@@ -534,30 +555,24 @@ fn prepare<
         });
     }
     for (k, stage) in stages.iter_mut().enumerate() {
-        stage.dims = problem.dims(k);
+        let node = &mut stage.node;
+        node.dims = problem.dims(k);
         if k.saturating_add(1) == needed {
-            stage.dims.controls = 0;
+            node.dims.controls = 0;
         }
-        if stage.dims.controls > NU || stage.dims.rows() > NI {
+        if node.dims.controls > NU || node.dims.rows() > NI {
             return Err(Error::Dims { stage: k });
         }
-        stage.bounds = ([T::ZERO; NI], [T::ZERO; NI]);
-        problem.bounds(k, &mut stage.bounds.0, &mut stage.bounds.1);
-        let rows = stage.row_count();
-        for (row, (lower, upper)) in stage
-            .bounds
-            .0
-            .iter()
-            .zip(&stage.bounds.1)
-            .enumerate()
-            .take(rows)
-        {
+        (node.rows.lower, node.rows.upper) = ([T::ZERO; NI], [T::ZERO; NI]);
+        problem.bounds(k, &mut node.rows.lower, &mut node.rows.upper);
+        let bounds = node.rows.lower.iter().zip(&node.rows.upper);
+        for (row, (lower, upper)) in bounds.enumerate().take(node.row_count()) {
             if lower.is_nan_number() || upper.is_nan_number() || *lower > *upper {
                 return Err(Error::Bounds { stage: k, row });
             }
         }
-        stage.values = crate::problem::Values::new();
-        stage.derivatives = crate::problem::Derivatives::new();
+        node.values = crate::problem::Values::new();
+        stage.kept = K::EMPTY;
         stage.guess = (stage.state, stage.control);
     }
     match iterate::evaluate(problem, stages) {

@@ -1,68 +1,71 @@
 //! Caller-owned storage of one node.
 
 use crate::eliminate::{Carried, Pivots};
+use crate::keep::{Keep, Recomputed};
 use crate::kernel::{factor, solve_lower, solve_upper};
-use crate::problem::{Derivatives, Dims, Values};
+use crate::problem::{Derivatives, Dims, Evaluated, Problem, Values};
 use so3::Scalar;
 
-/// One side of the rows of a node: distance to the bound and its multiplier.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Side<T, const NI: usize> {
-    /// Slack minus lower bound, or upper bound minus slack; +∞ where there is no bound.
-    pub(crate) distance: [T; NI],
-    /// Multiplier of the bound, ≥ 0; 0 where there is no bound.
-    pub(crate) multiplier: [T; NI],
-}
-
-impl<T: Scalar, const NI: usize> Side<T, NI> {
-    const fn new() -> Self {
-        Self {
-            distance: [T::ZERO; NI],
-            multiplier: [T::ZERO; NI],
-        }
-    }
-}
-
-/// Everything the solver keeps for one node: the iterate, its derivatives and the factorisation.
+/// Everything the solver keeps for one node: the iterate and its factorisation, and, unless `K` is
+/// [`Recomputed`], its derivatives.
 ///
 /// The caller fills `state` and `control` with the initial guess and reads the solution from the same
 /// fields; all other content is scratch that [`Solver::solve`](crate::Solver::solve) owns.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<T, X, const NX: usize, const NU: usize, const NI: usize> {
+pub struct Stage<
+    T,
+    X,
+    const NX: usize,
+    const NU: usize,
+    const NI: usize,
+    K = Derivatives<T, NX, NU, NI>,
+> {
     /// State of the node: the guess before, the solution after a solve.
     pub state: X,
     /// Control of the interval that starts here: the guess before, the solution after a solve.
     pub control: [T; NU],
-    pub(crate) dims: Dims,
-    /// Give of every row per unit of its multiplier; 0 outside elastic mode.
-    pub(crate) elastic: T,
-    /// Multiplier of the dynamics that lead into this node.
-    pub(crate) costate: [T; NX],
-    pub(crate) slack: [T; NI],
-    pub(crate) lower: Side<T, NI>,
-    pub(crate) upper: Side<T, NI>,
-    /// Bounds as the problem stated them.
-    pub(crate) bounds: ([T; NI], [T; NI]),
-    /// Multipliers of the rows: upper minus lower side, or that of an equality.
-    pub(crate) row_multiplier: [T; NI],
-    pub(crate) values: Values<T, NX, NI>,
-    pub(crate) derivatives: Derivatives<T, NX, NU, NI>,
+    pub(crate) node: Node<T, NX, NU, NI>,
+    pub(crate) kept: K,
     /// Trial point of the line search.
-    pub(crate) trial: Trial<T, X, NU>,
-    /// Newton step.
-    pub(crate) step: Step<T, NX, NU, NI>,
-    pub(crate) riccati: Riccati<T, NX, NU>,
+    pub(crate) trial: (X, [T; NU]),
     /// The guess, kept for a restart.
     pub(crate) guess: (X, [T; NU]),
     /// The best iterate so far.
     pub(crate) best: (X, [T; NU]),
 }
 
-/// A trial point.
+/// A stage that keeps no derivatives: about half the size, see [`Recomputed`].
+pub type LeanStage<T, X, const NX: usize, const NU: usize, const NI: usize> =
+    Stage<T, X, NX, NU, NI, Recomputed>;
+
+/// What the solver knows of a node besides where it is.
+///
+/// Nothing that costs little to recompute is kept: distances to bounds, weights of rows.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial<T, X, const NU: usize> {
-    pub(crate) state: X,
-    pub(crate) control: [T; NU],
+pub(crate) struct Node<T, const NX: usize, const NU: usize, const NI: usize> {
+    pub(crate) dims: Dims,
+    /// Give of every row per unit of its multiplier; 0 outside elastic mode.
+    pub(crate) elastic: T,
+    /// Multiplier of the dynamics that lead into this node.
+    pub(crate) costate: [T; NX],
+    pub(crate) rows: Rows<T, NI>,
+    pub(crate) values: Values<T, NX, NI>,
+    /// Newton step.
+    pub(crate) step: Step<T, NX, NU, NI>,
+    pub(crate) riccati: Riccati<T, NX, NU>,
+}
+
+/// Slacks, bounds and bound multipliers of the rows of a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows<T, const NI: usize> {
+    /// Strictly between the bounds; equal to them in an equality.
+    pub(crate) slack: [T; NI],
+    /// Bounds as the problem stated them.
+    pub(crate) lower: [T; NI],
+    pub(crate) upper: [T; NI],
+    /// Multipliers of the bounds, ≥ 0; 0 where there is no bound. That of an equality is in `above`.
+    pub(crate) below: [T; NI],
+    pub(crate) above: [T; NI],
 }
 
 /// The Newton step of a node.
@@ -70,13 +73,10 @@ pub(crate) struct Trial<T, X, const NU: usize> {
 pub(crate) struct Step<T, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) state: [T; NX],
     pub(crate) control: [T; NU],
-    pub(crate) slack: [T; NI],
+    /// Of the slack of each row; of an equality, the multiplier after the full step.
+    pub(crate) rows: [T; NI],
     /// Full-step multiplier of the dynamics into this node.
     pub(crate) costate: [T; NX],
-    /// Condensed weight of each row.
-    pub(crate) weight: [T; NI],
-    /// Condensed multiplier target of each row before the step; the full-step multiplier of an equality.
-    pub(crate) target: [T; NI],
 }
 
 /// What the backward recursion leaves at a node.
@@ -94,15 +94,9 @@ pub(crate) struct Riccati<T, const NX: usize, const NU: usize> {
     pub(crate) pivots: Pivots<T, NU>,
 }
 
-impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
-    Stage<T, X, NX, NU, NI>
-{
-    /// Zeroed storage around a state.
-    #[must_use]
-    pub const fn new(state: X) -> Self {
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
+    const fn new() -> Self {
         Self {
-            state,
-            control: [T::ZERO; NU],
             dims: Dims {
                 controls: 0,
                 state_rows: 0,
@@ -111,24 +105,19 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
             },
             elastic: T::ZERO,
             costate: [T::ZERO; NX],
-            slack: [T::ZERO; NI],
-            lower: Side::new(),
-            upper: Side::new(),
-            bounds: ([T::ZERO; NI], [T::ZERO; NI]),
-            row_multiplier: [T::ZERO; NI],
-            values: Values::new(),
-            derivatives: Derivatives::new(),
-            trial: Trial {
-                state,
-                control: [T::ZERO; NU],
+            rows: Rows {
+                slack: [T::ZERO; NI],
+                lower: [T::ZERO; NI],
+                upper: [T::ZERO; NI],
+                below: [T::ZERO; NI],
+                above: [T::ZERO; NI],
             },
+            values: Values::new(),
             step: Step {
                 state: [T::ZERO; NX],
                 control: [T::ZERO; NU],
-                slack: [T::ZERO; NI],
+                rows: [T::ZERO; NI],
                 costate: [T::ZERO; NX],
-                weight: [T::ZERO; NI],
-                target: [T::ZERO; NI],
             },
             riccati: Riccati {
                 gain: [[T::ZERO; NX]; NU],
@@ -138,9 +127,73 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
                 carried: Carried::new(),
                 pivots: Pivots::new(),
             },
-            guess: (state, [T::ZERO; NU]),
-            best: (state, [T::ZERO; NU]),
         }
+    }
+}
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
+    Stage<T, X, NX, NU, NI>
+{
+    /// Zeroed storage around a state.
+    #[must_use]
+    pub const fn new(state: X) -> Self {
+        Self::with(state, Derivatives::new())
+    }
+}
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
+    LeanStage<T, X, NX, NU, NI>
+{
+    /// Zeroed storage around a state, without room for derivatives.
+    #[must_use]
+    pub const fn lean(state: X) -> Self {
+        Self::with(state, Recomputed)
+    }
+}
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: Copy>
+    Stage<T, X, NX, NU, NI, K>
+{
+    const fn with(state: X, kept: K) -> Self {
+        let point = (state, [T::ZERO; NU]);
+        Self {
+            state,
+            control: [T::ZERO; NU],
+            node: Node::new(),
+            kept,
+            trial: point,
+            guess: point,
+            best: point,
+        }
+    }
+
+    /// Derivatives at the iterate of node `k`, beside what the solver knows of it.
+    ///
+    /// `is_new` tells that the iterate is another one than in the call before.
+    #[inline(always)]
+    pub(crate) fn linearise<'a, P: Problem<T, NX, NU, NI, State = X>>(
+        &'a mut self,
+        problem: &P,
+        k: usize,
+        next: Option<&Self>,
+        scratch: &'a mut K::Scratch,
+        is_new: bool,
+    ) -> (&'a mut Node<T, NX, NU, NI>, &'a Derivatives<T, NX, NU, NI>)
+    where
+        K: Keep<T, NX, NU, NI>,
+    {
+        let node = &mut self.node;
+        let derivatives = self.kept.at(scratch, is_new, |derivatives| {
+            let costate = next.map_or([T::ZERO; NX], |next| next.node.costate);
+            let at = Evaluated {
+                values: &node.values,
+                dynamics_multiplier: &costate,
+                row_multipliers: &node.rows.multipliers(),
+            };
+            let next = next.map(|next| &next.state);
+            problem.differentiate(k, &self.state, &self.control, next, at, derivatives);
+        });
+        (node, derivatives)
     }
 
     /// Puts the guess of the last solve back, for another solve from the same start.
@@ -152,7 +205,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// asks for per unit of tangent deviation `j` of this node's state.
     #[must_use]
     pub const fn gain(&self) -> &[[T; NX]; NU] {
-        &self.riccati.gain
+        &self.node.riccati.gain
     }
 
     /// Feedback gain of free state coordinates, such as phase durations, on the others.
@@ -162,7 +215,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// is not free. `None` if `P_ff` is not positive definite.
     #[must_use]
     pub fn free_gain(&self, free: &[bool; NX]) -> Option<[[T; NX]; NX]> {
-        let mut block = self.riccati.hessian;
+        let mut block = self.node.riccati.hessian;
         let mut rows = [[T::ZERO; NX]; NX];
         for (i, (column, row)) in block.iter_mut().zip(&mut rows).enumerate() {
             for (j, ((entry, out), is_free)) in column.iter_mut().zip(row).zip(free).enumerate() {
@@ -192,24 +245,24 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     /// Hessian of the cost-to-go at this node, in the tangent space.
     #[must_use]
     pub const fn cost_to_go(&self) -> &[[T; NX]; NX] {
-        &self.riccati.hessian
+        &self.node.riccati.hessian
     }
 
     /// Multiplier of the dynamics that lead into this node: the gradient of the cost-to-go.
     #[must_use]
     pub const fn costate(&self) -> &[T; NX] {
-        &self.costate
+        &self.node.costate
     }
 
     /// Constraint rows at the solution.
     #[must_use]
     pub const fn rows(&self) -> &[T; NI] {
-        &self.values.rows
+        &self.node.values.rows
     }
 
     /// Multipliers of the rows; positive where the upper bound pushes.
     #[must_use]
-    pub const fn row_multipliers(&self) -> &[T; NI] {
-        &self.row_multiplier
+    pub fn row_multipliers(&self) -> [T; NI] {
+        self.node.rows.multipliers()
     }
 }

@@ -110,7 +110,7 @@ fn an_infeasible_problem_is_named_with_its_least_violation() {
         solution.violation > 0.02 && solution.violation < 0.4375,
         "{solution:?}"
     );
-    let [first, second] = blocking_rows::<2, _, _, _, _, _>(&stages);
+    let [first, second] = blocking_rows::<2, _, _, _, _, _, _>(&stages);
     let (first, second) = (first.unwrap(), second.unwrap());
     assert!((first.violation.abs() - solution.violation).abs() < 1e-9);
     assert!(first.violation.abs() >= second.violation.abs() && second.violation != 0.0);

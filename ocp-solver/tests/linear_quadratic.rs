@@ -485,7 +485,7 @@ fn contradicting_rows_are_never_called_solved() {
     assert_eq!(solution.status, Status::LocallyInfeasible, "{solution:?}");
     // Least squares shares the contradiction between the two rows.
     assert!((solution.violation - 0.25).abs() < 1e-4, "{solution:?}");
-    let rows = blocking_rows::<3, _, _, _, _, _>(&stages).map(|b| b.map(|b| (b.stage, b.row)));
+    let rows = blocking_rows::<3, _, _, _, _, _, _>(&stages).map(|b| b.map(|b| (b.stage, b.row)));
     assert!(
         rows[..2].contains(&Some((2, 0))) && rows[..2].contains(&Some((2, 1))),
         "{rows:?}"

@@ -11,6 +11,8 @@ pub enum Error {
     /// The const sizes are too small for the problem: `NX ≥ 12 + phases`, `NU ≥ 3 × feet`,
     /// `NI ≥` [`crate::row_capacity`].
     Capacity,
+    /// More intervals than [`crate::onboard::INTERVALS`].
+    Intervals,
 }
 
 impl core::fmt::Display for Error {
@@ -21,6 +23,9 @@ impl core::fmt::Display for Error {
             Self::Capacity => f.write_str(
                 "const sizes too small: NX >= 12 + phases, NU >= 3 feet, NI >= row_capacity(feet, phases)",
             ),
+            Self::Intervals => {
+                f.write_str("more than 30 intervals: shorten the phases, or own a longer slice of stages")
+            }
         }
     }
 }

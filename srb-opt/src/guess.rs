@@ -16,9 +16,9 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     /// velocity ramps up to lift-off linearly in time; the rotation is the reference; forces share the
     /// weight. `perturb` gives the offset of every number that is added to the guess, in units of m,
     /// m/s, rad, rad/s, s and 50 N: pass `|| T::ZERO` for the plain guess.
-    pub fn write_guess<const NX: usize, const NU: usize, const NI: usize>(
+    pub fn write_guess<const NX: usize, const NU: usize, const NI: usize, K>(
         &self,
-        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI>],
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
         mut perturb: impl FnMut() -> T,
     ) {
         let (mut durations, mut total, mut flight) = ([T::ZERO; PHASES], T::ZERO, T::ZERO);

@@ -4,6 +4,7 @@
 mod dynamics;
 mod error;
 mod guess;
+pub mod onboard;
 mod plan;
 mod problem;
 mod rotation;

@@ -5,7 +5,7 @@ use crate::problem::Problem;
 use crate::rows::row_capacity;
 use crate::state::{State, TIMES};
 use core::ops::ControlFlow;
-use ocp_solver::{Barrier, Progress, Settings, Solution, Solver, Stage, Status};
+use ocp_solver::{Barrier, Keep, Progress, Settings, Solution, Solver, Stage, Status};
 use so3::Scalar;
 
 impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
@@ -18,10 +18,10 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     /// # Errors
     /// [`Error::Parameter`] for unusable data, [`Error::Capacity`] for const sizes that are too small,
     /// [`Error::Solver`] for what the solver refuses.
-    pub fn plan<const NX: usize, const NU: usize, const NI: usize>(
+    pub fn plan<const NX: usize, const NU: usize, const NI: usize, K: Keep<T, NX, NU, NI>>(
         &self,
         settings: &Settings<T>,
-        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI>],
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
         mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Result<Solution<T>, Error> {
         self.check()?;
@@ -55,9 +55,9 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     }
 
     /// Whether a contact phase ended at its shortest duration although it may be longer.
-    fn has_collapsed_phase<const NX: usize, const NU: usize, const NI: usize>(
+    fn has_collapsed_phase<const NX: usize, const NU: usize, const NI: usize, K>(
         &self,
-        stages: &[Stage<T, State<T, PHASES>, NX, NU, NI>],
+        stages: &[Stage<T, State<T, PHASES>, NX, NU, NI, K>],
     ) -> bool {
         let Some(first) = stages.first() else {
             return false;

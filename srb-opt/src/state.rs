@@ -56,7 +56,7 @@ impl<T: Scalar, const PHASES: usize> State<T, PHASES> {
             omega_b: zero,
             durations: [T::ZERO; PHASES],
             rotation_gap: zero,
-            reference: (T::ZERO, T::ONE),
+            reference: (T::ZERO, T::ZERO),
         }
     }
 

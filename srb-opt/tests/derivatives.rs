@@ -141,9 +141,3 @@ fn second_derivatives() {
         }
     }
 }
-
-/// The size that the README states: 30 intervals of four feet and at most four phases.
-#[test]
-fn a_thirty_interval_workspace_has_the_documented_size() {
-    assert_eq!(31 * size_of::<Node>(), 987_536);
-}

@@ -21,7 +21,7 @@ fn single_precision_plans_the_same_jump_within_five_millimetres() {
         reference.status,
         Status::Solved,
         "{reference:?} {:?}",
-        ocp_solver::blocking_rows::<4, _, _, _, _, _>(&stages)
+        ocp_solver::blocking_rows::<4, _, _, _, _, _, _>(&stages)
     );
 
     let mut narrow = jump_in::<f32>();
