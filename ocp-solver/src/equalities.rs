@@ -131,6 +131,10 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     ///
     /// `costate` is the gradient of the successor's cost-to-go without its rows. Needs the multipliers of
     /// the rows this node handed back, and the steps of this node.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "so that the compiler sees that the index is below NI"
+    )]
     #[inline(never)]
     pub(crate) fn recover_multipliers(
         &mut self,
