@@ -40,6 +40,18 @@ impl<T: Scalar, const N: usize> JointCommand<T, N> {
         }
     }
 
+    /// Whether every number is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let numbers = self.position.iter().chain(&self.velocity);
+        let gains = self.gains.iter().flat_map(|g| [g.stiffness, g.damping]);
+        numbers
+            .chain(&self.feed_forward)
+            .copied()
+            .chain(gains)
+            .all(Scalar::is_finite_number)
+    }
+
     /// Eq. (7): τ = τ_ff + K_p(q_d − q) + K_d(q̇_d − q̇), inside the motors' limits; zero at joints whose
     /// measurement or command is not a number.
     #[inline]

@@ -35,6 +35,10 @@ impl Phase {
 /// What may happen in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
+    /// A plan has been accepted.
+    Armed,
+    /// The robot is not where the plan begins.
+    Misplaced,
     /// The order to jump.
     Start,
     /// The plan's last stance phase is over.
@@ -54,7 +58,9 @@ pub enum Event {
 }
 
 /// Every transition there is: in this phase, upon this event, go there. Other events change nothing.
-pub const TRANSITIONS: [(Phase, Event, Phase); 14] = [
+pub const TRANSITIONS: [(Phase, Event, Phase); 16] = [
+    (Phase::Stand, Event::Armed, Phase::Hold),
+    (Phase::Hold, Event::Misplaced, Phase::Stand),
     (Phase::Hold, Event::Start, Phase::Stance),
     (Phase::Stance, Event::Takeoff, Phase::Flight),
     (Phase::Flight, Event::Posing, Phase::PreLanding),

@@ -34,6 +34,12 @@ pub enum Fault {
     Foot(usize),
     /// The measurement is older than the watch allows, or its age is not a number.
     Stale,
+    /// The clock stood still, went backwards, or is not a number.
+    Clock,
+    /// A control loop did not run for longer than allowed.
+    Silent,
+    /// A controller's command was not finite.
+    Command,
 }
 
 impl fmt::Display for Fault {
@@ -43,6 +49,9 @@ impl fmt::Display for Fault {
             Self::Base => f.write_str("base: pose or velocity not finite"),
             Self::Foot(i) => write!(f, "foot {i}: force not finite"),
             Self::Stale => f.write_str("measurement too old"),
+            Self::Clock => f.write_str("clock not going forward"),
+            Self::Silent => f.write_str("control loop not running"),
+            Self::Command => f.write_str("command not finite"),
         }
     }
 }
@@ -66,28 +75,40 @@ impl<T: Scalar> Watch<T> {
         if !fresh {
             return Some(Fault::Stale);
         }
-        // False for NaN.
-        let finite = |x: &T| so3::math::abs(*x) <= T::of(1e6);
-        let mut joints = measured.joints.iter().zip(&measured.joint_velocities);
-        if let Some(i) = joints.position(|(q, qd)| !(finite(q) && finite(qd))) {
-            return Some(Fault::Joint(i));
+        let joints = Self::joints(&measured.joints, &measured.joint_velocities);
+        if joints.is_some() {
+            return joints;
         }
         let pose = measured
             .base
             .translation
             .iter()
             .chain(measured.base.rotation.matrix().iter());
-        if !(pose.copied().all(|x| finite(&x))
-            && measured.base_velocity.to_array().iter().all(finite))
+        if !(pose.copied().all(|x| possible(&x))
+            && measured.base_velocity.to_array().iter().all(possible))
         {
             return Some(Fault::Base);
         }
         measured
             .foot_forces
             .iter()
-            .position(|x| !finite(x))
+            .position(|x| !possible(x))
             .map(Fault::Foot)
     }
+
+    /// The first joint whose position or velocity is not a robot's.
+    #[must_use]
+    pub fn joints<const N: usize>(q: &[T; N], qd: &[T; N]) -> Option<Fault> {
+        let mut joints = q.iter().zip(qd);
+        joints
+            .position(|(q, qd)| !(possible(q) && possible(qd)))
+            .map(Fault::Joint)
+    }
+}
+
+/// Whether this may be a number of a robot, in units of the SI; false for NaN.
+fn possible<T: Scalar>(x: &T) -> bool {
+    so3::math::abs(*x) <= T::of(1e6)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 14] = [
     "so3",
     "rbd-core",
     "a1-model",
@@ -20,6 +20,7 @@ const CRATES: [&str; 13] = [
     "landing",
     "wbc-qp",
     "jump-control",
+    "jump-machine",
     "state-est",
     "contact-sim",
 ];

@@ -12,12 +12,7 @@ use state_est::{Estimator, Foot, Sample, Settings, Status};
 use std::collections::VecDeque;
 
 /// What arrives at 1 kHz.
-#[derive(Clone, Copy)]
-pub(crate) struct Told {
-    pub(crate) measured: Measurement<f64, JOINTS, FOOT_COUNT>,
-    /// Torques of the joints over the millisecond before, friction included, N m.
-    pub(crate) felt: [f64; JOINTS],
-}
+pub(crate) type Told = jump_machine::Inputs<f64, JOINTS, FOOT_COUNT>;
 
 /// Force at which a foot is certainly loaded, N.
 const LOADED: f64 = 15.0;

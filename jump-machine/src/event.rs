@@ -1,0 +1,50 @@
+//! What happened in a tick, by phase.
+
+use jump_control::{Event, Measurement, Phase};
+use rbd_core::Tree;
+use so3::Scalar;
+
+use crate::{Machine, Refusal};
+
+impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usize, const R: usize>
+    Machine<'_, T, M, N, F, V, R>
+{
+    /// The event of this tick, if any, at time `t` of the plan.
+    pub(crate) fn event(&mut self, t: T, measured: &Measurement<T, N, F>) -> Option<Event> {
+        let (settings, velocity) = (&self.settings, &measured.base_velocity);
+        let (linear, angular) = settings.rest;
+        let moving = velocity.linear.norm() > linear || velocity.angular.norm() > angular;
+        self.calm = if moving || !matches!(self.phase, Phase::Landing | Phase::Stand) {
+            T::ZERO
+        } else {
+            self.calm + settings.period
+        };
+        match (self.phase, &self.jump) {
+            (Phase::Hold, Some(_)) if t < T::ZERO => None,
+            (Phase::Hold, Some(_)) => match self.misplaced(measured) {
+                None => Some(Event::Start),
+                Some(joint) => {
+                    self.refusal = Some(Refusal::Posture(joint));
+                    Some(Event::Misplaced)
+                }
+            },
+            (Phase::Stance, Some(jump)) => (t >= jump.plan.takeoff).then_some(Event::Takeoff),
+            (Phase::Flight, Some(jump)) => (t >= jump.plan.posing).then_some(Event::Posing),
+            (Phase::PreLanding, _) if self.contact.any() => Some(Event::Touchdown),
+            (Phase::PreLanding, Some(jump)) => {
+                (t > jump.plan.touchdown + settings.patience).then_some(Event::Overdue)
+            }
+            (Phase::Landing, _) => (self.calm > settings.settling).then_some(Event::Settled),
+            (Phase::Stand, _) => (self.calm == T::ZERO).then_some(Event::Disturbed),
+            _ => None,
+        }
+    }
+
+    /// The first joint that is not where the plan begins.
+    fn misplaced(&self, measured: &Measurement<T, N, F>) -> Option<usize> {
+        let first = self.jump.as_ref()?.plan.nodes().first()?;
+        let mut joints = measured.joints.iter().zip(&first.joints);
+        joints
+            .position(|(q, planned)| so3::math::abs(*q - *planned) > self.settings.start_tolerance)
+    }
+}

@@ -1,0 +1,51 @@
+//! What a jump is made of, and why one is not begun.
+
+use core::fmt;
+
+use jump_control::Plan;
+use nalgebra::{Rotation3, Vector3};
+use so3::Scalar;
+
+/// One jump: a plan and where it is to end.
+#[derive(Clone, Copy, Debug)]
+pub struct Jump<'a, T: Scalar, const N: usize, const F: usize> {
+    /// Push-off and flight. Its first node is held until the start: its torques should be those of standing still.
+    pub plan: Plan<'a, T, N, F>,
+    /// Weight that was planned with, N.
+    pub weight: T,
+    /// Where the centre of mass is to come to rest, world axes, m; the height does not matter.
+    pub goal_w: Vector3<T>,
+    /// Orientation of the base at rest.
+    pub rot_goal: Rotation3<T>,
+    /// Joint positions in which the legs meet the ground, body level, rad.
+    pub landing_joints: [T; N],
+}
+
+/// Why a jump was not begun; the robot goes on standing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The robot does not stand: it holds for another jump, is under way, or has aborted.
+    NotStanding,
+    /// The start is not a number, or leaves less time than holding still and weighing take.
+    TooLate,
+    /// At the start this joint was not where the plan begins.
+    Posture(usize),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotStanding => f.write_str("the robot does not stand: wait until it does"),
+            Self::TooLate => {
+                f.write_str("the plan came too late for its start: choose a later one")
+            }
+            Self::Posture(joint) => write!(
+                f,
+                "joint {joint} is not where the plan begins: plan from where the robot stands"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}

@@ -1,0 +1,354 @@
+//! The machine: memory, and one method per rate.
+
+use jump_control::{
+    Event, Fault, JointCommand, JointGains, Measurement, Phase, Scales, Slew, Watch, next_phase,
+    sample,
+};
+use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Workspace};
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Kinematics, Posture, Tangent, Tree, forward_kinematics};
+use so3::{Scalar, math};
+
+use crate::{Jump, Refusal, Settings};
+
+/// What the machine hears in one tick of 1 kHz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs<T: Scalar, const N: usize, const F: usize> {
+    /// The robot; its base comes from an estimator such as `state-est`.
+    pub measured: Measurement<T, N, F>,
+    /// Mean torques of the joints over the period before the measurement, friction included, N m.
+    pub felt: [T; N],
+}
+
+/// What a tick computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// Feet pulled along the plan.
+    Cartesian,
+    /// Forces for the feet on the ground.
+    Landing(Outcome),
+    /// Joints damped, nothing else.
+    Damping,
+}
+
+/// What came of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tick {
+    /// Where the jump is.
+    pub phase: Phase,
+    /// What was computed.
+    pub work: Work,
+    /// Why the machine has aborted: the first fault.
+    pub fault: Option<Fault>,
+    /// Why the last jump was not begun.
+    pub refusal: Option<Refusal>,
+}
+
+/// A robot that stands, jumps when it is given a plan, lands and stands again.
+///
+/// `V` must be 3 F and `R` 4 F + N. It borrows model, plans and the QP's workspace, so that they can be statics.
+#[derive(Debug)]
+pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize, const V: usize, const R: usize>
+{
+    pub(crate) settings: Settings<T, N, F>,
+    pub(crate) jump: Option<Jump<'a, T, N, F>>,
+    pub(crate) phase: Phase,
+    pub(crate) contact: DetectorState<T, N, F>,
+    /// Time at rest so far, s.
+    pub(crate) calm: T,
+    pub(crate) refusal: Option<Refusal>,
+    model: &'a M,
+    landing: Landing<T, N, F, V, R>,
+    workspace: &'a mut Workspace<T, V, R>,
+    posture: PreLanding<T, N, F>,
+    scales: Scales<T>,
+    /// When the plan begins, on the clock of `tick`.
+    start: T,
+    /// Node of the plan's last sample.
+    node: usize,
+    heard: Option<Inputs<T, N, F>>,
+    last_tick: Option<T>,
+    command: JointCommand<T, N>,
+    /// Time since the command was made, s.
+    silence: T,
+    slew: Slew<T, N>,
+    fault: Option<Fault>,
+}
+
+impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usize, const R: usize>
+    Machine<'a, T, M, N, F, V, R>
+{
+    /// A standing robot without a jump. Until the first tick its joints are damped.
+    #[must_use]
+    pub fn new(
+        model: &'a M,
+        settings: Settings<T, N, F>,
+        workspace: &'a mut Workspace<T, V, R>,
+    ) -> Self {
+        let torques = settings.motors.map(|motor| motor.torque);
+        Self {
+            jump: None,
+            phase: Phase::Stand,
+            contact: DetectorState::new(),
+            calm: T::ZERO,
+            refusal: None,
+            model,
+            landing: Landing::new(settings.pd.feet, settings.landing, torques),
+            workspace,
+            posture: settings.posture,
+            scales: Scales::new(),
+            start: T::ZERO,
+            node: 0,
+            heard: None,
+            last_tick: None,
+            command: JointCommand::damp(settings.safe_damping),
+            silence: T::ZERO,
+            slew: Slew::new(settings.slew),
+            fault: None,
+            settings,
+        }
+    }
+
+    /// Gives a standing robot a jump that begins at `start`, on the clock of [`Machine::tick`]; until then it holds the plan's
+    /// first node.
+    ///
+    /// # Errors
+    /// A robot that does not stand and a start that is too near are refused: nothing changes then.
+    pub fn arm(&mut self, jump: Jump<'a, T, N, F>, start: T) -> Result<(), Refusal> {
+        if self.phase != Phase::Stand {
+            return Err(Refusal::NotStanding);
+        }
+        let soon = self
+            .last_tick
+            .is_some_and(|now| start - now < self.settings.weighing);
+        if soon || !start.is_finite_number() {
+            return Err(Refusal::TooLate);
+        }
+        self.posture.joints = jump.landing_joints;
+        self.jump = Some(jump);
+        (self.start, self.node, self.refusal) = (start, 0, None);
+        self.scales = Scales::new();
+        self.phase = next_phase(self.phase, Event::Armed);
+        Ok(())
+    }
+
+    /// One tick of 1 kHz at the time `now`, s, on a clock of the caller that only goes forward.
+    ///
+    /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
+    /// missed tick is bridged likewise. Both end in [`Phase::Abort`] after [`Settings::max_age`].
+    pub fn tick(&mut self, now: T, heard: Option<&Inputs<T, N, F>>) -> Tick {
+        let work = match self.hear(now, heard) {
+            Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
+            Err(fault) => self.abort(fault),
+        };
+        self.silence = T::ZERO;
+        Tick {
+            phase: self.phase,
+            work,
+            fault: self.fault,
+            refusal: self.refusal,
+        }
+    }
+
+    /// One tick of 10 kHz, `dt` seconds after the last: torques for the motors, N m, from joint positions and velocities of
+    /// now. Always finite and within the motors' torques; damping alone once [`Machine::tick`] has been missing for
+    /// [`Settings::max_age`].
+    pub fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
+        // Also false for NaN.
+        let dt = if dt > T::ZERO && dt <= self.settings.max_age {
+            dt
+        } else {
+            self.abort(Fault::Clock);
+            T::ZERO
+        };
+        self.silence += dt;
+        if self.silence > self.settings.max_age {
+            self.abort(Fault::Silent);
+        } else if let Some(fault) = Watch::joints(q, qd) {
+            self.abort(fault);
+        }
+        let wanted = self.command.torques(q, qd, &self.settings.motors);
+        self.slew.limit(&wanted, dt)
+    }
+
+    /// Where the jump is.
+    #[must_use]
+    pub const fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The first fault, if the machine has aborted.
+    #[must_use]
+    pub const fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// Which feet are on the ground, and which foot sensors are not believed.
+    #[must_use]
+    pub const fn contacts(&self) -> (&[bool; F], &[bool; F]) {
+        (&self.contact.contacts, &self.contact.faulty)
+    }
+
+    /// The latest measurement with its age now, and the time since the last tick.
+    fn hear(
+        &mut self,
+        now: T,
+        heard: Option<&Inputs<T, N, F>>,
+    ) -> Result<(Inputs<T, N, F>, T), Fault> {
+        let s = &self.settings;
+        let passed = self.last_tick.map_or(s.period, |last| now - last);
+        // Also false for NaN.
+        if !(now.is_finite_number() && passed > T::ZERO) {
+            return Err(Fault::Clock);
+        }
+        if passed > s.max_age {
+            return Err(Fault::Silent);
+        }
+        self.last_tick = Some(now);
+        // Jitter of the scheduler is not passed on.
+        let dt = if math::abs(passed - s.period) < s.period * T::HALF {
+            s.period
+        } else {
+            passed
+        };
+        let inputs = match (heard, self.heard) {
+            (Some(inputs), _) => *inputs,
+            (None, Some(mut old)) => {
+                old.measured.age += dt;
+                old
+            }
+            (None, None) => return Err(Fault::Stale),
+        };
+        self.heard = Some(inputs);
+        let watch = Watch { max_age: s.max_age };
+        watch.fault(&inputs.measured).map_or(Ok((inputs, dt)), Err)
+    }
+
+    /// Damps the joints from now on; the first fault stays named.
+    fn abort(&mut self, fault: Fault) -> Work {
+        self.fault = self.fault.or(Some(fault));
+        self.phase = next_phase(self.phase, Event::Fault);
+        self.command = JointCommand::damp(self.settings.safe_damping);
+        Work::Damping
+    }
+
+    /// Contacts, events and the command at time `t` of the plan.
+    fn act(&mut self, t: T, inputs: &Inputs<T, N, F>, dt: T) -> Work {
+        let measured = &inputs.measured;
+        let (q, v) = state(measured);
+        self.settings.detector.update(
+            self.model,
+            &mut self.contact,
+            &q,
+            &v,
+            &inputs.felt,
+            &measured.foot_forces,
+            dt,
+        );
+        if let Some(event) = self.event(t, measured) {
+            self.phase = next_phase(self.phase, event);
+        }
+        let (command, work) = match (self.phase, self.jump) {
+            (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
+                (self.follow(&jump, t, measured), Work::Cartesian)
+            }
+            (Phase::Landing | Phase::Stand, _) => self.stand(&q, &v),
+            _ => (
+                JointCommand::damp(self.settings.safe_damping),
+                Work::Damping,
+            ),
+        };
+        if !command.is_finite() {
+            return self.abort(Fault::Command);
+        }
+        self.command = command;
+        work
+    }
+
+    /// Push-off and flight: feet along the plan.
+    fn follow(
+        &mut self,
+        jump: &Jump<'a, T, N, F>,
+        t: T,
+        measured: &Measurement<T, N, F>,
+    ) -> JointCommand<T, N> {
+        let s = &self.settings;
+        let mut then = sample(&jump.plan, t - measured.age, self.node);
+        let mut reference = sample(&jump.plan, t, then.node);
+        self.node = then.node;
+        match self.phase {
+            // Its weight has settled on the feet by then.
+            Phase::Hold if t > -s.weighing => self.scales.add(&measured.foot_forces),
+            Phase::Stance => {
+                let factor = self.scales.factor(jump.weight, s.max_payload);
+                reference.torques = reference.torques.map(|torque| torque * factor);
+            }
+            Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
+                let up_b = measured.base.rotation.inverse() * Vector3::z();
+                let velocity_b = &measured.base_velocity.linear;
+                then.joints = self.posture.joints(self.model, &up_b, velocity_b);
+                reference.joints = then.joints;
+            }
+            _ => {}
+        }
+        s.pd.command(self.model, measured, &reference, &then)
+    }
+
+    /// On the ground: forces on the feet in contact that bring the body to rest over them, leaning towards the goal.
+    fn stand(&mut self, q: &Configuration<T, N>, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
+        let mut target = Target {
+            height: self.settings.stand_height,
+            ..Target::LEVEL
+        };
+        if let Some(jump) = &self.jump {
+            let mut kinematics = Kinematics::IDENTITY;
+            forward_kinematics(self.model, &Posture::new(self.model, q), &mut kinematics);
+            let feet = self.landing.feet.iter();
+            let sum: Vector3<T> = feet.map(|foot| kinematics.frame(foot).translation).sum();
+            let most = self.settings.lean;
+            let lean = jump.goal_w - sum / T::of(F as f64);
+            target.offset_w = [lean.x, lean.y].map(|x| math::clamp(x, -most, most));
+            target.rot_wb = jump.rot_goal;
+        }
+        let c = self.landing.step(
+            self.model,
+            q,
+            v,
+            &self.contact.contacts,
+            &target,
+            &self.posture.joints,
+            self.workspace,
+        );
+        let mut gains = [JointGains {
+            stiffness: T::ZERO,
+            damping: T::ZERO,
+        }; N];
+        for (gains, (stiffness, damping)) in
+            gains.iter_mut().zip(c.stiffness.iter().zip(&c.damping))
+        {
+            (gains.stiffness, gains.damping) = (*stiffness, *damping);
+        }
+        let command = JointCommand {
+            position: c.position,
+            velocity: [T::ZERO; N],
+            feed_forward: c.feed_forward,
+            gains,
+        };
+        (command, Work::Landing(c.outcome))
+    }
+}
+
+/// Configuration and velocity as measured.
+fn state<T: Scalar, const N: usize, const F: usize>(
+    measured: &Measurement<T, N, F>,
+) -> (Configuration<T, N>, Tangent<T, N>) {
+    let q = Configuration {
+        base: measured.base,
+        joints: measured.joints,
+    };
+    let v = Tangent {
+        base: measured.base_velocity,
+        joints: measured.joint_velocities,
+    };
+    (q, v)
+}

@@ -1,0 +1,82 @@
+//! Everything about the machine that is neither the robot's tables nor the jump.
+
+use jump_control::CartesianPd;
+use landing::{Detector, PreLanding};
+use rbd_core::{Frame, Motor};
+use so3::Scalar;
+
+/// Periods, limits and gains of a robot with `N` joints and `F` feet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings<T: Scalar, const N: usize, const F: usize> {
+    /// Period of [`Machine::tick`](crate::Machine::tick), s.
+    pub period: T,
+    /// Oldest measurement to act on, and longest silence of either loop, s.
+    pub max_age: T,
+    /// Time before the start during which the weight on the feet is measured, s.
+    pub weighing: T,
+    /// Largest share of the planned weight that counts as payload.
+    pub max_payload: T,
+    /// Farthest that a joint may be from the plan's first node at the start, rad.
+    pub start_tolerance: T,
+    /// Time before the planned touchdown from which the landing posture follows tilt and speed, s.
+    pub levelling: T,
+    /// Time after the planned touchdown at which the robot gives up waiting for the ground, s.
+    pub patience: T,
+    /// Base speeds below which the robot is at rest, m/s and rad/s.
+    pub rest: (T, T),
+    /// Time at rest after which it stands, s.
+    pub settling: T,
+    /// Height of the centre of mass over the feet's centres when standing, m.
+    pub stand_height: T,
+    /// How far the body may lean from the middle of the feet towards the goal, m.
+    pub lean: T,
+    /// Damping of the safe command, N m s/rad.
+    pub safe_damping: T,
+    /// Largest rate of a joint's torque, N m/s.
+    pub slew: T,
+    /// Push-off and flight.
+    pub pd: CartesianPd<T, N, F>,
+    /// Touchdown.
+    pub detector: Detector<T, N, F>,
+    /// Legs before touchdown; its joints are those of legs without ground while no jump is armed.
+    pub posture: PreLanding<T, N, F>,
+    /// Stance after touchdown.
+    pub landing: landing::Settings<T>,
+    /// The motors.
+    pub motors: [Motor<T>; N],
+}
+
+impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
+    /// Measured on A1's jumps: 1 kHz, 5 ms of silence, and the gains with which `saltus run` executes.
+    ///
+    /// `standing` are joint positions for legs without ground while no jump is armed.
+    #[must_use]
+    pub fn a1(feet: [Frame<T>; F], motors: [Motor<T>; N], standing: [T; N]) -> Self {
+        let of = T::of;
+        Self {
+            period: of(1e-3),
+            max_age: of(0.005),
+            weighing: of(0.15),
+            max_payload: of(0.15),
+            start_tolerance: of(0.15),
+            levelling: of(0.12),
+            patience: T::HALF,
+            rest: (of(0.05), of(0.2)),
+            settling: of(0.2),
+            stand_height: of(0.25),
+            lean: of(0.03),
+            safe_damping: T::TWO,
+            slew: of(1e4),
+            pd: CartesianPd::a1(feet),
+            detector: Detector::new(feet),
+            posture: PreLanding {
+                // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the
+                // forward jump tip over.
+                lead: of(0.04),
+                ..PreLanding::new(feet, standing)
+            },
+            landing: landing::Settings::a1(),
+            motors,
+        }
+    }
+}

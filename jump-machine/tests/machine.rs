@@ -1,0 +1,310 @@
+//! Every way in which the world may not keep its side: late, missing, impossible.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use a1_model::{A1Geared, FEET, MOTORS};
+use jump_control::{Fault, Measurement, Node, Phase, Plan, Torques};
+use jump_machine::{Inputs, Jump, Machine, Refusal, Settings, Work};
+use landing::Workspace;
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
+use rbd_core::{Frame, Motion, Motor, Transform};
+use so3::Scalar;
+
+type A1Machine<'a, T> = Machine<'a, T, A1Geared, 12, 4, 12, 28>;
+
+fn crouch<T: Scalar>() -> [T; 12] {
+    core::array::from_fn(|i| T::of([0.0, 0.8, -1.6][i % 3]))
+}
+
+/// A push-off of 0.2 s and a flight of 0.2 s that go nowhere: enough for the machine's clockwork.
+fn nodes<T: Scalar>() -> [Node<T, 12, 4>; 3] {
+    [-0.001, 0.0, 0.4].map(|time| Node {
+        time: T::of(time),
+        joints: crouch(),
+        torques: core::array::from_fn(|i| T::of([0.5, 2.0, 6.0][i % 3])),
+        ..Node::ZERO
+    })
+}
+
+fn jump<T: Scalar>(nodes: &[Node<T, 12, 4>]) -> Jump<'_, T, 12, 4> {
+    let [takeoff, posing, touchdown] = [0.2, 0.35, 0.4].map(T::of);
+    Jump {
+        plan: Plan::new(nodes, takeoff, posing, touchdown, Torques::Hold).unwrap(),
+        weight: T::of(134.8),
+        goal_w: Vector3::zeros(),
+        rot_goal: Rotation3::identity(),
+        landing_joints: crouch(),
+    }
+}
+
+fn inputs<T: Scalar>() -> Inputs<T, 12, 4> {
+    Inputs {
+        measured: Measurement {
+            base: Transform::new(
+                Rotation3::identity(),
+                Vector3::new(T::ZERO, T::ZERO, T::of(0.3)),
+            ),
+            base_velocity: Motion::ZERO,
+            joints: crouch(),
+            joint_velocities: [T::ZERO; 12],
+            foot_forces: [T::of(33.7); 4],
+            age: T::ZERO,
+        },
+        // −Jᵀf of feet that each carry a quarter of the robot.
+        felt: core::array::from_fn(|i| T::of([-2.824, 0.0, 4.835, 2.824, 0.0, 4.835][i % 6])),
+    }
+}
+
+fn in_air() -> Inputs<f64, 12, 4> {
+    let mut heard = inputs();
+    heard.measured.foot_forces = [0.0; 4];
+    heard.felt = [0.0; 12];
+    heard
+}
+
+fn machine(workspace: &mut Workspace<f64, 12, 28>) -> A1Machine<'_, f64> {
+    let settings = Settings::a1(FEET.map(|foot| foot.frame), MOTORS, crouch());
+    Machine::new(&A1Geared, settings, workspace)
+}
+
+/// Ticks from millisecond `from` up to `to`, with the joints at rest in between; the last answer.
+fn run(
+    machine: &mut A1Machine<'_, f64>,
+    from: i32,
+    to: i32,
+    heard: &Inputs<f64, 12, 4>,
+) -> Option<jump_machine::Tick> {
+    let mut last = None;
+    for k in from..to {
+        last = Some(machine.tick(f64::from(k) * 1e-3, Some(heard)));
+        for _ in 0..10 {
+            machine.joint_tick(&heard.measured.joints, &[0.0; 12], 1e-4);
+        }
+    }
+    last
+}
+
+#[test]
+fn a_jump_goes_through_its_phases_and_another_may_follow() {
+    let (mut workspace, nodes) = (Workspace::new(), nodes());
+    let mut m = machine(&mut workspace);
+    let (ground, air) = (inputs(), in_air());
+    assert_eq!(
+        run(&mut m, -400, -300, &ground).unwrap().phase,
+        Phase::Stand
+    );
+    m.arm(jump(&nodes), 0.0).unwrap();
+    assert_eq!(m.arm(jump(&nodes), 0.0), Err(Refusal::NotStanding));
+    assert_eq!(run(&mut m, -300, 0, &ground).unwrap().phase, Phase::Hold);
+    assert_eq!(run(&mut m, 0, 200, &ground).unwrap().phase, Phase::Stance);
+    assert_eq!(run(&mut m, 200, 350, &air).unwrap().phase, Phase::Flight);
+    let waiting = run(&mut m, 350, 360, &air).unwrap();
+    assert_eq!(
+        (waiting.phase, waiting.work),
+        (Phase::PreLanding, Work::Cartesian)
+    );
+    let down = run(&mut m, 360, 370, &ground).unwrap();
+    assert_eq!(down.phase, Phase::Landing);
+    assert!(matches!(
+        down.work,
+        Work::Landing(landing::Outcome::Solved(_))
+    ));
+    assert_eq!(run(&mut m, 370, 700, &ground).unwrap().phase, Phase::Stand);
+    m.arm(jump(&nodes), 1.0).unwrap();
+    assert_eq!(
+        run(&mut m, 700, 1001, &ground).unwrap().phase,
+        Phase::Stance
+    );
+}
+
+#[test]
+fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_on() {
+    let (mut workspace, nodes) = (Workspace::new(), nodes());
+    let mut m = machine(&mut workspace);
+    run(&mut m, 0, 100, &inputs());
+    for start in [0.05, 0.2, f64::NAN, f64::INFINITY] {
+        assert_eq!(m.arm(jump(&nodes), start), Err(Refusal::TooLate));
+        assert_eq!(m.phase(), Phase::Stand);
+    }
+    let mut elsewhere = nodes;
+    elsewhere[0].joints[7] += 0.2;
+    m.arm(jump(&elsewhere), 0.3).unwrap();
+    let tick = run(&mut m, 100, 302, &inputs()).unwrap();
+    assert_eq!(
+        (tick.phase, tick.refusal),
+        (Phase::Stand, Some(Refusal::Posture(7)))
+    );
+    assert_eq!(tick.fault, None);
+}
+
+#[test]
+fn missing_ticks_and_measurements_are_bridged_for_five_milliseconds_and_then_named() {
+    let still = [0.0; 12];
+    let good = inputs();
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    run(&mut m, 0, 20, &good);
+    // Measurements.
+    for k in 20..25 {
+        assert_eq!(m.tick(f64::from(k) * 1e-3, None).fault, None);
+    }
+    assert_eq!(m.tick(0.025, None).fault, Some(Fault::Stale));
+    assert_eq!(m.phase(), Phase::Abort);
+    // Ticks of 1 kHz, as the joints see it.
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    run(&mut m, 0, 20, &good);
+    for _ in 0..39 {
+        m.joint_tick(&good.measured.joints, &still, 1e-4);
+    }
+    assert_eq!(m.fault(), None);
+    for _ in 0..3 {
+        m.joint_tick(&good.measured.joints, &still, 1e-4);
+    }
+    assert_eq!(m.fault(), Some(Fault::Silent));
+    // And as the next tick sees it, when the joints were missing as well.
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    run(&mut m, 0, 20, &good);
+    assert_eq!(m.tick(0.0235, Some(&good)).fault, None);
+    assert_eq!(m.tick(0.030, Some(&good)).fault, Some(Fault::Silent));
+    // Clocks.
+    for now in [0.019, 0.0, f64::NAN, f64::INFINITY, -f64::INFINITY] {
+        let mut workspace = Workspace::new();
+        let mut m = machine(&mut workspace);
+        run(&mut m, 0, 20, &good);
+        assert_eq!(m.tick(now, Some(&good)).fault, Some(Fault::Clock), "{now}");
+    }
+    for dt in [0.0, -1e-4, f64::NAN, 1.0] {
+        let mut workspace = Workspace::new();
+        let mut m = machine(&mut workspace);
+        run(&mut m, 0, 20, &good);
+        assert!(
+            m.joint_tick(&good.measured.joints, &still, dt)
+                .iter()
+                .all(|t| t.is_finite())
+        );
+        assert_eq!(m.fault(), Some(Fault::Clock));
+    }
+}
+
+#[test]
+fn no_ground_is_given_up() {
+    let (mut workspace, nodes) = (Workspace::new(), nodes());
+    let mut m = machine(&mut workspace);
+    m.arm(jump(&nodes), 0.0).unwrap();
+    run(&mut m, -300, 200, &inputs());
+    assert_eq!(
+        run(&mut m, 200, 900, &in_air()).unwrap().phase,
+        Phase::PreLanding
+    );
+    assert_eq!(
+        run(&mut m, 900, 902, &in_air()).unwrap().phase,
+        Phase::Abort
+    );
+}
+
+#[test]
+fn single_precision_goes_the_same_way() {
+    let nodes = nodes::<f32>();
+    let mut workspace = Workspace::new();
+    let feet = a1_model::FEET.map(|foot| Frame {
+        link: foot.frame.link,
+        offset: foot.frame.offset.map(|x| x as f32),
+        ..Frame::IDENTITY
+    });
+    let motors = MOTORS.map(|m| Motor {
+        gear: m.gear as f32,
+        torque: m.torque as f32,
+        corner_speed: m.corner_speed as f32,
+        no_load_speed: m.no_load_speed as f32,
+        rotor_inertia: m.rotor_inertia as f32,
+    });
+    let settings = Settings::a1(feet, motors, crouch());
+    let mut m: A1Machine<'_, f32> = Machine::new(&A1Geared, settings, &mut workspace);
+    m.arm(jump(&nodes), 0.0).unwrap();
+    for k in -300..600_i32 {
+        let mut heard = inputs();
+        if (200..360).contains(&k) {
+            heard.measured.foot_forces = [0.0; 4];
+            heard.felt = [0.0; 12];
+        }
+        let tick = m.tick(k as f32 * 1e-3, Some(&heard));
+        assert_eq!(tick.fault, None, "{k}");
+        for _ in 0..10 {
+            let torques = m.joint_tick(&heard.measured.joints, &[0.0; 12], 1e-4);
+            assert!(torques.iter().all(|t| t.abs() <= 33.5));
+        }
+    }
+    assert!(matches!(m.phase(), Phase::Landing | Phase::Stand));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+
+    /// One impossible number, in any input of either loop, at any tick: torques stay finite, inside the motors' limits and without
+    /// steps; the machine aborts with a fault unless the number is only evidence.
+    #[test]
+    fn one_impossible_number_anywhere(
+        tick in -300_i32..600,
+        place in 0_usize..84,
+        bad in prop_oneof![
+            Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY), Just(1e300), Just(-1e30),
+            any::<f64>().prop_filter("not a robot's", |x| x.is_nan() || x.abs() > 1e6),
+        ],
+    ) {
+        let (mut workspace, nodes) = (Workspace::new(), nodes());
+        let mut m = machine(&mut workspace);
+        m.arm(jump(&nodes), 0.0).unwrap();
+        let mut last = [0.0; 12];
+        // What joints feel is only evidence of contact.
+        let evidence = place >= 72;
+        for k in -300..(tick + 50) {
+            let mut heard = if (200..360).contains(&k) { in_air() } else { inputs() };
+            let (mut q, mut qd, mut dt) = (crouch(), [0.0; 12], 1e-4);
+            let mut now = f64::from(k) * 1e-3;
+            if k == tick {
+                let i = place % 12;
+                let x = &mut heard.measured;
+                match place / 12 {
+                    0 => x.joints[i] = bad,
+                    1 => x.joint_velocities[i] = bad,
+                    2 if i < 3 => x.base.translation[i] = bad,
+                    2 if i < 6 => x.base_velocity.linear[i - 3] = bad,
+                    2 if i < 9 => x.base_velocity.angular[i - 6] = bad,
+                    2 => x.base.rotation =
+                        Rotation3::from_matrix_unchecked(nalgebra::Matrix3::repeat(bad)),
+                    3 if i < 4 => x.foot_forces[i] = bad,
+                    3 if i < 7 => x.age = bad,
+                    3 if i < 10 => now = bad,
+                    3 => dt = bad,
+                    4 => q[i] = bad,
+                    5 => qd[i] = bad,
+                    _ => heard.felt[i] = bad,
+                }
+            }
+            m.tick(now, Some(&heard));
+            for j in 0..10 {
+                let torques = if j == 0 {
+                    m.joint_tick(&q, &qd, dt)
+                } else {
+                    m.joint_tick(&crouch(), &[0.0; 12], 1e-4)
+                };
+                for ((tau, before), motor) in torques.iter().zip(&last).zip(&MOTORS) {
+                    prop_assert!(tau.is_finite() && tau.abs() <= motor.torque);
+                    prop_assert!((tau - before).abs() <= 1.0 + 1e-9);
+                }
+                last = torques;
+            }
+            if k < tick || evidence {
+                prop_assert!(m.fault().is_none());
+            } else {
+                prop_assert!(m.fault().is_some() && m.phase() == Phase::Abort);
+            }
+        }
+        if m.phase() == Phase::Abort {
+            // At rest, damped joints carry nothing.
+            prop_assert!(last.iter().all(|tau| tau.abs() < 1e-9));
+        }
+    }
+}
