@@ -4,6 +4,7 @@ mod cmd;
 mod humanoid;
 mod jump;
 mod noise;
+mod observer;
 mod reference;
 mod track;
 

@@ -41,8 +41,9 @@ pub struct Contact<T> {
     pub min_force: T,
     /// Largest normal force, N.
     pub max_force: T,
-    /// How much of the contact there is: 0 in the air, 1 on the ground. In between, `max_force` is scaled: raise or
-    /// lower it over some ticks and no force jumps.
+    /// How much of the contact there is: 0 in the air, 1 on the ground. In between, `max_force` is scaled and the
+    /// torque program's condition on the foot's motion is a cost that grows without bound towards 1: raise or lower it
+    /// over some ticks and no force or torque jumps.
     pub load: T,
 }
 
@@ -84,6 +85,13 @@ impl<T: Scalar> Contact<T> {
     #[must_use]
     pub fn is_on(&self) -> bool {
         self.load > T::ZERO
+    }
+
+    /// Whether all of the contact is there, to a thousandth: loads are summed up in steps, and round-off in the sum must not
+    /// become a weight.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.load >= T::of(0.999)
     }
 
     /// Jacobian rows, J̇ν and J ν: of the rolling condition, or of the frame in its own axes. A ball uses three.

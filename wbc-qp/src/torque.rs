@@ -59,7 +59,8 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     effort: [[T; V]; N],
     /// Contact rows: coefficients of z, and the value wanted.
     wanted: [T; K],
-    on: [bool; K],
+    /// How much of each row's contact there is, 0 to 1.
+    load: [T; K],
     /// Bounds on q̈.
     range: [[T; 2]; N],
     /// One force coordinate, N or N m.
@@ -68,7 +69,7 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     pub settings: Settings<T>,
     /// k: rate at which a contact's own velocity is damped, 1/s.
     pub contact_damping: T,
-    /// Weight of a contact row that has yielded.
+    /// Weight of a contact row that has yielded; one of a contact with a load below 1 weighs load/(1 − load) times it.
     pub contact_weight: T,
     /// Weight of a held task's row that has yielded.
     pub task_weight: T,
@@ -89,7 +90,7 @@ pub struct TorqueAnswer<T, const N: usize, const K: usize> {
     pub yielded: Yielded,
     /// Largest amount by which a joint's acceleration is outside its limits, rad/s².
     pub limit_violation: T,
-    /// Largest amount by which a contact's acceleration misses, m/s² or rad/s².
+    /// Largest amount by which the acceleration of a contact of load 1 misses, m/s² or rad/s².
     pub contact_violation: T,
     /// Iterations of all solves.
     pub iterations: u32,
@@ -112,7 +113,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             effort_constant: [T::ZERO; N],
             effort: [[T::ZERO; V]; N],
             wanted: [T::ZERO; K],
-            on: [false; K],
+            load: [T::ZERO; K],
             range: [[T::NEG_INFINITY, T::INFINITY]; N],
             unit: T::ONE,
             settings: Settings {
@@ -148,32 +149,37 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         self.range = [[T::NEG_INFINITY, T::INFINITY]; N];
         self.unit = snapshot.centroidal.mass * T::of(0.981);
         let mut rows = [Effort::ZERO; K];
-        let mut slots = rows.iter_mut().zip(&mut self.wanted).zip(&mut self.on);
+        let mut slots = rows.iter_mut().zip(&mut self.wanted).zip(&mut self.load);
         for contact in contacts {
             let (jacobian, drift, rate) = contact.motion(model, snapshot);
             let motion = jacobian.iter().zip(drift.iter().zip(&rate));
-            for ((row, (drift, rate)), ((to, wanted), on)) in
+            for ((row, (drift, rate)), ((to, wanted), load)) in
                 motion.zip(&mut slots).take(contact.size())
             {
                 *to = *row;
                 *wanted = -*drift - self.contact_damping * *rate;
-                *on = contact.is_on();
+                *load = if contact.is_whole() {
+                    T::ONE
+                } else {
+                    contact.load
+                };
             }
         }
         self.eliminate(model, snapshot, &rows, friction);
         for (k, row) in rows.iter().enumerate() {
             let (a, constant) = self.row(row);
-            let (wanted, on) = (get(&self.wanted, k), self.on.get(k) == Some(&true));
-            let x = wanted - constant;
-            let (low, high) = if on {
-                (x, x)
-            } else {
-                (-T::INFINITY, T::INFINITY)
-            };
+            let (x, load) = (get(&self.wanted, k) - constant, get(&self.load, k));
             if let Some(wanted) = self.wanted.get_mut(k) {
                 *wanted = x;
             }
+            let free = [-T::INFINITY, T::INFINITY];
+            let [low, high] = if load >= T::ONE { [x, x] } else { free };
             self.program.constrain(&a, low, high)?;
+            if load > T::ZERO && load < T::ONE {
+                // From nothing to an equality without a step.
+                self.program
+                    .minimise(&a, x, self.contact_weight * load / (T::ONE - load));
+            }
         }
         self.write_cones(contacts)?;
         self.held = [self.program.used(); 2];
@@ -381,7 +387,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
                 }
                 Yielded::Contacts => {
                     for k in 0..K {
-                        if self.on.get(k) == Some(&true) {
+                        if get(&self.load, k) >= T::ONE {
                             self.soften(k, self.contact_weight);
                         }
                     }
@@ -436,8 +442,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             let outside = math::max(*low - *x, *x - *high);
             answer.limit_violation = math::max(answer.limit_violation, outside);
         }
-        for (k, (wanted, on)) in self.wanted.iter().zip(&self.on).enumerate() {
-            if *on {
+        for (k, (wanted, load)) in self.wanted.iter().zip(&self.load).enumerate() {
+            if *load >= T::ONE {
                 let miss = math::abs(dot(&self.program.row(k), z) - *wanted);
                 answer.contact_violation = math::max(answer.contact_violation, miss);
             }

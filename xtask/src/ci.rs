@@ -52,6 +52,19 @@ const STEPS: &[Step] = &[
             "mujoco",
         ],
     ),
+    (
+        "iCub jumps in MuJoCo",
+        &[
+            "xtask",
+            "mujoco",
+            "test",
+            "--package",
+            "saltus",
+            "--features",
+            "mujoco",
+            "humanoid::tests::mujoco",
+        ],
+    ),
 ];
 
 /// Runs every step; stops at the first that fails, and names it.

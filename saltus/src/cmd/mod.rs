@@ -1,5 +1,6 @@
 //! One file per subcommand.
 
+mod disturb;
 pub(crate) mod envelope;
 pub(crate) mod import;
 pub(crate) mod plan;

@@ -34,6 +34,12 @@ pub(crate) struct Args {
     /// Humanoid tasks: share of the joints' torque limits that there is.
     #[arg(long, default_value_t = 1.0)]
     torque_share: f64,
+    /// Humanoid tasks: what holds the robot in flight and landing.
+    #[arg(long, default_value = "qp")]
+    landing: humanoid::Landing,
+    /// How the plant differs, instead of a seed's draw: mass=1.1,friction=0.4,latency=2,noise.
+    #[arg(long)]
+    plant: Option<Disturbance>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     json: bool,
@@ -49,9 +55,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
             height: args.height,
             momentum: !args.no_momentum,
             torque_share: args.torque_share,
+            landing: args.landing,
             ..task
         };
         return run_humanoid(args, &task);
+    }
+    if args.plant.is_some() {
+        return Err("--plant is for humanoid tasks: use --seed for this one".into());
     }
     let task = Task::load(&args.task)?;
     if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
@@ -110,7 +120,7 @@ fn run_humanoid(args: &Args, task: &humanoid::Task) -> Result<ExitCode, String> 
     if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
         return Err(taken(path));
     }
-    let disturbance = Disturbance::draw(args.seed);
+    let disturbance = args.plant.unwrap_or_else(|| Disturbance::draw(args.seed));
     let run = humanoid::execute::run(task, args.sim, &disturbance, args.seed, |_, _| {})?;
     let verdict = humanoid::judge::Verdict::of(&run);
     let json = verdict.json(task, &run, args.seed, args.sim.name());

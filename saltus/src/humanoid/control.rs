@@ -1,13 +1,16 @@
-//! The controller of a humanoid jump: push-off by a program, flight by minimum jerk, landing by a hold. 1 kHz.
+//! The controller of a humanoid jump: push-off by a program; flight and landing by another, or by servos. 1 kHz.
 
-use super::{GRAVITY, JOINTS, Level, ROBOT, State, Task, Velocity, landing_posture};
+use super::sensors::Told;
+use super::{GRAVITY, JOINTS, Landing, Level, ROBOT, State, Task, Velocity, landing_posture};
+use super::{on_the_floor, poses};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
-use nalgebra::Vector3;
-use rbd_core::{JointLimits, Transform};
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::{ContactShape, JointLimits, Transform};
 use wbc_qp::jump::{
-    ComReference, Residuals, TorqueJump, TorqueJumpSettings, VelocityJump, VelocityJumpSettings,
+    Absorption, ComReference, LandingReference, LandingSettings, Residuals, TorqueJump,
+    TorqueJumpSettings, TorqueTick, VelocityJump, VelocityJumpSettings,
 };
 use wbc_qp::{Contact, Snapshot, Yielded, anchored};
 
@@ -21,6 +24,13 @@ const LANDING_STIFFNESS: f64 = 0.1;
 const LANDING_DAMPING: f64 = 1.4;
 /// Force on both soles that counts as touchdown, N.
 const TOUCH: f64 = 20.0;
+/// Force on a sole that counts as contact of this sole, N.
+const SOLE_TOUCH: f64 = 5.0;
+/// Time in which a contact is added to the program or removed from it, s.
+const LOADING: f64 = 0.01;
+/// Way of the centre of mass in which the fall ends, m, and the longest time for it, s.
+const ABSORB: f64 = 0.08;
+const ABSORB_TIME: f64 = 0.4;
 /// Ground friction that the controller counts on.
 const FRICTION: f64 = 0.5;
 /// Residuals up to which an equality of the paper counts as held: m/s and kg m²/s.
@@ -56,6 +66,11 @@ pub(crate) struct Controller {
     contacts: [Contact<f64>; 2],
     velocity: Box<VelocityJump<f64, JOINTS, 29, 12>>,
     torque: Box<TorqueJump<f64, JOINTS, 12, 35, 55>>,
+    landing: Box<wbc_qp::jump::Landing<f64, JOINTS, 12, 35, 55>>,
+    /// How the fall ends: since when, from which height.
+    absorption: Option<(f64, f64, Absorption<f64>)>,
+    /// Orientation of the base in the landing posture.
+    upright: Rotation3<f64>,
     start_com: Vector3<f64>,
     /// Where the left sole stands.
     anchor: Transform<f64>,
@@ -127,8 +142,11 @@ impl Controller {
             contacts: SOLES.map(|sole| Contact::new(&sole, FRICTION, 1000.0)),
             velocity: Box::new(VelocityJump::new(settings, start.joints)),
             torque: Box::new(TorqueJump::new(torque, start.joints)),
+            landing: Box::new(wbc_qp::jump::Landing::new(LandingSettings::icub())),
+            absorption: None,
+            upright: on_the_floor(landing_posture()).base.rotation,
             start_com,
-            anchor: super::poses(start).frame(&SOLES[0].frame),
+            anchor: poses(start).frame(&SOLES[0].frame),
             servo: start.joints,
             commanded: [0.0; JOINTS],
             last_torques: [0.0; JOINTS],
@@ -164,28 +182,28 @@ impl Controller {
     }
 
     /// One tick at time `t` since the start of the push-off.
-    pub(crate) fn tick(
-        &mut self,
-        t: f64,
-        q: &State,
-        v: &Velocity,
-        sole_force: f64,
-    ) -> JointCommand<f64, JOINTS> {
-        if let Some(event) = self.event(t, v, sole_force) {
+    pub(crate) fn tick(&mut self, t: f64, told: &Told) -> JointCommand<f64, JOINTS> {
+        if let Some(event) = self.event(t, &told.v, told.forces.iter().sum()) {
             let before = self.phase;
             self.phase = next_phase(self.phase, event);
             if before == Phase::Stance {
                 self.took_off = t;
-                self.aerial.from = self.servo;
+                self.aerial.from = match self.task.landing {
+                    Landing::Qp => told.q.joints,
+                    Landing::Hold | Landing::Stiff => self.servo,
+                };
             }
         }
         match self.phase {
-            Phase::Hold | Phase::Stance => self.push(t, q, v),
+            Phase::Hold | Phase::Stance => self.push(t, &told.q, &told.v),
             Phase::Flight | Phase::PreLanding | Phase::Landing | Phase::Stand => {
                 let (position, velocity) = self.aerial.at(t - self.took_off);
+                if self.task.landing == Landing::Qp {
+                    return self.land(t, told, position, velocity);
+                }
                 self.servo = position;
                 let mut command = self.track(velocity);
-                if matches!(self.phase, Phase::Landing | Phase::Stand) {
+                if self.on_ground() && self.task.landing == Landing::Hold {
                     for gains in &mut command.gains[..joint::L_SHOULDER_PITCH] {
                         gains.stiffness *= LANDING_STIFFNESS;
                         gains.damping *= LANDING_DAMPING;
@@ -195,6 +213,83 @@ impl Controller {
             }
             Phase::Abort => JointCommand::damp(5.0),
         }
+    }
+
+    /// Whether the robot has come down.
+    fn on_ground(&self) -> bool {
+        matches!(self.phase, Phase::Landing | Phase::Stand)
+    }
+
+    /// Flight and landing by one program: contacts come as the ground comes.
+    fn land(
+        &mut self,
+        t: f64,
+        told: &Told,
+        posture: [f64; JOINTS],
+        velocity: [f64; JOINTS],
+    ) -> JointCommand<f64, JOINTS> {
+        self.snapshot.update(&ROBOT, &told.q, &told.v);
+        let on_ground = self.on_ground();
+        for (contact, force) in self.contacts.iter_mut().zip(told.forces) {
+            let there = on_ground && force > SOLE_TOUCH;
+            let step = if there { TICK } else { -TICK } / LOADING;
+            contact.load = if self.phase == Phase::Flight {
+                0.0
+            } else {
+                (contact.load + step).clamp(0.0, 1.0)
+            };
+        }
+        let com = self.snapshot.com_w();
+        if self.on_ground() && self.absorption.is_none() {
+            let speed = self.snapshot.com_velocity_w().z.min(0.0);
+            let absorption = Absorption::new(speed, ABSORB, ABSORB_TIME);
+            self.absorption = Some((t, com.z, absorption));
+        }
+        let (height, speed, acceleration) = self.absorption.map_or(
+            (com.z, self.snapshot.com_velocity_w().z, -GRAVITY),
+            |(start, height, absorption)| {
+                let [way, speed, acceleration] = absorption.at(t - start);
+                (height + way, speed, acceleration)
+            },
+        );
+        let mut position_w = self.middle_of_soles();
+        position_w.z = height;
+        let up = Vector3::z();
+        let wanted = LandingReference {
+            com: ComReference {
+                position_w,
+                velocity_w: up * speed,
+                acceleration_w: up * acceleration,
+            },
+            trunk: self.upright,
+            posture,
+            velocity,
+        };
+        self.qp.solves += 1;
+        let tick = self.landing.tick(
+            &ROBOT,
+            &self.snapshot,
+            &self.contacts,
+            (&guarded_limits(), &self.task.motors()),
+            &wanted,
+        );
+        self.command(tick, None)
+    }
+
+    /// Middle of both soles in the world.
+    fn middle_of_soles(&self) -> Vector3<f64> {
+        let middles = SOLES.map(|sole| {
+            let ContactShape::Rectangle {
+                x: [a, b],
+                y: [c, d],
+            } = sole.shape
+            else {
+                unreachable!("the soles are rectangles")
+            };
+            let middle = Vector3::new(0.5 * (a + b), 0.5 * (c + d), 0.0);
+            self.snapshot.pose(&sole.frame).point(&middle)
+        });
+        (middles[0] + middles[1]) * 0.5
     }
 
     fn track(&self, velocity: [f64; JOINTS]) -> JointCommand<f64, JOINTS> {
@@ -240,7 +335,7 @@ impl Controller {
         );
         let velocities = match tick {
             Ok(tick) => {
-                self.note(tick.iterations, &tick.residuals, false);
+                self.note(tick.iterations, &tick.residuals, false, Some(HELD_VELOCITY));
                 tick.velocities
             }
             Err(_) => {
@@ -265,10 +360,19 @@ impl Controller {
             &self.reference,
         );
         self.servo = self.snapshot.configuration.joints;
+        self.command(tick, Some(HELD_TORQUE))
+    }
+
+    /// The torques of a program, or the last ones if it failed; `held` as for [`Self::note`].
+    fn command(
+        &mut self,
+        tick: Result<TorqueTick<f64, JOINTS, 12>, wbc_qp::Error>,
+        held: Option<Residuals<f64>>,
+    ) -> JointCommand<f64, JOINTS> {
         match tick {
             Ok(tick) => {
                 let yielded = tick.answer.yielded != Yielded::Nothing;
-                self.note(tick.answer.iterations, &tick.residuals, yielded);
+                self.note(tick.answer.iterations, &tick.residuals, yielded, held);
                 self.last_torques = tick.answer.torques;
             }
             Err(_) => self.qp.failures += 1,
@@ -278,23 +382,29 @@ impl Controller {
         command
     }
 
-    fn note(&mut self, iterations: u32, residuals: &Residuals<f64>, yielded: bool) {
+    /// Books a solve. `held` says up to which residuals the paper's equalities count as held; where nothing has to hold them,
+    /// `None`.
+    fn note(
+        &mut self,
+        iterations: u32,
+        residuals: &Residuals<f64>,
+        yielded: bool,
+        held: Option<Residuals<f64>>,
+    ) {
         let log = &mut self.qp;
         log.max_iterations = log.max_iterations.max(iterations);
-        let momentum = if self.task.momentum {
-            residuals.momentum
-        } else {
-            0.0
-        };
-        let held = match self.task.level {
-            Level::Velocity => HELD_VELOCITY,
-            Level::Torque => HELD_TORQUE,
-        };
-        if yielded || residuals.com > held.com || momentum > held.momentum {
-            log.relaxed_ticks += 1;
+        let mut relaxed = yielded;
+        if let Some(held) = held {
+            let momentum = if self.task.momentum {
+                residuals.momentum
+            } else {
+                0.0
+            };
+            relaxed |= residuals.com > held.com || momentum > held.momentum;
+            log.residuals.com = log.residuals.com.max(residuals.com);
+            log.residuals.momentum = log.residuals.momentum.max(momentum);
         }
-        log.residuals.com = log.residuals.com.max(residuals.com);
-        log.residuals.momentum = log.residuals.momentum.max(momentum);
+        log.relaxed_ticks += u64::from(relaxed);
     }
 
     /// Height that the push-off's reference asks for now, m.

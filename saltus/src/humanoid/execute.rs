@@ -2,14 +2,15 @@
 
 use super::control::{Controller, QpLog, TICK};
 use super::log::Sample;
-use super::{Plant, ROBOT, State, Task, Velocity, on_the_floor, plant, poses, spheres, squat};
+use super::sensors::{Sensors, sole_forces};
+use super::{
+    JOINTS, Plant, ROBOT, State, Task, Velocity, on_the_floor, plant, poses, spheres, squat,
+};
 use crate::jump::plant::{Disturbance, Sim};
-use crate::noise::Noise;
 use icub_model::LIMITS;
 use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
-use rbd_core::{CentroidalMap, Posture, Tangent, centroidal_map, centroidal_state};
-use std::collections::VecDeque;
+use rbd_core::{CentroidalMap, Motor, Posture, Tangent, centroidal_map, centroidal_state};
 
 /// Time of standing in the squat before the push-off, s.
 pub(crate) const HOLD: f64 = 0.5;
@@ -36,9 +37,15 @@ pub(crate) struct Run {
     pub(crate) contact_loss: Option<f64>,
     pub(crate) touchdown: Option<f64>,
     pub(crate) launch: Usage,
+    /// The same after touchdown: largest torque delivered, and asked for, over the limit.
     pub(crate) landing_torque: f64,
+    pub(crate) landing_demand: f64,
+    /// Time after touchdown in which a joint asked for more than its limit, s.
+    pub(crate) landing_saturation: f64,
     pub(crate) peak_torque: f64,
     pub(crate) peak_force: f64,
+    /// Largest error of the estimated base: m, rad.
+    pub(crate) estimate_error: [f64; 2],
     pub(crate) qp: QpLog,
 }
 
@@ -51,10 +58,9 @@ pub(crate) fn run(
     mut progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let mut plant = plant(task, sim, disturbance)?;
-    let mut noise = Noise::new(seed, 1.0);
-    let mut sensed = VecDeque::new();
     let start = on_the_floor(squat());
     plant.reset(&start, &Tangent::ZERO);
+    let mut sensors = Sensors::new(disturbance, seed, &start);
     let mut controller = Controller::new(*task, &start)?;
     let mut run = Run {
         samples: Vec::new(),
@@ -65,11 +71,13 @@ pub(crate) fn run(
         touchdown: None,
         launch: Usage::default(),
         landing_torque: 0.0,
+        landing_demand: 0.0,
+        landing_saturation: 0.0,
         peak_torque: 0.0,
         peak_force: 0.0,
+        estimate_error: [0.0; 2],
         qp: QpLog::default(),
     };
-    let mut command = JointCommand::damp(0.0);
     let motors = task.motors();
     let substeps = (TICK / plant.tick()).round() as usize;
     for k in 0_u64.. {
@@ -77,19 +85,20 @@ pub(crate) fn run(
         if t > run.takeoff + SETTLE + 0.7 {
             break;
         }
-        sensed.push_back(measure(&plant, disturbance, &mut noise));
-        if sensed.len() > disturbance.latency_ms + 1 {
-            sensed.pop_front();
-        }
-        if let Some(Measured { q, v, force }) = sensed.front() {
-            command = controller.tick(t, q, v, *force);
-        }
+        let command = controller.tick(t, &sensors.measure(&plant));
         let sample = record(&plant, &controller, t);
-        observe(&mut run, &sample);
+        observe(&mut run, &sample, &motors);
         run.samples.push(sample);
         for _ in 0..substeps {
-            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+            let (q, v) = sensors.encoders(&plant);
             let torques = command.torques(&q, &v, &motors);
+            if run.touchdown.is_some() {
+                let over = demand(&command, &q, &v, &motors);
+                run.landing_demand = run.landing_demand.max(over);
+                if over > 1.0 {
+                    run.landing_saturation += plant.tick();
+                }
+            }
             plant.step(&torques).map_err(|error| error.to_string())?;
         }
         if k.is_multiple_of(10) {
@@ -98,35 +107,26 @@ pub(crate) fn run(
     }
     run.final_phase = controller.phase;
     run.qp = controller.qp;
+    run.estimate_error = sensors.worst;
     Ok(run)
 }
 
-/// What the controller is told at 1 kHz.
-struct Measured {
-    q: State,
-    v: Velocity,
-    /// Sum of the forces on the soles, N.
-    force: f64,
-}
-
-/// The truth, joints with the disturbance's encoder noise.
-fn measure(plant: &Plant, disturbance: &Disturbance, noise: &mut Noise) -> Measured {
-    let (mut q, mut v) = (*plant.configuration(), *plant.velocity());
-    let (dq, dv) = disturbance.encoder;
-    if dq > 0.0 {
-        for (q, v) in q.joints.iter_mut().zip(&mut v.joints) {
-            *q += dq * noise.sample();
-            *v += dv * noise.sample();
-        }
-    }
-    let force = sole_forces(plant).iter().map(|f| f.norm()).sum();
-    Measured { q, v, force }
-}
-
-/// Force of the ground on each sole.
-fn sole_forces(plant: &Plant) -> [Vector3<f64>; 2] {
-    let f = plant.contact_forces_w();
-    [f[..4].iter().sum(), f[4..].iter().sum()]
+/// Largest torque that a command asks for, over the limit.
+fn demand(
+    command: &JointCommand<f64, JOINTS>,
+    q: &[f64; JOINTS],
+    v: &[f64; JOINTS],
+    motors: &[Motor<f64>; JOINTS],
+) -> f64 {
+    let unlimited = motors.map(|motor| Motor {
+        torque: f64::MAX,
+        corner_speed: f64::MAX,
+        no_load_speed: f64::MAX,
+        ..motor
+    });
+    let wanted = command.torques(q, v, &unlimited);
+    let shares = wanted.iter().zip(motors).map(|(t, m)| t.abs() / m.torque);
+    shares.fold(0.0, f64::max)
 }
 
 fn record(plant: &Plant, controller: &Controller, time: f64) -> Sample {
@@ -158,7 +158,7 @@ fn record(plant: &Plant, controller: &Controller, time: f64) -> Sample {
 }
 
 /// Events and extremes of one tick.
-fn observe(run: &mut Run, s: &Sample) {
+fn observe(run: &mut Run, s: &Sample, motors: &[Motor<f64>; JOINTS]) {
     let off = s.forces_w.iter().all(|f| f.norm() < LIFTED);
     let pushed = matches!(s.phase, Phase::Stance | Phase::Flight | Phase::PreLanding);
     if run.contact_loss.is_none() && pushed && s.time > 0.5 * run.takeoff && off {
@@ -172,8 +172,8 @@ fn observe(run: &mut Run, s: &Sample) {
     let shares = s
         .torques
         .iter()
-        .zip(&LIMITS)
-        .map(|(tau, l)| tau.abs() / l.effort);
+        .zip(motors)
+        .map(|(tau, m)| tau.abs() / m.torque);
     let torque = shares.fold(0.0, f64::max);
     run.peak_torque = s
         .torques

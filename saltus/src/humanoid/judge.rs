@@ -103,7 +103,16 @@ impl Verdict {
                 "speed": run.launch.speed,
                 "torque": run.launch.torque,
             },
-            "landing_torque_usage": run.landing_torque,
+            "landing": {
+                "controller": format!("{:?}", task.landing).to_lowercase(),
+                "torque_usage": run.landing_torque,
+                "torque_demand": run.landing_demand,
+                "saturation_ms": 1e3 * run.landing_saturation,
+            },
+            "estimate_error": {
+                "position_m": run.estimate_error[0],
+                "orientation_deg": run.estimate_error[1].to_degrees(),
+            },
             "peak_torque_nm": run.peak_torque,
             "peak_foot_force_n": run.peak_force,
             "qp": {

@@ -4,6 +4,7 @@ pub(crate) mod control;
 pub(crate) mod execute;
 pub(crate) mod judge;
 pub(crate) mod log;
+pub(crate) mod sensors;
 
 use crate::jump::plant::{Disturbance, Sim};
 use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
@@ -39,6 +40,17 @@ pub(crate) enum Level {
     Torque,
 }
 
+/// What holds the robot after the push-off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Landing {
+    /// One torque program through flight and landing.
+    Qp,
+    /// Servos: minimum jerk in the air, then a compliant hold.
+    Hold,
+    /// The same with the stiff hold of paper B.
+    Stiff,
+}
+
 /// A humanoid task.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Task {
@@ -50,6 +62,8 @@ pub(crate) struct Task {
     pub(crate) momentum: bool,
     /// Share of the joints' torque limits that there is, for motors and controller alike.
     pub(crate) torque_share: f64,
+    /// Controller of flight and landing.
+    pub(crate) landing: Landing,
 }
 
 impl Task {
@@ -65,6 +79,7 @@ impl Task {
             height: 0.04,
             momentum: true,
             torque_share: 1.0,
+            landing: Landing::Qp,
         })
     }
 
@@ -207,183 +222,4 @@ fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{JOINTS, ROBOT, State, Task, Velocity, com, execute, on_the_floor, poses, squat};
-    use crate::jump::plant::{Disturbance, Sim};
-    use icub_model::MOTORS;
-    use icub_model::hardware::{MOTORS_F32, SOLES_F32};
-    use icub_model::limits::LIMITS_F32;
-    use icub_model::{LIMITS, SOLES};
-    use jump_control::Phase;
-    use nalgebra::Vector3;
-    use rbd_core::{Configuration, Motion, Tangent, Transform};
-    use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
-    use wbc_qp::{Contact, Snapshot};
-
-    #[test]
-    fn the_squat_stands_on_both_soles_inside_its_limits() {
-        let q = on_the_floor(squat());
-        let poses = poses(&q);
-        for sole in SOLES {
-            let pose = poses.frame(&sole.frame);
-            assert!(pose.translation.z.abs() < 1e-4);
-            assert!((pose.rotation.matrix()[(2, 2)] - 1.0).abs() < 1e-6);
-        }
-        let c = com(&q);
-        assert!((c.z - 0.38).abs() < 0.015, "{c:?}");
-        assert!(c.x > -0.03 && c.x < 0.08, "{c:?}");
-        for (q, limits) in q.joints.iter().zip(&LIMITS) {
-            assert!(*q > limits.lower && *q < limits.upper);
-        }
-    }
-
-    /// However the plant differs: every program is solved, and no command leaves its limits. The jump itself may suffer.
-    #[test]
-    fn no_program_fails_whatever_the_plant_does() {
-        let nominal = Disturbance::NOMINAL;
-        let cases = [
-            (0.6, nominal),
-            (
-                1.0,
-                Disturbance {
-                    mass: 1.1,
-                    ..nominal
-                },
-            ),
-            (
-                1.0,
-                Disturbance {
-                    mass: 0.9,
-                    ..nominal
-                },
-            ),
-            (
-                1.0,
-                Disturbance {
-                    friction: 0.4,
-                    ..nominal
-                },
-            ),
-            (
-                1.0,
-                Disturbance {
-                    latency_ms: 2,
-                    ..nominal
-                },
-            ),
-            (
-                1.0,
-                Disturbance {
-                    encoder: (1e-3, 0.05),
-                    ..nominal
-                },
-            ),
-            (
-                0.6,
-                Disturbance {
-                    mass: 1.1,
-                    friction: 0.4,
-                    latency_ms: 2,
-                    encoder: (1e-3, 0.05),
-                    ..nominal
-                },
-            ),
-        ];
-        for name in ["icub/velocity", "icub/torque"] {
-            for (torque_share, disturbance) in cases {
-                let task = Task {
-                    torque_share,
-                    ..Task::named(name).unwrap()
-                };
-                let run = execute::run(&task, Sim::Native, &disturbance, 1, |_, _| {}).unwrap();
-                assert_eq!(run.qp.failures, 0, "{name} {torque_share} {disturbance:?}");
-                for sample in &run.samples {
-                    for (tau, motor) in sample.torques.iter().zip(task.motors()) {
-                        assert!(tau.abs() <= motor.torque + 1e-9);
-                    }
-                }
-            }
-        }
-    }
-
-    /// The same states through the torque program in both precisions, tasks held: torques of a whole push-off.
-    #[test]
-    fn single_precision_follows_over_a_whole_push_off() {
-        let task = Task::named("icub/torque").unwrap();
-        let run = execute::run(&task, Sim::Native, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
-        let profile = task.profile().unwrap();
-        let f = |x: f64| x as f32;
-        let start = com(&on_the_floor(squat()));
-        let mut double = TorqueJump::<f64, JOINTS, 12, 35, 61>::new(strict(), squat());
-        let mut single = TorqueJump::<f32, JOINTS, 12, 35, 61>::new(strict(), squat().map(f));
-        let soles = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
-        let soles_f32 = SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));
-        let (mut s, mut s_f32) = (Snapshot::<f64, JOINTS>::ZERO, Snapshot::<f32, JOINTS>::ZERO);
-        let (mut worst, mut ticks) = (0.0_f64, 0);
-        for sample in run.samples.iter().filter(|s| s.phase == Phase::Stance) {
-            let point = profile.at(sample.time);
-            let wanted = |rise: f64, speed: f64, acceleration: f64| {
-                (
-                    start + Vector3::z() * rise,
-                    Vector3::z() * speed,
-                    Vector3::z() * acceleration,
-                )
-            };
-            let (position_w, velocity_w, acceleration_w) =
-                wanted(point.rise, point.speed, point.acceleration);
-            let q = State {
-                base: Transform::new(sample.orientation.to_rotation_matrix(), sample.position),
-                joints: sample.joints,
-            };
-            let v = Velocity {
-                base: sample.base_velocity,
-                joints: sample.joint_velocities,
-            };
-            s.update(&ROBOT, &q, &v);
-            let reference = ComReference {
-                position_w,
-                velocity_w,
-                acceleration_w,
-            };
-            let joints = (&LIMITS, &MOTORS);
-            let a = double.tick(&ROBOT, &s, &soles, joints, &reference).unwrap();
-            let q = Configuration {
-                base: Transform::new(
-                    nalgebra::Rotation3::from_matrix_unchecked(q.base.rotation.matrix().map(f)),
-                    q.base.translation.map(f),
-                ),
-                joints: q.joints.map(f),
-            };
-            let v = Tangent {
-                base: Motion::from_array(v.base.to_array().map(f)),
-                joints: v.joints.map(f),
-            };
-            s_f32.update(&ROBOT, &q, &v);
-            let reference = ComReference {
-                position_w: position_w.map(f),
-                velocity_w: velocity_w.map(f),
-                acceleration_w: acceleration_w.map(f),
-            };
-            let joints = (&LIMITS_F32, &MOTORS_F32);
-            let b = single
-                .tick(&ROBOT, &s_f32, &soles_f32, joints, &reference)
-                .unwrap();
-            for (x, y) in a.answer.torques.iter().zip(b.answer.torques) {
-                worst = worst.max((x - f64::from(y)).abs());
-            }
-            ticks += 1;
-        }
-        assert!(
-            ticks > 400 && worst < 0.05,
-            "{worst} N m over {ticks} ticks"
-        );
-    }
-
-    fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, JOINTS> {
-        TorqueJumpSettings {
-            strict: true,
-            ..TorqueJumpSettings::icub()
-        }
-    }
-}
+mod tests;

@@ -4,11 +4,10 @@
 use super::plant::{Disturbance, Plant};
 use super::{FOOT_COUNT, JOINTS, ROBOT, State, Velocity, feet};
 use crate::noise::Noise;
+use crate::observer::{Legs, Observer};
 use a1_model::FOOT_RADIUS;
 use jump_control::Measurement;
-use nalgebra::Vector3;
-use rbd_core::{GRAVITY, Transform};
-use state_est::{Estimator, Foot, Sample, Settings, Status};
+use state_est::{Foot, Status};
 use std::collections::VecDeque;
 
 /// What arrives at 1 kHz.
@@ -23,42 +22,21 @@ const PERIOD: f64 = 1e-3;
 pub(crate) struct Sensors {
     disturbance: Disturbance,
     noise: Noise,
-    observer: Option<Observer>,
+    observer: Option<Observer<JOINTS, FOOT_COUNT, 6>>,
     waiting: VecDeque<Told>,
     /// Largest error of the base's place and of its tilt and heading since the start: m, rad.
     pub(crate) worst: [f64; 2],
 }
 
-/// An IMU at the base's origin with the estimator behind it.
-struct Observer {
-    estimator: Estimator<f64, JOINTS, FOOT_COUNT, 6>,
-    state: state_est::State<f64, FOOT_COUNT, 6>,
-    /// Velocity of the base at the last sample, world axes.
-    last_w: Vector3<f64>,
-    gyroscope_bias: Vector3<f64>,
-    accelerometer_bias: Vector3<f64>,
-}
-
 impl Sensors {
     pub(crate) fn new(disturbance: &Disturbance, seed: u64, start: &State) -> Self {
         let mut noise = Noise::new(seed.wrapping_add(0x5eed), 1.0);
-        let mut vector = |deviation: f64| Vector3::from_fn(|_, _| deviation * noise.sample());
         let observer = disturbance.imu.map(|imu| {
-            let estimator = Estimator {
-                feet: feet().map(|frame| Foot {
-                    frame,
-                    radius: FOOT_RADIUS,
-                }),
-                imu: Transform::IDENTITY,
-                settings: Settings::new(),
-            };
-            Observer {
-                state: state_est::State::new(&estimator, &ROBOT, start),
-                estimator,
-                last_w: Vector3::zeros(),
-                gyroscope_bias: vector(imu.gyroscope_bias),
-                accelerometer_bias: vector(imu.accelerometer_bias),
-            }
+            let feet = feet().map(|frame| Foot {
+                frame,
+                radius: FOOT_RADIUS,
+            });
+            Observer::new(&ROBOT, feet, imu, start, &mut noise)
         });
         Self {
             disturbance: *disturbance,
@@ -115,26 +93,15 @@ impl Sensors {
         v: &Velocity,
         told: &mut Measurement<f64, JOINTS, FOOT_COUNT>,
     ) {
-        let (Some(observer), Some(imu)) = (&mut self.observer, self.disturbance.imu) else {
+        let Some(observer) = &mut self.observer else {
             return;
         };
-        let noise = &mut self.noise;
-        let mut vector = |deviation: f64| Vector3::from_fn(|_, _| deviation * noise.sample());
-        let now_w = q.base.rotation * v.base.linear;
-        let felt_w = (now_w - observer.last_w) / PERIOD - Vector3::from(GRAVITY);
-        observer.last_w = now_w;
-        let sample = Sample {
-            specific_force_i: q.base.rotation.inverse() * felt_w
-                + observer.accelerometer_bias
-                + vector(imu.accelerometer),
-            angular_velocity_i: v.base.angular + observer.gyroscope_bias + vector(imu.gyroscope),
+        let legs = Legs {
             joints: told.joints,
             joint_velocities: told.joint_velocities,
             evidence: told.foot_forces.map(|f| (f / LOADED).min(1.0)),
         };
-        let estimate = observer
-            .estimator
-            .step(&ROBOT, &mut observer.state, Some(&sample), PERIOD);
+        let estimate = observer.step(&ROBOT, q, v, &legs, &mut self.noise);
         told.base = estimate.base;
         told.base_velocity = estimate.velocity;
         if estimate.status == Status::Lost {

@@ -1,17 +1,23 @@
-//! The two push-off controllers of paper B, each a short composition of tasks, contacts and limits.
+//! The two push-off controllers of paper B and one for flight and landing, each a short composition of tasks, contacts and
+//! limits.
 //!
 //! What the paper writes as equalities on the centre of mass and the angular momentum are costs here, with a weight that is
 //! stated: on 10 to 27 % of plausible states the equalities contradict contacts and limits, and then nothing comes out at
 //! all. How far each was from holding is part of the answer ([`Residuals`]).
 
+mod landing;
 mod torque;
 mod velocity;
 
+pub use landing::{Absorption, Landing, LandingReference, LandingSettings};
 pub use torque::{TorqueJump, TorqueJumpSettings, TorqueTick};
 pub use velocity::{VelocityJump, VelocityJumpSettings, VelocityTick};
 
 use nalgebra::Vector3;
+use rbd_core::Tangent;
 use so3::Scalar;
+
+use crate::Task;
 
 /// Where the centre of mass shall be in this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,4 +45,16 @@ pub(crate) fn distance<T: Scalar, const R: usize>(a: &[T; R], b: &[T; R]) -> T {
     a.iter().zip(b).fold(T::ZERO, |m, (a, b)| {
         so3::math::max(m, so3::math::abs(*a - *b))
     })
+}
+
+/// ẍ of a task at an acceleration of the robot.
+pub(crate) fn reached<T: Scalar, const N: usize, const R: usize>(
+    task: &Task<T, N, R>,
+    acceleration: &Tangent<T, N>,
+) -> [T; R] {
+    let mut x = task.of(acceleration);
+    for (x, drift) in x.iter_mut().zip(&task.drift) {
+        *x += *drift;
+    }
+    x
 }

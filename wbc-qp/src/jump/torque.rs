@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rbd_core::{JointLimits, Motor, Tree, joint_friction};
 use so3::Scalar;
 
-use super::{ComReference, Residuals, distance};
+use super::{ComReference, Residuals, distance, reached};
 use crate::task::position_error;
 use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueAnswer, TorqueQp, torque_range};
 
@@ -169,21 +169,15 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         self.qp.limit_torques(&ranges)?;
         let answer = self.qp.solve()?;
         self.previous = Some(answer.torques);
-        let reached = |x: [T; 3], drift: [T; 3]| {
-            let (x, drift) = (Vector3::from(x), Vector3::from(drift));
-            <[T; 3]>::from(x + drift)
-        };
+        let (com, momentum) = (
+            reached(&com, &answer.acceleration),
+            reached(&momentum, &answer.acceleration),
+        );
         Ok(TorqueTick {
             answer,
             residuals: Residuals {
-                com: distance(
-                    &reached(com.of(&answer.acceleration), com.drift),
-                    &com_target,
-                ),
-                momentum: distance(
-                    &reached(momentum.of(&answer.acceleration), momentum.drift),
-                    &momentum_target,
-                ),
+                com: distance(&com, &com_target),
+                momentum: distance(&momentum, &momentum_target),
             },
         })
     }

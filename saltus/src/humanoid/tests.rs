@@ -1,0 +1,207 @@
+//! Jumps in both simulators, nominal and disturbed.
+#![allow(clippy::unwrap_used, reason = "tests")]
+use super::judge::Verdict;
+use super::{GRAVITY, JOINTS, Landing, ROBOT, State, Task, Velocity};
+use super::{com, execute, on_the_floor, poses, squat};
+use crate::jump::plant::{Disturbance, Sim};
+use icub_model::MOTORS;
+use icub_model::hardware::{MOTORS_F32, SOLES_F32};
+use icub_model::limits::LIMITS_F32;
+use icub_model::{LIMITS, SOLES};
+use jump_control::Phase;
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Motion, Tangent, Transform};
+use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
+use wbc_qp::{Contact, Snapshot};
+
+#[test]
+fn the_squat_stands_on_both_soles_inside_its_limits() {
+    let q = on_the_floor(squat());
+    let poses = poses(&q);
+    for sole in SOLES {
+        let pose = poses.frame(&sole.frame);
+        assert!(pose.translation.z.abs() < 1e-4);
+        assert!((pose.rotation.matrix()[(2, 2)] - 1.0).abs() < 1e-6);
+    }
+    let c = com(&q);
+    assert!((c.z - 0.38).abs() < 0.015, "{c:?}");
+    assert!(c.x > -0.03 && c.x < 0.08, "{c:?}");
+    for (q, limits) in q.joints.iter().zip(&LIMITS) {
+        assert!(*q > limits.lower && *q < limits.upper);
+    }
+}
+
+/// However the plant differs: every program is solved, what had to yield is counted, and no command leaves its limits. The
+/// jump itself may suffer. Noise comes with an IMU: the base is then known from `state-est` alone.
+#[test]
+fn no_program_fails_whatever_the_plant_does() {
+    let cases = [
+        (0.6, ""),
+        (1.0, "mass=1.1"),
+        (1.0, "mass=0.9"),
+        (1.0, "friction=0.4"),
+        (1.0, "latency=2"),
+        (1.0, "noise"),
+        (0.6, "mass=1.1,friction=0.4,latency=2,noise"),
+    ];
+    for name in ["icub/velocity", "icub/torque"] {
+        for (torque_share, plant) in cases {
+            let disturbance: Disturbance = plant.parse().unwrap();
+            let task = Task {
+                torque_share,
+                ..Task::named(name).unwrap()
+            };
+            let run = execute::run(&task, Sim::Native, &disturbance, 1, |_, _| {}).unwrap();
+            let case = format!("{name} torque x {torque_share} {plant}");
+            assert_eq!(run.qp.failures, 0, "{case}");
+            assert!(run.touchdown.is_some(), "{case}");
+            if torque_share == 1.0 {
+                let verdict = Verdict::of(&run);
+                assert!(verdict.landed && verdict.upright, "{case}");
+            } else {
+                assert!(run.qp.relaxed_ticks > 0, "{case}");
+            }
+            assert_eq!(
+                run.estimate_error[0] > 0.0,
+                plant.contains("noise"),
+                "{case}"
+            );
+            for sample in &run.samples {
+                for (tau, motor) in sample.torques.iter().zip(task.motors()) {
+                    assert!(tau.abs() <= motor.torque + 1e-9, "{case}");
+                }
+            }
+        }
+    }
+}
+
+/// What a run must show with the landing program: on target, and no joint asks for more torque than it has for longer than
+/// the ground's first blow.
+fn lands_softly(name: &str, sim: Sim) {
+    let task = Task::named(name).unwrap();
+    let run = execute::run(&task, sim, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
+    let verdict = Verdict::of(&run);
+    assert!(
+        verdict.on_target(&task),
+        "{name}: gain {}",
+        verdict.com_gain
+    );
+    assert!(verdict.locked_rotation < 1.5, "{}", verdict.locked_rotation);
+    assert!(run.landing_demand <= 1.0 + 1e-9, "{}", run.landing_demand);
+    assert!(
+        run.landing_saturation <= 0.002,
+        "{}",
+        run.landing_saturation
+    );
+    // Paper B, II-D: what the flight gains follows from the speed at its start.
+    let height = verdict.takeoff_speed * verdict.takeoff_speed / (2.0 * GRAVITY);
+    let drift = (height - verdict.com_gain).abs();
+    assert!(drift < 0.002, "{height} {}", verdict.com_gain);
+
+    let stiff = Task {
+        landing: Landing::Stiff,
+        ..task
+    };
+    let run = execute::run(&stiff, sim, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
+    assert!(run.landing_demand > 10.0 && run.landing_saturation > 0.05);
+
+    let free = Task {
+        momentum: false,
+        ..task
+    };
+    let run = execute::run(&free, sim, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
+    assert!(Verdict::of(&run).locked_rotation > 4.0 * 1.5);
+}
+
+#[test]
+fn both_jumps_land_softly() {
+    lands_softly("icub/velocity", Sim::Native);
+    lands_softly("icub/torque", Sim::Native);
+}
+
+#[cfg(feature = "mujoco")]
+#[test]
+fn mujoco_agrees_on_both_jumps() {
+    lands_softly("icub/velocity", Sim::Mujoco);
+    lands_softly("icub/torque", Sim::Mujoco);
+}
+
+/// The same states through the torque program in both precisions, tasks held: torques of a whole push-off.
+#[test]
+fn single_precision_follows_over_a_whole_push_off() {
+    let task = Task::named("icub/torque").unwrap();
+    let run = execute::run(&task, Sim::Native, &Disturbance::NOMINAL, 0, |_, _| {}).unwrap();
+    let profile = task.profile().unwrap();
+    let f = |x: f64| x as f32;
+    let start = com(&on_the_floor(squat()));
+    let mut double = TorqueJump::<f64, JOINTS, 12, 35, 61>::new(strict(), squat());
+    let mut single = TorqueJump::<f32, JOINTS, 12, 35, 61>::new(strict(), squat().map(f));
+    let soles = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+    let soles_f32 = SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+    let (mut s, mut s_f32) = (Snapshot::<f64, JOINTS>::ZERO, Snapshot::<f32, JOINTS>::ZERO);
+    let (mut worst, mut ticks) = (0.0_f64, 0);
+    for sample in run.samples.iter().filter(|s| s.phase == Phase::Stance) {
+        let point = profile.at(sample.time);
+        let wanted = |rise: f64, speed: f64, acceleration: f64| {
+            (
+                start + Vector3::z() * rise,
+                Vector3::z() * speed,
+                Vector3::z() * acceleration,
+            )
+        };
+        let (position_w, velocity_w, acceleration_w) =
+            wanted(point.rise, point.speed, point.acceleration);
+        let q = State {
+            base: Transform::new(sample.orientation.to_rotation_matrix(), sample.position),
+            joints: sample.joints,
+        };
+        let v = Velocity {
+            base: sample.base_velocity,
+            joints: sample.joint_velocities,
+        };
+        s.update(&ROBOT, &q, &v);
+        let reference = ComReference {
+            position_w,
+            velocity_w,
+            acceleration_w,
+        };
+        let joints = (&LIMITS, &MOTORS);
+        let a = double.tick(&ROBOT, &s, &soles, joints, &reference).unwrap();
+        let q = Configuration {
+            base: Transform::new(
+                nalgebra::Rotation3::from_matrix_unchecked(q.base.rotation.matrix().map(f)),
+                q.base.translation.map(f),
+            ),
+            joints: q.joints.map(f),
+        };
+        let v = Tangent {
+            base: Motion::from_array(v.base.to_array().map(f)),
+            joints: v.joints.map(f),
+        };
+        s_f32.update(&ROBOT, &q, &v);
+        let reference = ComReference {
+            position_w: position_w.map(f),
+            velocity_w: velocity_w.map(f),
+            acceleration_w: acceleration_w.map(f),
+        };
+        let joints = (&LIMITS_F32, &MOTORS_F32);
+        let b = single
+            .tick(&ROBOT, &s_f32, &soles_f32, joints, &reference)
+            .unwrap();
+        for (x, y) in a.answer.torques.iter().zip(b.answer.torques) {
+            worst = worst.max((x - f64::from(y)).abs());
+        }
+        ticks += 1;
+    }
+    assert!(
+        ticks > 400 && worst < 0.05,
+        "{worst} N m over {ticks} ticks"
+    );
+}
+
+fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, JOINTS> {
+    TorqueJumpSettings {
+        strict: true,
+        ..TorqueJumpSettings::icub()
+    }
+}
