@@ -34,8 +34,7 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
     }
 
     pub(crate) fn clear(&mut self) {
-        self.hessian = [[T::ZERO; V]; V];
-        self.gradient = [T::ZERO; V];
+        self.clear_costs();
         for row in self.rows.iter_mut().take(self.used) {
             *row = [T::ZERO; V];
         }
@@ -44,6 +43,12 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         self.lower = [T::NEG_INFINITY; V];
         self.upper = [T::INFINITY; V];
         self.used = 0;
+    }
+
+    /// No cost; rows and bounds stay.
+    pub(crate) fn clear_costs(&mut self) {
+        self.hessian = [[T::ZERO; V]; V];
+        self.gradient = [T::ZERO; V];
     }
 
     /// Adds ½ w (aᵀz − b)² to the cost.
@@ -96,11 +101,6 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         if let (Some(l), Some(u)) = (self.lower.get_mut(i), self.upper.get_mut(i)) {
             (*l, *u) = (lower, upper);
         }
-    }
-
-    /// Number of rows so far.
-    pub(crate) const fn used(&self) -> usize {
-        self.used
     }
 
     /// Limits of row `i`; none beyond the end.

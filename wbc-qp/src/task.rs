@@ -41,6 +41,16 @@ impl<T: Scalar, const N: usize, const R: usize> Task<T, N, R> {
         out
     }
 
+    /// ẍ = J ν̇ + J̇ν at an acceleration of the robot.
+    #[must_use]
+    pub fn reached(&self, acceleration: &Tangent<T, N>) -> [T; R] {
+        let mut x = self.of(acceleration);
+        for (x, drift) in x.iter_mut().zip(&self.drift) {
+            *x += *drift;
+        }
+        x
+    }
+
     /// ẋ* = ẋ_d + K e: the velocity law of paper B eq. (3b), e the wanted position less the actual one.
     #[must_use]
     pub fn velocity(&self, wanted_rate: [T; R], error: [T; R], gain: T) -> [T; R] {

@@ -18,7 +18,8 @@
 //! # Priorities
 //! A task is held ([`TorqueQp::hold`]: an equality, eliminated before the solve, so that what is left is well scaled and single
 //! precision is enough) or weighed ([`TorqueQp::minimise`]). Held tasks come strictly first; the weighed solution tends to the
-//! held one as its weight grows.
+//! held one as its weight grows. Any number of levels: solve the first, hold its tasks at what they reached, go on with the
+//! costs of the next ([`TorqueQp::next_level`]).
 
 use dense_qp::{Settings, Status, Workspace, solve_warm};
 use rbd_core::linear::{ldl_back_substitute, ldl_factor};
@@ -73,8 +74,8 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     pub contact_weight: T,
     /// Weight of a held task's row that has yielded.
     pub task_weight: T,
-    /// First row of the held tasks, and one past the last.
-    held: [usize; 2],
+    /// Which rows are those of held tasks.
+    held: [bool; M],
 }
 
 /// What a torque program found.
@@ -123,7 +124,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             contact_damping: T::of(20.0),
             contact_weight: T::of(1e5),
             task_weight: T::of(1e3),
-            held: [0; 2],
+            held: [false; M],
         }
     }
 
@@ -175,15 +176,29 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             let free = [-T::INFINITY, T::INFINITY];
             let [low, high] = if load >= T::ONE { [x, x] } else { free };
             self.program.constrain(&a, low, high)?;
-            if load > T::ZERO && load < T::ONE {
-                // From nothing to an equality without a step.
-                self.program
-                    .minimise(&a, x, self.contact_weight * load / (T::ONE - load));
-            }
         }
         self.write_cones(contacts)?;
-        self.held = [self.program.used(); 2];
+        self.held = [false; M];
+        self.weigh_contacts();
         Ok(())
+    }
+
+    /// Contacts whose rows are no equalities, as costs: a load between 0 and 1 leads from nothing to an equality without a step.
+    fn weigh_contacts(&mut self) {
+        for k in 0..K {
+            let load = get(&self.load, k);
+            let (wanted, (low, high)) = (get(&self.wanted, k), self.program.row_limits(k));
+            if load > T::ZERO && low < high {
+                let share = if load < T::ONE {
+                    load / (T::ONE - load)
+                } else {
+                    T::ONE
+                };
+                let row = self.program.row(k);
+                self.program
+                    .minimise(&row, wanted, self.contact_weight * share);
+            }
+        }
     }
 
     /// Writes a_b and τ as functions of z.
@@ -262,7 +277,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         (a, self.base_constant.dot(&row.base))
     }
 
-    /// Holds a task: ẍ = ẍ* comes before every cost. To be called before the limits on torque.
+    /// Holds a task: ẍ = ẍ* comes before every cost.
     ///
     /// # Errors
     /// [`Error::NoRoomForRows`]: a held task takes R rows.
@@ -275,9 +290,20 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         for (row, (x, drift)) in rows {
             let (a, constant) = self.row(row);
             let wanted = *x - *drift - constant;
-            self.held[1] = self.program.constrain(&a, wanted, wanted)? + 1;
+            let index = self.program.constrain(&a, wanted, wanted)?;
+            if let Some(held) = self.held.get_mut(index) {
+                *held = true;
+            }
         }
         Ok(())
+    }
+
+    /// Ends a level of strict priority: costs go, limits and held tasks stay. Between [`TorqueQp::solve`] and this call, hold
+    /// the level's tasks at what the answer [reached](Task::reached); the costs of the next level follow. Every level wants a
+    /// little cost on joints and forces, so that its Hessian is definite.
+    pub fn next_level(&mut self) {
+        self.program.clear_costs();
+        self.weigh_contacts();
     }
 
     /// Adds ½ Σ wᵢ (ẍᵢ − ẍᵢ*)².
@@ -365,7 +391,6 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     pub fn solve(&mut self) -> Result<TorqueAnswer<T, N, K>, Error> {
         let mut iterations = 0;
         let mut last = Status::Infeasible;
-        let [first, end] = self.held;
         for yielded in [
             Yielded::Nothing,
             Yielded::Tasks,
@@ -374,10 +399,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         ] {
             match yielded {
                 Yielded::Nothing => {}
-                Yielded::Tasks if first == end => continue,
+                Yielded::Tasks if !self.held.contains(&true) => continue,
                 Yielded::Tasks => {
-                    for i in first..end {
-                        self.soften(i, self.task_weight);
+                    for i in 0..M {
+                        if self.held.get(i) == Some(&true) {
+                            self.soften(i, self.task_weight);
+                        }
                     }
                 }
                 Yielded::MotionLimits => {

@@ -3,13 +3,9 @@
 
 mod common;
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
-};
-use common::{N, Rng, snapshot};
+use common::{N, Rng, oracle, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
-use rbd_core::{Axes, Configuration, Force, FrameJacobian, Tangent, Transform};
+use rbd_core::{Axes, Configuration, Force, Frame, FrameJacobian, Tangent, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};
 use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Contact, Horizon, Snapshot, TorqueQp, Yielded, anchored, torque_range};
@@ -119,53 +115,6 @@ fn an_answer_obeys_the_equations_of_motion_and_every_limit() {
     }
 }
 
-/// Optimal cost of the program as it stands, by Clarabel.
-fn oracle(problem: &dense_qp::Problem<'_, f64, V, M>) -> Option<f64> {
-    let h: Vec<Vec<f64>> = problem.hessian.iter().map(|r| r.to_vec()).collect();
-    let p = CscMatrix::from(&h).to_triu();
-    let (mut rows, mut b) = (Vec::new(), Vec::new());
-    let mut add = |row: Vec<f64>, low: f64, high: f64| {
-        if high < f64::INFINITY {
-            rows.push(row.clone());
-            b.push(high);
-        }
-        if low > f64::NEG_INFINITY {
-            rows.push(row.iter().map(|x| -x).collect());
-            b.push(-low);
-        }
-    };
-    for i in 0..M {
-        add(
-            problem.rows[i].to_vec(),
-            problem.row_lower[i],
-            problem.row_upper[i],
-        );
-    }
-    for i in 0..V {
-        let mut row = vec![0.0; V];
-        row[i] = 1.0;
-        add(row, problem.lower.unwrap()[i], problem.upper.unwrap()[i]);
-    }
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .tol_gap_abs(1e-10)
-        .tol_gap_rel(1e-10)
-        .tol_feas(1e-10)
-        .build()
-        .unwrap();
-    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
-    let a = CscMatrix::from(&rows);
-    let mut solver = DefaultSolver::new(&p, problem.gradient, &a, &b, &cones, settings).unwrap();
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => {
-            let x: [f64; V] = core::array::from_fn(|i| solver.solution.x[i]);
-            Some(problem.cost(&x))
-        }
-        _ => None,
-    }
-}
-
 #[test]
 fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
     let mut rng = Rng(2);
@@ -252,6 +201,101 @@ fn weights_tend_to_strict_priority() {
             "{gaps:?}"
         );
     }
+}
+
+/// Four levels of strict priority, the second against the first: each level's cost is Clarabel's least, no level spoils
+/// one before it, and weights that grow by the same factor from level to level tend to the same torques.
+#[test]
+fn levels_are_optimal_one_after_the_other() {
+    let mut rng = Rng(8);
+    let mut sums = [0.0; 3];
+    for _ in 0..8 {
+        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+        let s = snapshot(&q, &v);
+        let (com, push) = (s.com(), s.linear_momentum());
+        let trunk = s.frame_orientation(&Icub23, &Frame::IDENTITY);
+        let turn = s.angular_momentum();
+        let start = || {
+            let mut qp = TorqueQp::<f64, N, K, V, 67>::new();
+            qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
+            qp.limit_torques(&MOTORS.map(|m| [-m.torque, m.torque]))
+                .unwrap();
+            qp
+        };
+        let last = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
+            qp.minimise_joints(&[0.0; N], &[1.0; N]);
+            qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+        };
+        // Every level has a little cost on everything: without it most of its Hessian would be zero.
+        let rest = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
+            qp.minimise_joints(&[0.0; N], &[1e-5; N]);
+            qp.minimise_forces(&[0.0; K], &[1e-8; K]);
+        };
+        let mut qp = start();
+        let solve = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
+            let wanted = oracle(&qp.problem()).unwrap();
+            let answer = qp.solve().unwrap();
+            assert_eq!(answer.yielded, Yielded::Nothing);
+            let unit = s.centroidal.mass * 0.981;
+            let z = core::array::from_fn(|i| match i {
+                0..N => answer.acceleration.joints[i],
+                _ => answer.forces[i - N] / unit,
+            });
+            let cost = qp.problem().cost(&z);
+            let scale = 1.0 + wanted.abs();
+            assert!((cost - wanted).abs() < 1e-5 * scale, "{cost} {wanted}");
+            answer
+        };
+        // Up; then a push down that contradicts it, and a turn of the trunk; then the angular momentum; then the posture.
+        let (up, down, tilt, spin) = (
+            [0.1, 0.0, 2.0],
+            [0.0, 3.0, -30.0],
+            [0.3, 0.0, 0.0],
+            [0.0, 0.5, 0.0],
+        );
+        rest(&mut qp);
+        qp.minimise(&com, &up, &[1.0; 3]);
+        let answer = solve(&mut qp);
+        let first = com.reached(&answer.acceleration);
+        assert!(first.iter().zip(&up).all(|(a, b)| (a - b).abs() < 1e-2));
+        qp.hold(&com, &first).unwrap();
+        qp.next_level();
+        rest(&mut qp);
+        qp.minimise(&push, &down, &[1e-3; 3]);
+        qp.minimise(&trunk, &tilt, &[1.0; 3]);
+        let answer = solve(&mut qp);
+        let second = trunk.reached(&answer.acceleration);
+        qp.hold(&trunk, &second).unwrap();
+        qp.next_level();
+        rest(&mut qp);
+        qp.minimise(&turn, &spin, &[1.0; 3]);
+        let answer = solve(&mut qp);
+        let third = turn.reached(&answer.acceleration);
+        qp.hold(&turn, &third).unwrap();
+        qp.next_level();
+        last(&mut qp);
+        let strict = solve(&mut qp);
+        for (task, value) in [(&com, first), (&trunk, second), (&turn, third)] {
+            let now = task.reached(&strict.acceleration);
+            assert!(now.iter().zip(&value).all(|(a, b)| (a - b).abs() < 1e-6));
+        }
+        let gap = |w: f64| {
+            let mut qp = start();
+            qp.minimise(&com, &up, &[w * w * w; 3]);
+            qp.minimise(&push, &down, &[1e-3 * w * w; 3]);
+            qp.minimise(&trunk, &tilt, &[w * w; 3]);
+            qp.minimise(&turn, &spin, &[w; 3]);
+            last(&mut qp);
+            let answer = qp.solve().unwrap();
+            let pairs = answer.torques.iter().zip(&strict.torques);
+            pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+        };
+        for (sum, w) in sums.iter_mut().zip([1e1, 1e2, 1e3]) {
+            *sum += gap(w);
+        }
+    }
+    // Where levels compete for the same torques, the way is long: the last factor must be a thousand to see most of it.
+    assert!(sums[1] < sums[0] && sums[2] < 0.5 * sums[1], "{sums:?}");
 }
 
 /// A held task that limits make impossible yields, is reported, and everything harder stays.

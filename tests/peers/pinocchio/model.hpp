@@ -1,6 +1,10 @@
 // Reads the plain-text model that dump_models.py writes.
 #pragma once
+#if __has_include(<pinocchio/multibody.hpp>)
 #include <pinocchio/multibody.hpp>
+#else  // Pinocchio 3
+#include <pinocchio/multibody/model.hpp>
+#endif
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

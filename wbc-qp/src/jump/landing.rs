@@ -10,7 +10,7 @@ use nalgebra::{Rotation3, Vector3};
 use rbd_core::{ContactShape, Frame, JointLimits, Motor, Tree, joint_friction};
 use so3::{Scalar, math};
 
-use super::{ComReference, Residuals, distance, reached};
+use super::{ComReference, Residuals, distance};
 use crate::task::{orientation_error, position_error};
 use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueQp, jump::TorqueTick, torque_range};
 
@@ -235,8 +235,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         let answer = self.qp.solve()?;
         self.previous = Some(answer.torques);
         let (com, momentum) = (
-            reached(&com, &answer.acceleration),
-            reached(&momentum, &answer.acceleration),
+            com.reached(&answer.acceleration),
+            momentum.reached(&answer.acceleration),
         );
         let ground_only = |x: T| if ground > T::ZERO { x } else { T::ZERO };
         Ok(TorqueTick {

@@ -14,10 +14,7 @@ pub use torque::{TorqueJump, TorqueJumpSettings, TorqueTick};
 pub use velocity::{VelocityJump, VelocityJumpSettings, VelocityTick};
 
 use nalgebra::Vector3;
-use rbd_core::Tangent;
 use so3::Scalar;
-
-use crate::Task;
 
 /// Where the centre of mass shall be in this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,16 +42,4 @@ pub(crate) fn distance<T: Scalar, const R: usize>(a: &[T; R], b: &[T; R]) -> T {
     a.iter().zip(b).fold(T::ZERO, |m, (a, b)| {
         so3::math::max(m, so3::math::abs(*a - *b))
     })
-}
-
-/// ẍ of a task at an acceleration of the robot.
-pub(crate) fn reached<T: Scalar, const N: usize, const R: usize>(
-    task: &Task<T, N, R>,
-    acceleration: &Tangent<T, N>,
-) -> [T; R] {
-    let mut x = task.of(acceleration);
-    for (x, drift) in x.iter_mut().zip(&task.drift) {
-        *x += *drift;
-    }
-    x
 }

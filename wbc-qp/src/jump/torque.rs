@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rbd_core::{JointLimits, Motor, Tree, joint_friction};
 use so3::Scalar;
 
-use super::{ComReference, Residuals, distance, reached};
+use super::{ComReference, Residuals, distance};
 use crate::task::position_error;
 use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueAnswer, TorqueQp, torque_range};
 
@@ -109,6 +109,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         }
     }
 
+    /// The program of the last tick: for a log, or another solver's opinion.
+    #[must_use]
+    pub const fn program(&self) -> &TorqueQp<T, N, K, V, M> {
+        &self.qp
+    }
+
     /// One tick.
     ///
     /// # Errors
@@ -170,8 +176,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         let answer = self.qp.solve()?;
         self.previous = Some(answer.torques);
         let (com, momentum) = (
-            reached(&com, &answer.acceleration),
-            reached(&momentum, &answer.acceleration),
+            com.reached(&answer.acceleration),
+            momentum.reached(&answer.acceleration),
         );
         Ok(TorqueTick {
             answer,

@@ -1,7 +1,11 @@
 //! Random states of iCub.
 #![allow(dead_code, unreachable_pub, reason = "each test file uses a part")]
-#![allow(missing_docs, reason = "tests")]
+#![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+};
 use icub_model::{Icub23, LIMITS};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Motion, Tangent, Transform};
@@ -42,4 +46,53 @@ pub fn snapshot(q: &Configuration<f64, N>, v: &Tangent<f64, N>) -> Snapshot<f64,
     let mut s = Snapshot::ZERO;
     s.update(&Icub23, q, v);
     s
+}
+
+/// Optimal cost of the program as it stands, by Clarabel.
+pub fn oracle<const V: usize, const M: usize>(
+    problem: &dense_qp::Problem<'_, f64, V, M>,
+) -> Option<f64> {
+    let h: Vec<Vec<f64>> = problem.hessian.iter().map(|r| r.to_vec()).collect();
+    let p = CscMatrix::from(&h).to_triu();
+    let (mut rows, mut b) = (Vec::new(), Vec::new());
+    let mut add = |row: Vec<f64>, low: f64, high: f64| {
+        if high < f64::INFINITY {
+            rows.push(row.clone());
+            b.push(high);
+        }
+        if low > f64::NEG_INFINITY {
+            rows.push(row.iter().map(|x| -x).collect());
+            b.push(-low);
+        }
+    };
+    for i in 0..M {
+        add(
+            problem.rows[i].to_vec(),
+            problem.row_lower[i],
+            problem.row_upper[i],
+        );
+    }
+    for i in 0..V {
+        let mut row = vec![0.0; V];
+        row[i] = 1.0;
+        add(row, problem.lower.unwrap()[i], problem.upper.unwrap()[i]);
+    }
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .tol_gap_abs(1e-10)
+        .tol_gap_rel(1e-10)
+        .tol_feas(1e-10)
+        .build()
+        .unwrap();
+    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
+    let a = CscMatrix::from(&rows);
+    let mut solver = DefaultSolver::new(&p, problem.gradient, &a, &b, &cones, settings).unwrap();
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {
+            let x: [f64; V] = core::array::from_fn(|i| solver.solution.x[i]);
+            Some(problem.cost(&x))
+        }
+        _ => None,
+    }
 }

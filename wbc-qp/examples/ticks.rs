@@ -1,0 +1,331 @@
+//! Times one controller tick (dynamics, tasks, program) and the program alone on the ticks of a push-off of iCub and of A1 in the
+//! contact simulator, and writes states and programs for other libraries: `tests/peers/wbc.py`.
+//!
+//! usage: ticks OUT_DIR
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "a measuring program"
+)]
+
+use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use core::fmt::Write as _;
+use dense_qp::{Problem, Status, Workspace, solve, solve_warm};
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::{Configuration, Frame, JointLimits, Motor, Posture, Tangent, Transform};
+use rbd_core::{Kinematics, Tree, forward_kinematics, joint_friction};
+use std::path::Path;
+use std::time::Instant;
+use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
+use wbc_qp::task::{orientation_error, position_error};
+use wbc_qp::{Contact, Gains, Snapshot, TorqueAnswer, TorqueQp, Yielded};
+
+const REPEAT: usize = 7;
+/// Standing before the push, s.
+const HOLD: f64 = 0.2;
+
+/// A controller under measurement.
+trait Controller<const N: usize, const K: usize, const V: usize, const M: usize>: Clone {
+    fn tick(
+        &mut self,
+        q: &Configuration<f64, N>,
+        v: &Tangent<f64, N>,
+        wanted: &ComReference<f64>,
+    ) -> TorqueAnswer<f64, N, K>;
+    fn program(&self) -> &TorqueQp<f64, N, K, V, M>;
+}
+
+/// Paper B's torque controller.
+#[derive(Clone)]
+struct Humanoid(Box<(Snapshot<f64, 23>, TorqueJump<f64, 23, 12, 35, 55>)>);
+
+impl Controller<23, 12, 35, 55> for Humanoid {
+    fn tick(
+        &mut self,
+        q: &Configuration<f64, 23>,
+        v: &Tangent<f64, 23>,
+        wanted: &ComReference<f64>,
+    ) -> TorqueAnswer<f64, 23, 12> {
+        let (s, jump) = &mut *self.0;
+        s.update(&icub_model::Icub23, q, v);
+        let contacts = icub_model::SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+        let joints = (&icub_model::LIMITS, &icub_model::MOTORS);
+        let tick = jump.tick(&icub_model::Icub23, s, &contacts, joints, wanted);
+        tick.unwrap().answer
+    }
+    fn program(&self) -> &TorqueQp<f64, 23, 12, 35, 55> {
+        self.0.1.program()
+    }
+}
+
+/// The same tasks on four feet, with the trunk's orientation in the angular momentum's place.
+#[derive(Clone)]
+struct Quadruped(Box<(Snapshot<f64, 12>, TorqueQp<f64, 12, 12, 24, 40>)>);
+
+impl Controller<12, 12, 24, 40> for Quadruped {
+    fn tick(
+        &mut self,
+        q: &Configuration<f64, 12>,
+        v: &Tangent<f64, 12>,
+        wanted: &ComReference<f64>,
+    ) -> TorqueAnswer<f64, 12, 12> {
+        let (s, qp) = &mut *self.0;
+        let model = &a1_model::A1;
+        s.update(model, q, v);
+        let contacts = a1_model::FEET.map(|foot| Contact::new(&foot, 0.5, 300.0));
+        let friction = joint_friction(&a1_model::a1::LIMITS, &v.joints, 0.1);
+        qp.begin(model, s, &contacts, &friction).unwrap();
+        let gains = Gains {
+            stiffness: 100.0,
+            damping: 20.0,
+        };
+        let com = s.com();
+        let target = com.acceleration(
+            wanted.acceleration_w.into(),
+            wanted.velocity_w.into(),
+            position_error(&wanted.position_w, &s.com_w()),
+            gains,
+        );
+        qp.minimise(&com, &target, &[1e3; 3]);
+        let trunk = s.frame_orientation(model, &Frame::IDENTITY);
+        let error = orientation_error(&Rotation3::identity(), &q.base.rotation);
+        let target = trunk.acceleration([0.0; 3], [0.0; 3], error, gains);
+        qp.minimise(&trunk, &target, &[1e3; 3]);
+        qp.minimise_joints(&[0.0; 12], &[1e-2; 12]);
+        qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
+        qp.limit_torques(&a1_model::MOTORS.map(|m| [-m.torque, m.torque]))
+            .unwrap();
+        qp.solve().unwrap()
+    }
+    fn program(&self) -> &TorqueQp<f64, 12, 12, 24, 40> {
+        &self.0.1
+    }
+}
+
+/// A robot in the simulator.
+struct Robot<'a, P, const N: usize> {
+    name: &'a str,
+    plant: P,
+    start: Configuration<f64, N>,
+    /// Centre of mass at the start.
+    home: Vector3<f64>,
+    /// Speed at take-off, m/s, and duration of the push, s.
+    push: [f64; 2],
+    limits: &'a [JointLimits<f64>; N],
+    motors: &'a [Motor<f64>; N],
+}
+
+/// Runs hold and push-off; times every tick; writes `NAME.ticks` (states) and `NAME.qps` (programs).
+fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize, const S: usize>(
+    mut robot: Robot<'_, P, N>,
+    mut controller: C,
+    out: &Path,
+) where
+    P: Simulator<f64, N, S>,
+    P::Error: core::fmt::Debug,
+    C: Controller<N, K, V, M>,
+{
+    robot.plant.reset(&robot.start, &Tangent::ZERO);
+    let [speed, push] = robot.push;
+    let mut states = String::new();
+    let (mut times, mut cold, mut warm) = (Vec::new(), Vec::new(), Vec::new());
+    let mut programs: Vec<u8> = Vec::new();
+    let mut put = |x: f64| programs.extend(x.to_le_bytes());
+    let mut workspace = Box::new(Workspace::<f64, V, M>::new());
+    let (mut most, mut yielded) = (0, 0);
+    let count = ((HOLD + push) * 1e3) as usize;
+    for x in [V as f64, M as f64, count as f64] {
+        put(x);
+    }
+    for k in 0..count {
+        let x = ((k as f64 * 1e-3 - HOLD) / push).max(0.0);
+        let up = Vector3::z();
+        let wanted = ComReference {
+            position_w: robot.home + up * (speed * push * x * x * x / 3.0),
+            velocity_w: up * (speed * x * x),
+            acceleration_w: up * (2.0 * speed / push * x),
+        };
+        let (q, v) = (*robot.plant.configuration(), *robot.plant.velocity());
+        let before = controller.clone();
+        let mut best = f64::INFINITY;
+        let mut answer = None;
+        for _ in 0..REPEAT {
+            controller = before.clone();
+            let begin = Instant::now();
+            answer = Some(controller.tick(&q, &v, &wanted));
+            best = best.min(begin.elapsed().as_secs_f64());
+        }
+        let answer = answer.unwrap();
+        times.push(best);
+        most = most.max(answer.iterations);
+        yielded += usize::from(answer.yielded != Yielded::Nothing);
+        let problem = controller.program().problem();
+        let settings = controller.program().settings;
+        let mut least = [f64::INFINITY; 2];
+        for _ in 0..REPEAT {
+            let mut memory = workspace.clone();
+            let begin = Instant::now();
+            let s = solve_warm(&problem, &settings, &mut memory).unwrap();
+            least[1] = least[1].min(begin.elapsed().as_secs_f64());
+            assert_eq!(s.status, Status::Solved);
+        }
+        for _ in 0..REPEAT {
+            let begin = Instant::now();
+            let s = solve(&problem, &settings, &mut workspace).unwrap();
+            least[0] = least[0].min(begin.elapsed().as_secs_f64());
+            assert_eq!(s.status, Status::Solved);
+        }
+        cold.push(least[0]);
+        warm.push(least[1]);
+        let solution = solve(&problem, &settings, &mut workspace).unwrap();
+        write_problem(&problem, solution.x, least, &mut put);
+        for x in numbers(&q, &v, &wanted) {
+            write!(states, "{x:.17} ").unwrap();
+        }
+        states.push('\n');
+        for _ in 0..10 {
+            robot.plant.step(&answer.torques).unwrap();
+        }
+    }
+    let mut head = format!("{count} {N}\n");
+    let limits = robot.limits;
+    let columns: [[f64; N]; 5] = [
+        limits.map(|l| l.lower),
+        limits.map(|l| l.upper),
+        limits.map(|l| l.speed),
+        robot.motors.map(|m| m.torque),
+        robot.start.joints,
+    ];
+    for x in columns.iter().flatten() {
+        write!(head, "{x:.17} ").unwrap();
+    }
+    let path = |ending: &str| out.join(format!("{}.{ending}", robot.name));
+    std::fs::write(path("ticks"), format!("{head}\n{states}")).unwrap();
+    std::fs::write(path("qps"), programs).unwrap();
+    let median = |x: &mut Vec<f64>| {
+        x.sort_by(f64::total_cmp);
+        [x[x.len() / 2], x[x.len() - 1]].map(|t| t * 1e6)
+    };
+    let [tick, worst] = median(&mut times);
+    let ([cold, _], [warm, _]) = (median(&mut cold), median(&mut warm));
+    println!(
+        "{} {tick:.3} {worst:.3} {cold:.3} {warm:.3} {most} {yielded} {count}",
+        robot.name
+    );
+}
+
+/// x y z, quaternion x y z w, joints; velocity; centre of mass wanted.
+fn numbers<const N: usize>(
+    q: &Configuration<f64, N>,
+    v: &Tangent<f64, N>,
+    wanted: &ComReference<f64>,
+) -> Vec<f64> {
+    let turn = so3::quat::from_rotation(&q.base.rotation);
+    let mut out: Vec<f64> = q.base.translation.iter().copied().collect();
+    out.extend(turn.coords.iter());
+    out.extend(q.joints);
+    out.extend(v.base.to_array());
+    out.extend(v.joints);
+    for x in [wanted.position_w, wanted.velocity_w, wanted.acceleration_w] {
+        out.extend(x.iter());
+    }
+    out
+}
+
+/// H, g, A, l, u, bounds, the minimiser, times in s (cold, warm).
+fn write_problem<const V: usize, const M: usize>(
+    p: &Problem<'_, f64, V, M>,
+    x: &[f64; V],
+    times: [f64; 2],
+    put: &mut impl FnMut(f64),
+) {
+    let bounds = [p.lower.unwrap(), p.upper.unwrap()];
+    let all = p.hessian.iter().flatten().chain(p.gradient);
+    let all = all.chain(p.rows.iter().flatten());
+    let all = all.chain(p.row_lower).chain(p.row_upper);
+    let all = all.chain(bounds.into_iter().flatten()).chain(x);
+    for x in all.chain(&times) {
+        put(*x);
+    }
+}
+
+/// The base such that the foot is `height` above the floor; a sole (height 0) lies flat.
+fn on_the_floor<R: Tree<f64, N>, const N: usize>(
+    model: &R,
+    joints: [f64; N],
+    foot: &Frame<f64>,
+    height: f64,
+) -> Configuration<f64, N> {
+    let mut q = Configuration {
+        base: Transform::IDENTITY,
+        joints,
+    };
+    let pose = |q: &Configuration<f64, N>| {
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(model, &Posture::new(model, q), &mut kinematics);
+        kinematics.frame(foot)
+    };
+    if height == 0.0 {
+        q.base.rotation = pose(&q).rotation.inverse();
+    }
+    q.base.translation = -pose(&q).translation + Vector3::z() * height;
+    q
+}
+
+fn icub(out: &Path) {
+    use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+    let mut joints = [0.0; 23];
+    for leg in [0, 6] {
+        (joints[leg], joints[leg + 3], joints[leg + 4]) = (1.496, -2.013, -0.817);
+    }
+    joints[icub_model::gazebo::joint::TORSO_PITCH] = 0.2;
+    for arm in [15, 19] {
+        (joints[arm], joints[arm + 1], joints[arm + 3]) = (-0.5, 0.4, 0.8);
+    }
+    let start = on_the_floor(&Icub23, joints, &SOLES[0].frame, 0.0);
+    let corners = SOLES.map(|sole| ContactSphere::corners(&sole, 0.005).unwrap());
+    let spheres: [ContactSphere<f64>; 8] = core::array::from_fn(|i| corners[i / 4][i % 4]);
+    let settings = Settings::new(&LIMITS, &MOTORS);
+    let mut s = Snapshot::ZERO;
+    s.update(&Icub23, &start, &Tangent::ZERO);
+    let robot = Robot {
+        name: "icub23",
+        plant: NativeSimulator::<f64, Icub23, 23, 8>::new(Icub23, spheres, Terrain::FLAT, settings),
+        start,
+        home: s.com_w(),
+        push: [0.89, 0.36],
+        limits: &LIMITS,
+        motors: &MOTORS,
+    };
+    let jump = TorqueJump::new(TorqueJumpSettings::icub(), joints);
+    measure(robot, Humanoid(Box::new((s, jump))), out);
+}
+
+fn a1(out: &Path) {
+    use a1_model::{A1, FEET, FOOT_RADIUS, MOTORS, a1::LIMITS};
+    let joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);
+    let start = on_the_floor(&A1, joints, &FEET[0].frame, FOOT_RADIUS);
+    let spheres = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
+    let settings = Settings::new(&LIMITS, &MOTORS);
+    let mut s = Snapshot::ZERO;
+    s.update(&A1, &start, &Tangent::ZERO);
+    let robot = Robot {
+        name: "a1",
+        plant: NativeSimulator::<f64, A1, 12, 4>::new(A1, spheres, Terrain::FLAT, settings),
+        start,
+        home: s.com_w(),
+        push: [1.0, 0.2],
+        limits: &LIMITS,
+        motors: &MOTORS,
+    };
+    measure(robot, Quadruped(Box::new((s, TorqueQp::new()))), out);
+}
+
+fn main() {
+    let Some(out) = std::env::args().nth(1) else {
+        eprintln!("usage: ticks OUT_DIR");
+        std::process::exit(2)
+    };
+    icub(Path::new(&out));
+    a1(Path::new(&out));
+}
