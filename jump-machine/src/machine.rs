@@ -275,6 +275,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
         let s = &self.settings;
         let mut then = sample(&jump.plan, t - measured.age, self.node);
         let mut reference = sample(&jump.plan, t, then.node);
+        reference.torques = sample(&jump.plan, t + s.lookahead, then.node).torques;
         self.node = then.node;
         match self.phase {
             // Its weight has settled on the feet by then.

@@ -12,6 +12,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub period: T,
     /// Oldest measurement to act on, and longest silence of either loop, s.
     pub max_age: T,
+    /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
+    pub lookahead: T,
     /// Time before the start during which the weight on the feet is measured, s.
     pub weighing: T,
     /// Largest share of the planned weight that counts as payload.
@@ -56,6 +58,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
         Self {
             period: of(1e-3),
             max_age: of(0.005),
+            lookahead: of(0.001),
             weighing: of(0.15),
             max_payload: of(0.15),
             start_tolerance: of(0.15),

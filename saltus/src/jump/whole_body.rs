@@ -35,7 +35,7 @@ const PLANNED_SPEED: f64 = 0.85;
 /// Iterations after which more torque is tried; a task that is solved takes a third of it.
 const PATIENCE: usize = 100;
 /// How much farther than it is a box edge is taken to be, m.
-const EDGE_MARGIN: f64 = 0.08;
+const EDGE_MARGIN: f64 = 0.12;
 /// How far a ball may roll from where it stood, per axis, m.
 const ROLL: f64 = 0.03;
 const KNEE_CLEARANCE: f64 = 0.03;
