@@ -1,11 +1,12 @@
 //! Passes over all nodes: evaluate, differentiate, residuals, trial points.
 
+use crate::filter::{LogSum, Point};
 use crate::keep::Keep;
 use crate::kernel::{add_scaled, add_transposed_product, larger};
-use crate::problem::{Derivatives, Problem};
+use crate::problem::{Derivatives, Problem, Values};
 use crate::rows::Complementarity;
 use crate::settings::Residual;
-use crate::stage::{Node, Stage};
+use crate::stage::{Node, Pass, Stage};
 use so3::Scalar;
 use so3::math::{abs, max};
 
@@ -17,9 +18,28 @@ pub(crate) struct Merit<T> {
     pub(crate) worst: T,
     /// Sum of violations.
     pub(crate) sum: T,
+    /// Logarithms of the distances of all slacks from their bounds.
+    pub(crate) logs: LogSum<T>,
 }
 
 impl<T: Scalar> Merit<T> {
+    const fn new() -> Self {
+        Self {
+            cost: T::ZERO,
+            worst: T::ZERO,
+            sum: T::ZERO,
+            logs: LogSum::new(),
+        }
+    }
+
+    /// Violation and barrier function.
+    pub(crate) fn point(&self, mu: T) -> Point<T> {
+        Point {
+            theta: self.sum,
+            phi: self.cost - mu * self.logs.total(),
+        }
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.cost.is_finite_number() && self.sum.is_finite_number()
     }
@@ -89,7 +109,7 @@ pub(crate) fn differentiate<
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
         let costate = tail.first().map_or([T::ZERO; NX], |next| next.node.costate);
-        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, true);
+        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, Pass::New);
         dual.add(node, d, &costate, (k == 0).then_some(free));
         node.add_complementarity(complementarity);
         rest = tail;
@@ -161,33 +181,27 @@ impl<T: Scalar> Dual<T> {
 pub(crate) fn merit<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, const NI: usize>(
     stages: &[Stage<T, X, NX, NU, NI, K>],
 ) -> Merit<T> {
-    let mut merit = Merit {
-        cost: T::ZERO,
-        worst: T::ZERO,
-        sum: T::ZERO,
-    };
+    let mut merit = Merit::new();
     for stage in stages {
-        merit.add(&stage.node, T::ZERO);
+        merit.add(&stage.node, None);
     }
     merit
 }
 
 impl<T: Scalar> Merit<T> {
-    /// Adds a node with its slacks moved by `slack_step` of their steps.
+    /// Adds a node, after `length` of its slack steps if that is given.
     #[inline(always)]
     fn add<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         node: &Node<T, NX, NU, NI>,
-        slack_step: T,
+        length: Option<T>,
     ) {
         self.cost += node.values.cost;
         for gap in &node.values.gap {
             self.worst = larger(self.worst, *gap);
             self.sum += abs(*gap);
         }
-        let (worst, sum) = node.row_violation(slack_step);
-        self.worst = larger(self.worst, worst);
-        self.sum += sum;
+        node.add_merit(length, self);
     }
 }
 
@@ -204,11 +218,7 @@ pub(crate) fn try_step<
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     alpha: T,
 ) -> Merit<T> {
-    let mut merit = Merit {
-        cost: T::ZERO,
-        worst: T::ZERO,
-        sum: T::ZERO,
-    };
+    let mut merit = Merit::new();
     if let Some(first) = stages.first_mut() {
         first.move_to_trial(problem, 0, alpha, None);
     }
@@ -226,11 +236,41 @@ pub(crate) fn try_step<
         if next.is_none() {
             stage.node.values.gap = [T::ZERO; NX];
         }
-        merit.add(&stage.node, alpha);
+        merit.add(&stage.node, Some(alpha));
         rest = tail;
         k = after;
     }
     merit
+}
+
+/// Turns the values of the trial point at step length `alpha` into those that a second-order correction aims at:
+/// what the step was to take away, and what the curvature put in its place.
+#[inline(never)]
+pub(crate) fn correct<
+    T: Scalar,
+    P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
+    const NX: usize,
+    const NU: usize,
+    const NI: usize,
+>(
+    problem: &P,
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
+    alpha: T,
+) {
+    let mut rest = stages;
+    let mut k = 0usize;
+    while let Some((stage, tail)) = rest.split_first_mut() {
+        let next = tail.first().map(|next| &next.state);
+        let mut before = Values::new();
+        problem.evaluate(k, &stage.state, &stage.control, next, &mut before);
+        if next.is_some() {
+            add_scaled(&mut stage.node.values.gap, alpha, &before.gap);
+        }
+        stage.node.correct_rows(&before.rows, alpha);
+        rest = tail;
+        k = k.wrapping_add(1);
+    }
 }
 
 impl<T: Scalar, X: Copy, K: Copy, const NX: usize, const NU: usize, const NI: usize>

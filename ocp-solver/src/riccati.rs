@@ -26,9 +26,20 @@ use crate::kernel::{
 use crate::problem::{Derivatives, Problem};
 use crate::project::Work;
 use crate::rows::RowBarrier;
-use crate::stage::{Node, Riccati, Stage};
+use crate::stage::{Node, Pass, Riccati, Stage};
 use so3::Scalar;
-use so3::math::min;
+
+/// A Newton step of all nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Direction<T> {
+    /// Shift of the Hessian it was computed with.
+    pub(crate) shift: T,
+    /// Largest lengths that keep a share of every distance to a bound, and of every bound multiplier.
+    pub(crate) primal: T,
+    pub(crate) dual: T,
+    /// Derivative of the barrier function along it.
+    pub(crate) slope: T,
+}
 
 /// Backward recursion with `shift` added to the diagonal of every stage Hessian.
 ///
@@ -39,6 +50,7 @@ pub(crate) fn factorise<T, P, K, const NX: usize, const NU: usize, const NI: usi
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     barrier: RowBarrier<T>,
     shift: T,
+    pass: Pass,
 ) -> bool
 where
     T: Scalar,
@@ -52,7 +64,7 @@ where
         let Some(stage) = head.last_mut() else { break };
         k = k.wrapping_sub(1);
         let next = tail.first();
-        let (node, d) = stage.linearise(problem, k, next, &mut scratch, false);
+        let (node, d) = stage.linearise(problem, k, next, &mut scratch, pass);
         let next = next.map(|next| &next.node.riccati);
         if !node.factorise(d, &mut work, next, barrier, shift) {
             return false;
@@ -165,23 +177,26 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 /// Forward substitution from the step of the first state: states, controls, slacks, bound multipliers, and
 /// the full-step costates and multipliers of equalities.
 ///
-/// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance to a
-/// bound and of every bound multiplier.
 #[inline(never)]
 pub(crate) fn substitute<T, P, K, const NX: usize, const NU: usize, const NI: usize>(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     start: [T; NX],
+    barrier: RowBarrier<T>,
     shift: T,
-    mu: T,
-    fraction: T,
-) -> (T, T)
+    pass: Pass,
+) -> Direction<T>
 where
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
     K: Keep<T, NX, NU, NI>,
 {
-    let mut lengths = (T::ONE, T::ONE);
+    let mut direction = Direction {
+        shift,
+        primal: T::ONE,
+        dual: T::ONE,
+        slope: T::ZERO,
+    };
     if let Some(first) = stages.first_mut() {
         first.node.step.state = start;
         first.node.step.costate = first.node.riccati.costate(&start);
@@ -190,14 +205,13 @@ where
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
-        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, false);
+        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, pass);
         let next = tail.first_mut().map(|next| &mut next.node);
-        let (primal, dual) = node.substitute(d, next, shift, mu, fraction);
-        lengths = (min(lengths.0, primal), min(lengths.1, dual));
+        node.substitute(d, next, barrier, &mut direction);
         rest = tail;
         k = k.wrapping_add(1);
     }
-    lengths
+    direction
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
@@ -207,10 +221,9 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         &mut self,
         d: &Derivatives<T, NX, NU, NI>,
         next: Option<&mut Self>,
-        shift: T,
-        mu: T,
-        fraction: T,
-    ) -> (T, T) {
+        barrier: RowBarrier<T>,
+        direction: &mut Direction<T>,
+    ) {
         let step = self.step.state;
         let n = self.dims.controls.min(NU);
         self.step.control = [T::ZERO; NU];
@@ -219,7 +232,8 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         for (control, (gain, feedforward)) in self.step.control.iter_mut().zip(law) {
             *control = feedforward[0] + dot(gain, &step);
         }
-        let lengths = self.step_rows(d, mu, fraction);
+        direction.slope += dot(&d.cost_x, &step) + dot(&d.cost_u, &self.step.control);
+        self.step_rows(d, barrier, direction);
 
         // The costate of this node lacks its rows until here.
         let carried = &self.riccati.carried;
@@ -239,9 +253,8 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
             carried = Some(&mut next.riccati.carried);
         }
         if self.has_equalities(carried.as_deref()) {
-            self.recover_multipliers(d, &costate, carried, shift, mu);
+            self.recover_multipliers(d, &costate, carried, direction.shift, barrier.mu);
         }
-        lengths
     }
 }
 

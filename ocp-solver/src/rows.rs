@@ -15,17 +15,21 @@
 //! zero the solution is one of least squared violation among its neighbours. The row above then adds
 //! `Σ/(1 + e Σ)` and `(µ/(h−s) − µ/(s−l) + Σ(c − s))/(1 + e Σ)`, and an equality `1/e` and `(c − l)/e`.
 
+use crate::iterate::Merit;
 use crate::kernel::{dot, larger};
 use crate::problem::Derivatives;
+use crate::riccati::Direction;
 use crate::stage::{Node, Rows};
 use so3::Scalar;
 use so3::math::{abs, max, min};
 
-/// Parameters of a factorisation.
+/// Parameters of a Newton step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowBarrier<T> {
     /// Barrier parameter µ.
     pub(crate) mu: T,
+    /// Share of a distance to a bound, or of a multiplier, that a step may use up.
+    pub(crate) fraction: T,
     /// Entries below this share of their row count as zero in the elimination of equalities.
     pub(crate) rank_tolerance: T,
 }
@@ -244,15 +248,16 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
     /// Slack steps, and in elastic mode multipliers of equalities, from the state and control steps.
     ///
-    /// Returns the largest primal and dual step lengths that keep `1 − fraction` of every distance and
-    /// multiplier.
+    /// Cuts the step lengths so that they keep `1 − fraction` of every distance and multiplier, and adds the
+    /// derivative of the barrier to the slope.
     pub(crate) fn step_rows(
         &mut self,
         d: &Derivatives<T, NX, NU, NI>,
-        mu: T,
-        fraction: T,
-    ) -> (T, T) {
-        let (mut primal, mut dual) = (T::ONE, T::ONE);
+        barrier: RowBarrier<T>,
+        to: &mut Direction<T>,
+    ) {
+        let RowBarrier { mu, fraction, .. } = barrier;
+        let (mut primal, mut dual, mut slope) = (to.primal, to.dual, T::ZERO);
         for i in 0..self.row_count() {
             let change = self.row_change(d, i);
             let mut ds = self.values.rows[i] - self.rows.slack[i] + change;
@@ -269,6 +274,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 continue;
             }
             let (below, above) = self.rows.distances(i);
+            slope += ds / above - ds / below;
             for (d, z, ds) in [
                 (below, self.rows.below[i], ds),
                 (above, self.rows.above[i], -ds),
@@ -284,7 +290,16 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 primal = fraction * limit / reach;
             }
         }
-        (primal, dual)
+        (to.primal, to.dual) = (primal, dual);
+        to.slope += mu * slope;
+    }
+
+    /// Slack of row `i` after `length` of its step.
+    #[inline(always)]
+    fn moved_slack(&self, i: usize, length: T) -> T {
+        let rows = &self.rows;
+        let s = rows.slack[i] + length * self.step.rows[i];
+        rows.inside(i, rows.relaxed(i, s, self.values.rows[i]))
     }
 
     /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
@@ -292,15 +307,15 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     /// `mu` is that of the step, `floor` bounds how small a multiplier becomes.
     pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T, floor: T) {
         for i in 0..self.row_count() {
-            let rows = &mut self.rows;
             let ds = self.step.rows[i];
-            if rows.is_equality(i) {
-                rows.above[i] += primal * (ds - rows.above[i]);
+            if self.rows.is_equality(i) {
+                self.rows.above[i] += primal * (ds - self.rows.above[i]);
                 continue;
             }
+            let moved = self.moved_slack(i, primal);
+            let rows = &mut self.rows;
             let before = rows.distances(i);
-            let s = rows.relaxed(i, rows.slack[i] + primal * ds, self.values.rows[i]);
-            rows.slack[i] = rows.inside(i, s);
+            rows.slack[i] = moved;
             let now = rows.distances(i);
             for (z, before, now, ds) in [
                 (&mut rows.below[i], before.0, now.0, ds),
@@ -317,22 +332,36 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         }
     }
 
-    /// Largest and summed violation of `c − s = e y` (`s = l` in an equality).
-    pub(crate) fn row_violation(&self, slack_step: T) -> (T, T) {
-        let (mut worst, mut sum) = (T::ZERO, T::ZERO);
+    /// Adds the violation of `c − s = e y` (`s = l` in an equality) and the distances of `s` to its bounds, after
+    /// `length` of the slack steps if that is given.
+    #[inline(always)]
+    pub(crate) fn add_merit(&self, length: Option<T>, to: &mut Merit<T>) {
         for i in 0..self.row_count() {
             let rows = &self.rows;
-            let moved = if rows.is_equality(i) {
-                T::ZERO
-            } else {
-                slack_step * self.step.rows[i]
-            };
+            let mut s = rows.slack[i];
+            if !rows.is_equality(i) {
+                s = length.map_or(s, |length| self.moved_slack(i, length));
+                to.logs.add(s - rows.lower[i]);
+                to.logs.add(rows.upper[i] - s);
+            }
             let give = self.elastic * (rows.above[i] - rows.below[i]);
-            let r = self.values.rows[i] - rows.slack[i] - moved - give;
-            worst = larger(worst, r);
-            sum += abs(r);
+            let r = self.values.rows[i] - s - give;
+            to.worst = larger(to.worst, r);
+            to.sum += abs(r);
         }
-        (worst, sum)
+    }
+
+    /// See [`crate::iterate::correct`]; `before` are the rows at the iterate.
+    pub(crate) fn correct_rows(&mut self, before: &[T; NI], alpha: T) {
+        for i in 0..self.row_count() {
+            let s = self.rows.slack[i];
+            let moved = if self.rows.is_equality(i) {
+                s
+            } else {
+                self.moved_slack(i, alpha)
+            };
+            self.values.rows[i] += s - moved + alpha * (before[i] - s);
+        }
     }
 
     /// Adds this node's bounds to the complementarity sums.

@@ -1,12 +1,11 @@
 //! The interior-point iteration.
 
 use crate::blocking::largest_violation;
-use crate::equalities::solve_start;
+use crate::filter::Filter;
 use crate::iterate::{self, Merit};
 use crate::keep::Keep;
 use crate::problem::Problem;
-use crate::riccati::{factorise, substitute};
-use crate::rows::{Complementarity, RowBarrier};
+use crate::rows::Complementarity;
 use crate::settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
 use crate::stage::Stage;
 use core::ops::ControlFlow;
@@ -21,15 +20,15 @@ pub struct Solver<T> {
 }
 
 /// State of one attempt that is not per node.
-struct Run<T, const NX: usize> {
-    free: [bool; NX],
+pub(crate) struct Run<T, const NX: usize> {
+    pub(crate) free: [bool; NX],
     adaptive: bool,
-    mu: T,
+    pub(crate) mu: T,
     /// Last Hessian shift that was needed.
-    shift: T,
+    pub(crate) shift: T,
     short_steps: usize,
     iterations: usize,
-    factorisations: usize,
+    pub(crate) factorisations: usize,
     attempt: usize,
     /// Iterations at which an attempt has to end.
     limit: usize,
@@ -39,6 +38,9 @@ struct Run<T, const NX: usize> {
     warm: bool,
     /// Sums of violations of the last iterates.
     recent: [T; 4],
+    pub(crate) filter: Filter<T>,
+    /// Steps of this attempt that were taken against the filter.
+    pub(crate) leaps: u8,
     best: Residual<T>,
     best_cost: T,
     best_score: T,
@@ -224,6 +226,7 @@ impl<T: Scalar> Solver<T> {
         }
         let mut point = iterate::merit(stages);
         run.recent = [point.sum; 4];
+        (run.filter, run.leaps) = (Filter::new(point.sum), 0);
         let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
         loop {
             let mut complementarity = Complementarity::new();
@@ -263,20 +266,14 @@ impl<T: Scalar> Solver<T> {
             run.iterations = run.iterations.saturating_add(1);
             self.update_mu(run, &residual, &complementarity);
 
-            (used_shift, primal_step, dual_step) = match self.newton(problem, stages, run) {
-                Ok(step) => step,
+            let found = self
+                .newton(problem, stages, run)
+                .and_then(|step| self.search(problem, stages, run, &point, step));
+            let (trial, step) = match found {
+                Ok(found) => found,
                 Err(status) => return status,
             };
-            let mut trial = iterate::try_step(problem, stages, primal_step);
-            let mut halvings = 0u8;
-            while !trial.is_finite() || (halvings < 4 && run.explodes(trial.sum)) {
-                halvings = halvings.wrapping_add(1);
-                if halvings > 20 {
-                    return Status::NotFinite;
-                }
-                primal_step *= T::HALF;
-                trial = iterate::try_step(problem, stages, primal_step);
-            }
+            (used_shift, primal_step, dual_step) = (step.shift, step.primal, step.dual);
             run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
             let floor = max(run.mu, settings.smallest_mu(run.elastic));
             iterate::accept(stages, primal_step, dual_step, run.mu, floor);
@@ -339,61 +336,6 @@ impl<T: Scalar> Solver<T> {
             }
         }
     }
-
-    /// Factorises with the least shift that makes the Hessian positive definite and computes the step.
-    ///
-    /// Returns the shift and the primal and dual step lengths to the boundary.
-    fn newton<P, K, const NX: usize, const NU: usize, const NI: usize>(
-        &self,
-        problem: &P,
-        stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
-        run: &mut Run<T, NX>,
-    ) -> Result<(T, T, T), Status>
-    where
-        P: Problem<T, NX, NU, NI>,
-        K: Keep<T, NX, NU, NI>,
-    {
-        let barrier = RowBarrier {
-            mu: run.mu,
-            rank_tolerance: self.settings.rank_tolerance,
-        };
-        let fraction = max(T::of(0.99), T::ONE - run.mu);
-        let mut shift = T::ZERO;
-        for _ in 0..40 {
-            run.factorisations = run.factorisations.saturating_add(1);
-            if factorise(problem, stages, barrier, shift)
-                && let Some(first) = stages.first_mut()
-            {
-                let riccati = &mut first.node.riccati;
-                let start = solve_start(
-                    &riccati.hessian,
-                    &riccati.gradient,
-                    &mut riccati.carried,
-                    &run.free,
-                    barrier.rank_tolerance,
-                );
-                if let Some(start) = start {
-                    let (primal, dual) =
-                        substitute(problem, stages, start, shift, run.mu, fraction);
-                    if shift > T::ZERO {
-                        run.shift = shift;
-                    }
-                    return Ok((shift, primal, dual));
-                }
-            }
-            shift = if shift > T::ZERO {
-                shift * T::of(if run.shift > T::ZERO { 8.0 } else { 100.0 })
-            } else if run.shift > T::ZERO {
-                max(run.shift / T::of(3.0), T::of(1e-12))
-            } else {
-                T::of(1e-4)
-            };
-            if shift > T::of(1e12) {
-                break;
-            }
-        }
-        Err(Status::Indefinite)
-    }
 }
 
 impl<T: Scalar, const NX: usize> Run<T, NX> {
@@ -420,17 +362,23 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
             elastic: T::ZERO,
             warm: false,
             recent: [T::ZERO; 4],
+            filter: Filter::new(T::ZERO),
+            leaps: 0,
             best: none,
             best_cost: T::INFINITY,
             best_score: T::INFINITY,
         }
     }
 
+    /// Whether steps pass the filter: µ stays for a while, so that there is a function to descend.
+    pub(crate) fn uses_filter(&self) -> bool {
+        !self.adaptive && self.elastic == T::ZERO
+    }
+
     /// Whether a step to this sum of violations should be halved: it is far above all recent ones.
     ///
-    /// Nearly every step to the boundary is a good one, so this is insurance against the rare one
-    /// that is not, and does not ask for descent.
-    fn explodes(&self, sum: T) -> bool {
+    /// This guards steps that pass no filter; nearly every step to the boundary is a good one there.
+    pub(crate) fn explodes(&self, sum: T) -> bool {
         let worst = self
             .recent
             .iter()

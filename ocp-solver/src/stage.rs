@@ -32,6 +32,8 @@ pub struct Stage<
     pub(crate) guess: (X, [T; NU]),
     /// The best iterate so far.
     pub(crate) best: (X, [T; NU]),
+    /// What [`Self::keep`] kept.
+    spare: (X, [T; NU]),
 }
 
 /// A stage that keeps no derivatives: about half the size, see [`Recomputed`].
@@ -53,6 +55,17 @@ pub(crate) struct Node<T, const NX: usize, const NU: usize, const NI: usize> {
     /// Newton step.
     pub(crate) step: Step<T, NX, NU, NI>,
     pub(crate) riccati: Riccati<T, NX, NU>,
+}
+
+/// What derivatives are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pass {
+    /// The iterate is another one than before.
+    New,
+    /// It is the same.
+    Same,
+    /// It is the same, but the values of the nodes are those that a second-order correction aims at.
+    Corrected,
 }
 
 /// Slacks, bounds and bound multipliers of the rows of a node.
@@ -164,12 +177,12 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
             trial: point,
             guess: point,
             best: point,
+            spare: point,
         }
     }
 
     /// Derivatives at the iterate of node `k`, beside what the solver knows of it.
     ///
-    /// `is_new` tells that the iterate is another one than in the call before.
     #[inline(always)]
     pub(crate) fn linearise<'a, P: Problem<T, NX, NU, NI, State = X>>(
         &'a mut self,
@@ -177,20 +190,27 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         k: usize,
         next: Option<&Self>,
         scratch: &'a mut K::Scratch,
-        is_new: bool,
+        pass: Pass,
     ) -> (&'a mut Node<T, NX, NU, NI>, &'a Derivatives<T, NX, NU, NI>)
     where
         K: Keep<T, NX, NU, NI>,
     {
         let node = &mut self.node;
-        let derivatives = self.kept.at(scratch, is_new, |derivatives| {
+        let derivatives = self.kept.at(scratch, pass == Pass::New, |derivatives| {
             let costate = next.map_or([T::ZERO; NX], |next| next.node.costate);
+            let next = next.map(|next| &next.state);
+            let mut values = Values::new();
+            let values = if pass == Pass::Corrected {
+                problem.evaluate(k, &self.state, &self.control, next, &mut values);
+                &values
+            } else {
+                &node.values
+            };
             let at = Evaluated {
-                values: &node.values,
+                values,
                 dynamics_multiplier: &costate,
                 row_multipliers: &node.rows.multipliers(),
             };
-            let next = next.map(|next| &next.state);
             problem.differentiate(k, &self.state, &self.control, next, at, derivatives);
         });
         (node, derivatives)
@@ -199,6 +219,16 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
     /// Puts the guess of the last solve back, for another solve from the same start.
     pub fn restore_guess(&mut self) {
         (self.state, self.control) = self.guess;
+    }
+
+    /// Keeps state and control beside, for a caller that tries another guess; solves leave them alone.
+    pub const fn keep(&mut self) {
+        self.spare = (self.state, self.control);
+    }
+
+    /// Puts back what [`Self::keep`] kept. Multipliers, gains and rows stay those of the last solve.
+    pub const fn recall(&mut self) {
+        (self.state, self.control) = self.spare;
     }
 
     /// Feedback gain of the last recursion: entry `[i][j]` is the change of control `i` that the optimum

@@ -12,8 +12,8 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     /// Plans from the guess in the stages ([`Problem::write_guess`]) and leaves the plan there.
     ///
     /// Problem (2) has poor local optima in which a contact phase shrinks to its shortest duration.
-    /// Where a solve ends in one, the guess is solved again from a four times smaller barrier
-    /// parameter, and the better plan is kept; `iterations` and `factorisations` count everything.
+    /// Where a solve ends in one, the plain guess is solved from a four times smaller barrier parameter, and
+    /// the better plan is kept; `iterations` and `factorisations` count everything.
     ///
     /// # Errors
     /// [`Error::Parameter`] for unusable data, [`Error::Capacity`] for const sizes that are too small,
@@ -38,16 +38,14 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         let mut smaller = *settings;
         smaller.barrier = Barrier::Monotone;
         smaller.initial_mu = settings.initial_mu * T::of(0.25);
-        stages.iter_mut().for_each(Stage::restore_guess);
+        stages.iter_mut().for_each(Stage::keep);
+        self.write_guess(stages, || T::ZERO);
         let mut last = Solver::new(smaller).solve(self, stages, &mut observer)?;
-        let mut iterations = first.iterations.saturating_add(last.iterations);
-        let mut factorisations = first.factorisations.saturating_add(last.factorisations);
+        let iterations = first.iterations.saturating_add(last.iterations);
+        let factorisations = first.factorisations.saturating_add(last.factorisations);
         if last.status != Status::Solved || last.cost >= first.cost {
-            // Solving is deterministic: finding the first plan again costs less than memory to keep it.
-            stages.iter_mut().for_each(Stage::restore_guess);
-            last = Solver::new(*settings).solve(self, stages, &mut observer)?;
-            iterations = iterations.saturating_add(last.iterations);
-            factorisations = factorisations.saturating_add(last.factorisations);
+            stages.iter_mut().for_each(Stage::recall);
+            last = first;
         }
         (last.iterations, last.factorisations) = (iterations, factorisations);
         last.restarts = last.restarts.saturating_add(1);
