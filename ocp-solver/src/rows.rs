@@ -353,14 +353,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
     /// See [`crate::iterate::correct`]; `before` are the rows at the iterate.
     pub(crate) fn correct_rows(&mut self, before: &[T; NI], alpha: T) {
-        for i in 0..self.row_count() {
+        for (i, before) in before.iter().enumerate().take(self.row_count()) {
             let s = self.rows.slack[i];
             let moved = if self.rows.is_equality(i) {
                 s
             } else {
                 self.moved_slack(i, alpha)
             };
-            self.values.rows[i] += s - moved + alpha * (before[i] - s);
+            self.values.rows[i] += s - moved + alpha * (*before - s);
         }
     }
 

@@ -113,7 +113,7 @@ pub(crate) fn variant(seed: u64) -> (Jump<f64>, String) {
     // Legs of the push-off's second half: those the body leaves over.
     let two_legs = acrobatic || draw.below(2) == 0;
     let stays = |i: usize| {
-        let (front, left) = (i < 2, i % 2 == 0);
+        let (front, left) = (i < 2, i.is_multiple_of(2));
         if along_y {
             left == (way > 0.0)
         } else {
