@@ -1,0 +1,154 @@
+//! Time per iteration against the number of nodes, and its parts, on the reference problems.
+//!
+//! `cargo run --release -p srb-opt --example nodes -- [task, default lateral]`
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a program for the host")]
+
+#[path = "../tests/reference/mod.rs"]
+mod reference;
+
+use core::cell::Cell;
+use core::ops::ControlFlow;
+use ocp_solver::{
+    Derivatives, Dims, Evaluated, Problem as Ocp, Settings, Solver, Stage, Status, Values,
+};
+use reference::TASKS;
+use srb_opt::State;
+use srb_opt::onboard::{Jump, PHASES};
+use std::time::Instant;
+
+type Stages = Vec<Stage<f64, State<f64, PHASES>, 16, 12, 40>>;
+
+/// The problem, with a clock around what the solver asks of it.
+struct Timed<'a> {
+    jump: &'a Jump<f64>,
+    evaluate: Cell<f64>,
+    differentiate: Cell<f64>,
+}
+
+impl Ocp<f64, 16, 12, 40> for Timed<'_> {
+    type State = State<f64, PHASES>;
+
+    fn intervals(&self) -> usize {
+        self.jump.intervals()
+    }
+
+    fn dims(&self, k: usize) -> Dims {
+        Ocp::<f64, 16, 12, 40>::dims(self.jump, k)
+    }
+
+    fn bounds(&self, k: usize, lower: &mut [f64; 40], upper: &mut [f64; 40]) {
+        Ocp::<f64, 16, 12, 40>::bounds(self.jump, k, lower, upper);
+    }
+
+    fn is_free_at_start(&self, i: usize) -> bool {
+        Ocp::<f64, 16, 12, 40>::is_free_at_start(self.jump, i)
+    }
+
+    fn retract(
+        &self,
+        k: usize,
+        state: &Self::State,
+        step: &[f64; 16],
+        before: Option<(&Self::State, &[f64; 12])>,
+    ) -> Self::State {
+        let start = Instant::now();
+        let out = Ocp::<f64, 16, 12, 40>::retract(self.jump, k, state, step, before);
+        self.evaluate
+            .set(self.evaluate.get() + start.elapsed().as_secs_f64());
+        out
+    }
+
+    fn evaluate(
+        &self,
+        k: usize,
+        state: &Self::State,
+        control: &[f64; 12],
+        next: Option<&Self::State>,
+        values: &mut Values<f64, 16, 40>,
+    ) {
+        let start = Instant::now();
+        self.jump.evaluate(k, state, control, next, values);
+        self.evaluate
+            .set(self.evaluate.get() + start.elapsed().as_secs_f64());
+    }
+
+    fn differentiate(
+        &self,
+        k: usize,
+        state: &Self::State,
+        control: &[f64; 12],
+        next: Option<&Self::State>,
+        at: Evaluated<'_, f64, 16, 40>,
+        derivatives: &mut Derivatives<f64, 16, 12, 40>,
+    ) {
+        let start = Instant::now();
+        self.jump
+            .differentiate(k, state, control, next, at, derivatives);
+        self.differentiate
+            .set(self.differentiate.get() + start.elapsed().as_secs_f64());
+    }
+}
+
+fn main() {
+    let wanted = std::env::args().nth(1).unwrap_or_else(|| "lateral".into());
+    let Some(task) = TASKS.iter().find(|task| task.name == wanted) else {
+        panic!("no task `{wanted}`");
+    };
+    println!("{wanted}: least of 15 runs, microseconds per iteration and node");
+    println!(
+        "intervals | iterations | total | derivatives | line search | factorisation and the rest"
+    );
+    for intervals in [25.0, 50.0, 100.0, 200.0, 400.0] {
+        let whole = task.problem(1.0).intervals() as f64;
+        let jump = task.problem(intervals / whole);
+        let mut stages: Stages = vec![Stage::new(State::new()); jump.intervals() + 1];
+        let (mut best, mut parts) = (f64::INFINITY, (0.0, 0.0));
+        let mut iterations = 0;
+        for _ in 0..15 {
+            let (evaluate, differentiate) = (Cell::new(0.0), Cell::new(0.0));
+            let timed = Timed {
+                jump: &jump,
+                evaluate,
+                differentiate,
+            };
+            jump.write_guess(&mut stages, || 0.0);
+            let start = Instant::now();
+            let found = Solver::new(Settings::new())
+                .solve(&timed, &mut stages, |_| ControlFlow::Continue(()))
+                .unwrap();
+            let seconds = start.elapsed().as_secs_f64();
+            assert_eq!(found.status, Status::Solved);
+            iterations = found.iterations;
+            let per = 1e6 / (iterations * stages.len()) as f64;
+            if seconds * per < best {
+                best = seconds * per;
+                parts = (timed.differentiate.get() * per, timed.evaluate.get() * per);
+            }
+        }
+        let rest = best - parts.0 - parts.1;
+        println!(
+            "{} | {iterations} | {best:.2} | {:.2} | {:.2} | {rest:.2}",
+            jump.intervals(),
+            parts.0,
+            parts.1
+        );
+    }
+    println!("All nine, as stated: iterations, cost, share of IPOPT's");
+    for task in &TASKS {
+        let jump = task.problem(1.0);
+        let mut stages: Stages = vec![Stage::new(State::new()); jump.intervals() + 1];
+        jump.write_guess(&mut stages, || 0.0);
+        let go = |_: &_| ControlFlow::Continue(());
+        let found = jump.plan(&Settings::new(), &mut stages, go).unwrap();
+        let judged = jump.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
+        println!(
+            "{} | {:?} | {} | {:.4} | {:.6} | violation {:.0e}",
+            task.name,
+            found.status,
+            found.iterations,
+            judged.cost,
+            judged.cost / task.cost,
+            judged.max_violation
+        );
+    }
+}
