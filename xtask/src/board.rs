@@ -28,6 +28,10 @@ pub(crate) const BOARDS: [Board; 3] = [
             "a1-f32",
             "icub-f64",
             "icub-f32",
+            "control-a1-f64",
+            "control-a1-f32",
+            "control-icub-f64",
+            "control-icub-f32",
         ],
     },
     Board {
@@ -35,7 +39,13 @@ pub(crate) const BOARDS: [Board; 3] = [
         processor: "Cortex-M4F, f64 in software",
         target: "thumbv7em-none-eabihf",
         rustflags: &["-Ctarget-cpu=cortex-m4"],
-        images: &["basics-f64", SMALLEST, "a1-f32"],
+        images: &[
+            "basics-f64",
+            SMALLEST,
+            "a1-f32",
+            "control-a1-f32",
+            "control-icub-f32",
+        ],
     },
     Board {
         // `-Ctarget-cpu=cortex-m55` crashes LLVM (2026-11) while it builds `core`: the plain target, without Helium.
@@ -44,7 +54,7 @@ pub(crate) const BOARDS: [Board; 3] = [
         target: "thumbv8m.main-none-eabihf",
         rustflags: &[],
         // The instruction memory holds 512 KiB: the basics are larger, and run on the other two.
-        images: &["a1-f32"],
+        images: &["a1-f32", "control-a1-f32"],
     },
 ];
 

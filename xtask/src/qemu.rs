@@ -28,12 +28,12 @@ pub(crate) struct Args {
 }
 
 /// The most that calls of one algorithm cost.
-struct Worst {
+pub(crate) struct Worst {
     /// `subject/scalar/algorithm`.
-    label: String,
-    calls: usize,
-    instructions: f64,
-    stack: u32,
+    pub(crate) label: String,
+    pub(crate) calls: usize,
+    pub(crate) instructions: f64,
+    pub(crate) stack: u32,
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
@@ -63,13 +63,14 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn on_host(part: &str) -> Result<Vec<Call>> {
+/// What the probe computes on the host.
+pub(crate) fn on_host(part: &str) -> Result<Vec<Call>> {
     let mut cargo = run::cargo();
     cargo.current_dir(run::root().join("firmware"));
     cargo.args([
         "run",
         "--quiet",
-        "--release",
+        "--profile=host",
         "--locked",
         "--package",
         "saltus-probe",
@@ -79,7 +80,7 @@ fn on_host(part: &str) -> Result<Vec<Call>> {
 }
 
 /// Runs the image; returns its calls and what they cost at worst.
-fn on_board(image: &Image<'_>) -> Result<(Vec<Call>, Vec<Worst>)> {
+pub(crate) fn on_board(image: &Image<'_>) -> Result<(Vec<Call>, Vec<Worst>)> {
     if !run::exists("qemu-system-arm") {
         run::install_debian(&["qemu-system-arm"])?;
     }

@@ -5,6 +5,7 @@
 //! A [`Recorder`] decides what is done around a call and with its results.
 #![no_std]
 
+pub mod control;
 mod conversions;
 mod elementary;
 mod inputs;
@@ -47,9 +48,19 @@ impl fmt::Display for Label {
 
 /// Makes the calls, and takes what they return.
 pub trait Recorder {
-    /// Calls `work(input)` once. An implementation measures it if it can, and must hide `input` and the result from
-    /// the optimiser, or the call is computed at compile time and proves nothing.
-    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R;
+    /// Calls `work(input)` once, and names the call after its result. An implementation measures it if it can, and must
+    /// hide `input` and the result from the optimiser, or the call is computed at compile time and proves nothing.
+    fn call_named<I, R>(
+        &mut self,
+        input: I,
+        work: impl FnOnce(I) -> R,
+        name: impl FnOnce(&R) -> Label,
+    ) -> R;
+
+    /// As [`Recorder::call_named`], with a name known before.
+    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
+        self.call_named(input, work, |_| label)
+    }
 
     /// Takes one number of the result of the last call.
     fn value(&mut self, bits: u64);
@@ -109,7 +120,7 @@ pub type Part<R> = (&'static str, fn(&mut R));
 
 /// All parts.
 #[must_use]
-pub fn parts<R: Recorder>() -> [Part<R>; 6] {
+pub fn parts<R: Recorder>() -> [Part<R>; 10] {
     [
         ("basics-f64", basics::<f64, R>),
         ("basics-f32", basics::<f32, R>),
@@ -117,6 +128,10 @@ pub fn parts<R: Recorder>() -> [Part<R>; 6] {
         ("a1-f32", a1::<f32, R>),
         ("icub-f64", icub::<f64, R>),
         ("icub-f32", icub::<f32, R>),
+        ("control-a1-f64", control::a1::<f64, R>),
+        ("control-a1-f32", control::a1::<f32, R>),
+        ("control-icub-f64", control::icub::<f64, R>),
+        ("control-icub-f32", control::icub::<f32, R>),
     ]
 }
 

@@ -19,10 +19,16 @@ impl Host {
 }
 
 impl Recorder for Host {
-    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
-        let result = writeln!(self.out, "call {label}");
-        self.keep_error(result);
-        black_box(work(black_box(input)))
+    fn call_named<I, R>(
+        &mut self,
+        input: I,
+        work: impl FnOnce(I) -> R,
+        name: impl FnOnce(&R) -> Label,
+    ) -> R {
+        let result = black_box(work(black_box(input)));
+        let written = writeln!(self.out, "call {}", name(&result));
+        self.keep_error(written);
+        result
     }
 
     fn value(&mut self, bits: u64) {

@@ -44,9 +44,14 @@ impl Target {
 }
 
 impl Recorder for Target {
-    fn call<I, R>(&mut self, label: Label, input: I, work: impl FnOnce(I) -> R) -> R {
+    fn call_named<I, R>(
+        &mut self,
+        input: I,
+        work: impl FnOnce(I) -> R,
+        name: impl FnOnce(&R) -> Label,
+    ) -> R {
         let (result, cost) = self.meter.measure(input, work);
-        self.report(label, cost);
+        self.report(name(&result), cost);
         result
     }
 

@@ -1,0 +1,104 @@
+//! Touchdown detection, posture before landing, the landing program, and the estimator of the base.
+
+use landing::{
+    Command, Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace,
+};
+use nalgebra::Vector3;
+use rbd_core::{Transform, Tree};
+use state_est::{Estimate, Estimator, Foot, Sample, State, Status};
+
+use super::Robot;
+use crate::inputs::Stream;
+use crate::{Numbers, Real, Recorder, Subject};
+
+fn vector<T: Real>(stream: &mut Stream, half_width: f64) -> Vector3<T> {
+    stream.array::<T, 3>(half_width).into()
+}
+
+impl<T: Real> Numbers for Command<T, 12, 4> {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        (self.feed_forward, self.position).visit(take);
+        (self.stiffness, self.damping, self.forces_w).visit(take);
+        take(match self.outcome {
+            Outcome::Airborne => -1.0,
+            Outcome::Solved(iterations) => f64::from(iterations),
+            Outcome::Failed(_) => -2.0,
+            Outcome::BadData => -3.0,
+        });
+    }
+}
+
+impl<T: Real> Numbers for Estimate<T, 4> {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        (self.base, self.velocity, self.confidence).visit(take);
+        (self.status == Status::Good).visit(take);
+    }
+}
+
+pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
+    on: &mut Subject<'_, T, R>,
+    robot: &Robot<T, M, 12, 4>,
+) {
+    let stream = &mut Stream::new(5);
+    let Robot { model, q, v, .. } = robot;
+    let detector = Detector::new(robot.feet);
+    let mut contact = DetectorState::new();
+    for force in [0.0, 40.0, 40.0, 3.0] {
+        let torques: [T; 12] = stream.array(10.0);
+        let input = (&mut contact, &torques, [T::of(force); 4]);
+        on.call("Detector::update", input, |(state, torques, forces)| {
+            detector.update(model, state, q, v, torques, &forces, T::of(1e-3));
+            (state.contacts, state.faulty)
+        });
+    }
+    let posture = PreLanding::new(robot.feet, q.joints);
+    let up: Vector3<T> = vector(stream, 1.0);
+    on.call("PreLanding::joints", (&posture, up), |(p, up)| {
+        p.joints(model, &up, &v.base.linear)
+    });
+
+    let limits = robot.motors.map(|motor| motor.torque);
+    let landing = Landing::<T, 12, 4, 12, 28>::new(robot.feet, Settings::a1(), limits);
+    let target = Target {
+        height: T::of(0.25),
+        ..Target::LEVEL
+    };
+    let mut ws = Workspace::new();
+    for contacts in [[true; 4], [true, false, false, true], [false; 4]] {
+        let input = (&landing, contacts, &target, &mut ws);
+        on.call("Landing::step", input, |(landing, on, target, ws)| {
+            landing.step(model, q, v, &on, target, &q.joints, ws)
+        });
+    }
+    let forces: [Vector3<T>; 4] = core::array::from_fn(|_| vector(stream, 30.0));
+    on.call("reaction_torques", (&landing, &forces), |(landing, f)| {
+        landing.reaction_torques(model, q, f)
+    });
+
+    let estimator = Estimator::<T, 12, 4, 6> {
+        feet: robot.feet.map(|frame| Foot {
+            frame,
+            radius: T::of(0.02),
+        }),
+        imu: Transform::IDENTITY,
+        settings: state_est::Settings::new(),
+    };
+    let mut state = State::new(&estimator, model, q);
+    for evidence in [T::ONE, T::HALF, T::NAN] {
+        let sample = Sample {
+            specific_force_i: vector(stream, 10.0),
+            angular_velocity_i: vector(stream, 2.0),
+            joints: q.joints,
+            joint_velocities: v.joints,
+            evidence: [evidence; 4],
+        };
+        let input = (&estimator, &mut state, Some(&sample));
+        on.call("Estimator::step", input, |(estimator, state, sample)| {
+            estimator.step(model, state, sample, T::of(1e-3))
+        });
+    }
+    let input = (&estimator, &mut state);
+    on.call("Estimator::step missing", input, |(estimator, state)| {
+        estimator.step(model, state, None, T::of(1e-3))
+    });
+}

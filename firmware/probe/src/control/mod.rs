@@ -1,0 +1,101 @@
+//! The control crates: programs, the loops of a jump, the estimator and the simulator.
+
+mod jumping;
+mod landing;
+mod plant;
+mod programs;
+mod wholebody;
+
+use a1_model::A1Geared;
+use icub_model::Icub23Geared;
+use rbd_core::{Configuration, Frame, JointLimits, Model, Motion, Motor, Tangent, Transform};
+
+use crate::inputs::Stream;
+use crate::{Real, Recorder, Subject};
+
+/// A1 crouching: hip, thigh and calf of each leg, rad.
+const CROUCH: [f64; 12] = [
+    0.0, 0.9, -1.8, 0.0, 0.9, -1.8, 0.0, 0.9, -1.8, 0.0, 0.9, -1.8,
+];
+
+/// Dense programs, and everything between A1's plan and its torques, with a simulator for the robot.
+pub fn a1<T: Real, R: Recorder>(recorder: &mut R)
+where
+    A1Geared: Model<T, 12>,
+{
+    let on = &mut Subject::<T, R>::new(recorder);
+    on.name = "dense-qp";
+    programs::run(on);
+    let robot = Robot::a1();
+    on.name = "jump-control";
+    jumping::run(on, &robot);
+    on.name = "landing";
+    landing::run(on, &robot);
+    on.name = "contact-sim";
+    plant::run(on, &robot);
+}
+
+/// The whole-body programs on iCub.
+pub fn icub<T: Real, R: Recorder>(recorder: &mut R)
+where
+    Icub23Geared: Model<T, 23>,
+{
+    let on = &mut Subject::<T, R>::new(recorder);
+    on.name = "wbc-qp";
+    wholebody::run(on);
+}
+
+/// A robot with its tables and a state near standing.
+struct Robot<T: Real, M, const N: usize, const F: usize> {
+    model: M,
+    feet: [Frame<T>; F],
+    limits: [JointLimits<T>; N],
+    motors: [Motor<T>; N],
+    q: Configuration<T, N>,
+    v: Tangent<T, N>,
+}
+
+impl<T: Real> Robot<T, A1Geared, 12, 4>
+where
+    A1Geared: Model<T, 12>,
+{
+    fn a1() -> Self {
+        let contacts = A1Geared.contacts();
+        let foot = |i: usize| contacts.get(i).map_or(Frame::IDENTITY, |c| c.frame);
+        let mut stream = Stream::new(12);
+        Self {
+            model: A1Geared,
+            feet: core::array::from_fn(foot),
+            limits: *A1Geared.limits(),
+            motors: motors(&A1Geared),
+            q: Configuration {
+                base: Transform::new(
+                    nalgebra::Rotation3::identity(),
+                    nalgebra::Vector3::new(T::ZERO, T::ZERO, T::of(0.25)),
+                ),
+                joints: CROUCH.map(|x| T::of(x) + stream.next(0.1)),
+            },
+            v: moving(&mut stream),
+        }
+    }
+}
+
+/// The motors of a robot that has them.
+fn motors<T: Real, M: Model<T, N>, const N: usize>(model: &M) -> [Motor<T>; N] {
+    let unknown = Motor {
+        gear: T::ONE,
+        torque: T::ONE,
+        corner_speed: T::ONE,
+        no_load_speed: T::TWO,
+        rotor_inertia: T::ZERO,
+    };
+    model.motors().copied().unwrap_or([unknown; N])
+}
+
+/// A velocity of a few tenths.
+fn moving<T: Real, const N: usize>(stream: &mut Stream) -> Tangent<T, N> {
+    Tangent {
+        base: Motion::from_array(stream.array(0.3)),
+        joints: stream.array(0.5),
+    }
+}

@@ -1,0 +1,5 @@
+//! The whole-body programs on iCub, in f64.
+#![no_std]
+#![no_main]
+
+saltus_smoke::image!(saltus_probe::control::icub::<f64, _>);
