@@ -171,6 +171,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
         self.slew.limit(&wanted, dt)
     }
 
+    /// What [`Machine::joint_tick`] does, for a joint loop of the caller's own, such as an interrupt that must not wait for
+    /// [`Machine::tick`].
+    #[must_use]
+    pub const fn command(&self) -> &JointCommand<T, N> {
+        &self.command
+    }
+
     /// Where the jump is.
     #[must_use]
     pub const fn phase(&self) -> Phase {

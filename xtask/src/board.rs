@@ -10,6 +10,8 @@ pub(crate) struct Board {
     pub(crate) rustflags: &'static [&'static str],
     /// The images of `firmware/smoke/src/bin` that run on it.
     pub(crate) images: &'static [&'static str],
+    /// The images that fly whole jumps.
+    pub(crate) jumps: &'static [&'static str],
 }
 
 /// The quickest image to build: the proof that the proof can fail needs only one.
@@ -32,7 +34,10 @@ pub(crate) const BOARDS: [Board; 3] = [
             "control-a1-f32",
             "control-icub-f64",
             "control-icub-f32",
+            "planner-f64",
+            "planner-f32",
         ],
+        jumps: &["jump-a1-f64", "jump-icub-f64"],
     },
     Board {
         name: "mps2-an386",
@@ -46,6 +51,7 @@ pub(crate) const BOARDS: [Board; 3] = [
             "control-a1-f32",
             "control-icub-f32",
         ],
+        jumps: &["jump-a1-f32"],
     },
     Board {
         // `-Ctarget-cpu=cortex-m55` crashes LLVM (2026-11) while it builds `core`: the plain target, without Helium.
@@ -55,6 +61,7 @@ pub(crate) const BOARDS: [Board; 3] = [
         rustflags: &[],
         // The instruction memory holds 512 KiB: the basics are larger, and run on the other two.
         images: &["a1-f32", "control-a1-f32"],
+        jumps: &["jump-a1-f32"],
     },
 ];
 
@@ -68,8 +75,20 @@ pub(crate) struct Selection {
     #[arg(long, value_parser = BOARDS.map(|board| board.name))]
     board: Option<String>,
     /// Only this image.
-    #[arg(long, value_parser = BOARDS[0].images.to_vec())]
+    #[arg(long, value_parser = names())]
     image: Option<String>,
+}
+
+/// The names of all images.
+fn names() -> Vec<&'static str> {
+    let boards = BOARDS.iter();
+    let mut names: Vec<_> = boards
+        .flat_map(|board| board.images.iter().chain(board.jumps))
+        .copied()
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
 }
 
 impl Selection {
@@ -78,6 +97,12 @@ impl Selection {
         BOARDS
             .iter()
             .filter(|board| self.board.as_deref().is_none_or(|only| only == board.name))
+    }
+
+    /// A board's jumps called for: the one named, or all.
+    pub(crate) fn jumps(&self, board: &Board) -> impl Iterator<Item = &'static str> {
+        let jumps = board.jumps.iter().copied();
+        jumps.filter(|jump| self.image.as_deref().is_none_or(|only| only == *jump))
     }
 
     /// A board's images called for: the one named, or all.

@@ -36,6 +36,8 @@ const STEPS: &[Step] = &[
     ("bare-metal builds", &["xtask", "cross"]),
     ("no reachable panic", &["xtask", "smoke"]),
     ("host equals target", &["xtask", "qemu"]),
+    ("control ticks within budgets", &["xtask", "firmware"]),
+    ("C interface", &["xtask", "c-abi"]),
     ("instruction counts", &["xtask", "icount"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
     (

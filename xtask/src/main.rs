@@ -3,8 +3,10 @@
 mod bare;
 mod bench;
 mod board;
+mod c_abi;
 mod ci;
 mod cross;
+mod firmware;
 mod gen_model;
 mod icount;
 mod image;
@@ -41,6 +43,10 @@ enum Command {
     Smoke(smoke::Args),
     /// Run the image under QEMU and compare its numbers with the host's bit for bit.
     Qemu(qemu::Args),
+    /// Check the C header, and run the C example here and on a board.
+    CAbi(c_abi::Args),
+    /// Fly whole jumps on the boards and hold the costs of their control ticks against budgets.
+    Firmware(firmware::Args),
     /// Time our code beside its peers and print the table of ratios.
     Bench(bench::Args),
     /// Count the instructions of every algorithm and compare with the golden file.
@@ -59,6 +65,8 @@ fn main() -> ExitCode {
         Command::Cross(args) => cross::run(&args),
         Command::Smoke(args) => smoke::run(&args),
         Command::Qemu(args) => qemu::run(&args),
+        Command::CAbi(args) => c_abi::run(&args),
+        Command::Firmware(args) => firmware::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
         Command::ImportCheck(args) => import_check::run(&args),

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             };
             let (calls, worst) = on_board(&image).context(name)?;
             print(&worst);
-            let equal = probe::compare(&on_host(name)?, &calls)
+            let equal = probe::compare(&on_host("saltus-probe", name)?, &calls)
                 .with_context(|| format!("{name} on {} differs from the host", board.name))?;
             println!(
                 "  {name}: {equal} numbers of {} calls equal the host's",
@@ -63,8 +63,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// What the probe computes on the host.
-pub(crate) fn on_host(part: &str) -> Result<Vec<Call>> {
+/// What a program of the probe computes on the host.
+pub(crate) fn on_host(program: &str, part: &str) -> Result<Vec<Call>> {
     let mut cargo = run::cargo();
     cargo.current_dir(run::root().join("firmware"));
     cargo.args([
@@ -74,6 +74,8 @@ pub(crate) fn on_host(part: &str) -> Result<Vec<Call>> {
         "--locked",
         "--package",
         "saltus-probe",
+        "--bin",
+        program,
         part,
     ]);
     probe::parse(&run::stdout(&mut cargo)?).context("the host's probe")

@@ -8,6 +8,7 @@
 pub mod control;
 mod conversions;
 mod elementary;
+pub mod flight;
 mod inputs;
 mod kinds;
 mod numbers;
@@ -118,9 +119,9 @@ where
 /// A part of the probe, with the name of the image that runs it.
 pub type Part<R> = (&'static str, fn(&mut R));
 
-/// All parts.
+/// All parts but the jumps.
 #[must_use]
-pub fn parts<R: Recorder>() -> [Part<R>; 10] {
+pub fn parts<R: Recorder>() -> [Part<R>; 12] {
     [
         ("basics-f64", basics::<f64, R>),
         ("basics-f32", basics::<f32, R>),
@@ -132,6 +133,8 @@ pub fn parts<R: Recorder>() -> [Part<R>; 10] {
         ("control-a1-f32", control::a1::<f32, R>),
         ("control-icub-f64", control::icub::<f64, R>),
         ("control-icub-f32", control::icub::<f32, R>),
+        ("planner-f64", control::planner::<f64, R>),
+        ("planner-f32", control::planner::<f32, R>),
     ]
 }
 

@@ -5,12 +5,21 @@
 //! the call is the high-water mark.
 
 use core::hint::black_box;
+use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
 
-/// SysTick counts 24 bits.
+/// SysTick counts 24 bits, and its interrupt the turns.
 const RELOAD: u32 = 0x00ff_ffff;
+
+static TURNS: AtomicU32 = AtomicU32::new(0);
+
+#[exception]
+fn SysTick() {
+    TURNS.fetch_add(1, Ordering::Relaxed);
+}
 
 /// Bytes below the stack pointer that are watched.
 const WINDOW: u32 = 128 * 1024;
@@ -40,6 +49,7 @@ impl Meter {
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(RELOAD);
         timer.clear_current();
+        timer.enable_interrupt();
         timer.enable_counter();
         Self { timer }
     }
@@ -49,15 +59,9 @@ impl Meter {
     pub(crate) fn measure<I, R>(&mut self, input: I, work: impl FnOnce(I) -> R) -> (R, Cost) {
         let top = paint();
         self.timer.clear_current();
-        let _ = self.timer.has_wrapped();
-        let start = SYST::get_current();
+        let start = now();
         let result = frame(input, work);
-        let ticks = start.wrapping_sub(SYST::get_current()) & RELOAD;
-        let ticks = if self.timer.has_wrapped() {
-            SATURATED
-        } else {
-            ticks
-        };
+        let ticks = u32::try_from(now().wrapping_sub(start)).unwrap_or(SATURATED);
         (
             result,
             Cost {
@@ -65,6 +69,20 @@ impl Meter {
                 stack: depth_below(top),
             },
         )
+    }
+}
+
+/// SysTick periods since some time in the past.
+#[inline(never)]
+fn now() -> u64 {
+    loop {
+        let turns = TURNS.load(Ordering::Relaxed);
+        let left = SYST::get_current();
+        // A turn between the two reads: again.
+        if turns == TURNS.load(Ordering::Relaxed) {
+            return u64::from(turns) * (u64::from(RELOAD) + 1)
+                + u64::from(RELOAD - left.min(RELOAD));
+        }
     }
 }
 
@@ -80,7 +98,8 @@ fn frame<I, R>(input: I, work: impl FnOnce(I) -> R) -> R {
 #[inline(always)]
 fn paint() -> u32 {
     let top: u32;
-    // SAFETY: nothing below the stack pointer is live, no interrupt is enabled, and every board's memory map leaves
+    // SAFETY: nothing below the stack pointer is live: an interrupt takes its frame away again before the next
+    // instruction here. And every board's memory map leaves
     // far more than the window between the stack and static data. The code pushes nothing.
     unsafe {
         core::arch::asm!(

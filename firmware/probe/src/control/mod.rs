@@ -1,7 +1,8 @@
-//! The control crates: programs, the loops of a jump, the estimator and the simulator.
+//! The control crates: programs, the loops of a jump, the estimator, the simulator and the planner of a rigid body.
 
 mod jumping;
 mod landing;
+mod planner;
 mod plant;
 mod programs;
 mod wholebody;
@@ -45,6 +46,13 @@ where
     wholebody::run(on);
 }
 
+/// Contact timings and trajectories of a rigid body.
+pub fn planner<T: Real, R: Recorder>(recorder: &mut R) {
+    let on = &mut Subject::<T, R>::new(recorder);
+    on.name = "srb-opt";
+    planner::run(on);
+}
+
 /// A robot with its tables and a state near standing.
 struct Robot<T: Real, M, const N: usize, const F: usize> {
     model: M,
@@ -81,7 +89,8 @@ where
 }
 
 /// The motors of a robot that has them.
-fn motors<T: Real, M: Model<T, N>, const N: usize>(model: &M) -> [Motor<T>; N] {
+#[must_use]
+pub fn motors<T: Real, M: Model<T, N>, const N: usize>(model: &M) -> [Motor<T>; N] {
     let unknown = Motor {
         gear: T::ONE,
         torque: T::ONE,

@@ -1,0 +1,292 @@
+//! A1: dynamics, joint PD, Cartesian PD, landing.
+
+use core::ffi::c_void;
+
+use a1_model::{A1Geared, FEET, MOTORS};
+use jump_control::{CartesianGains, CartesianPd, JointCommand, JointGains, Measurement, Reference};
+use landing::{Landing, Outcome, Settings, Target, Workspace};
+
+use crate::memory::{Resident, align, input, output, place, resident, size, status};
+use crate::state::{A1State, effort, tangent};
+use crate::{Status, dynamics};
+
+const N: usize = 12;
+
+/// What the joints are to do until the next command: τ = `feed_forward` + `stiffness` (`position` − q) + `damping`
+/// (`velocity` − q̇), inside what the motors can do.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct A1Command {
+    /// Joint positions, rad.
+    pub position: [f64; 12],
+    /// Joint velocities, rad/s.
+    pub velocity: [f64; 12],
+    /// Torques, N m.
+    pub feed_forward: [f64; 12],
+    /// Stiffnesses, N m/rad.
+    pub stiffness: [f64; 12],
+    /// Dampings, N m s/rad.
+    pub damping: [f64; 12],
+}
+
+/// What a plan says about one instant.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct A1Reference {
+    /// Joint positions, rad.
+    pub joints: [f64; 12],
+    /// Joint velocities, rad/s.
+    pub joint_velocities: [f64; 12],
+    /// Torques, N m.
+    pub torques: [f64; 12],
+}
+
+/// Where the landing is to bring the body.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct A1Target {
+    /// Height of the centre of mass over the feet in contact, m.
+    pub height: f64,
+    /// Rotation of the base at rest, base to world, by rows.
+    pub rotation_wb: [f64; 9],
+    /// Offset of the centre of mass from the middle of the feet, world axes, m.
+    pub offset_w: [f64; 2],
+    /// Posture of legs that are in the air, rad.
+    pub waiting: [f64; 12],
+}
+
+struct A1Landing {
+    landing: Landing<f64, N, 4, 12, 28>,
+    workspace: Workspace<f64, 12, 28>,
+}
+
+impl Resident for A1Landing {
+    const KIND: u64 = 0x6131_6c61_6e64;
+}
+
+/// Damping alone: what a caller gets that must not trust anything else.
+const SAFE: A1Command = A1Command {
+    position: [0.0; N],
+    velocity: [0.0; N],
+    feed_forward: [0.0; N],
+    stiffness: [0.0; N],
+    damping: [2.0; N],
+};
+
+impl A1Command {
+    fn read(&self) -> JointCommand<f64, N> {
+        let mut gains = [JointGains {
+            stiffness: 0.0,
+            damping: 0.0,
+        }; N];
+        let given = self.stiffness.iter().zip(&self.damping);
+        for (gains, (stiffness, damping)) in gains.iter_mut().zip(given) {
+            (gains.stiffness, gains.damping) = (*stiffness, *damping);
+        }
+        JointCommand {
+            position: self.position,
+            velocity: self.velocity,
+            feed_forward: self.feed_forward,
+            gains,
+        }
+    }
+}
+
+/// Inverse dynamics of A1 with rotors: effort = M a + h. `acceleration` and `effort` have 6 numbers of the base, then joints.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_inverse_dynamics(
+    state: *const A1State,
+    acceleration: *const [f64; 18],
+    effort: *mut [f64; 18],
+) -> Status {
+    status((|| {
+        let (q, v) = input(state)?.read()?;
+        let a = dynamics::split::<N, 18>(input(acceleration)?)?;
+        dynamics::inverse(&A1Geared, &q, &v, &tangent(&a.0, &a.1), output(effort)?);
+        Ok(())
+    })())
+}
+
+/// Forward dynamics of A1 with rotors, free in the air: acceleration = M⁻¹ (effort − h).
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_forward_dynamics(
+    state: *const A1State,
+    given: *const [f64; 18],
+    acceleration: *mut [f64; 18],
+) -> Status {
+    status((|| {
+        let (q, v) = input(state)?.read()?;
+        let f = dynamics::split::<N, 18>(input(given)?)?;
+        dynamics::forward(
+            &A1Geared,
+            &q,
+            &v,
+            &effort(&f.0, &f.1),
+            output(acceleration)?,
+        );
+        Ok(())
+    })())
+}
+
+/// Mass matrix of A1 with rotors, 18 × 18, symmetric.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_mass_matrix(
+    state: *const A1State,
+    mass: *mut [[f64; 18]; 18],
+) -> Status {
+    status((|| {
+        let (q, _) = input(state)?.read()?;
+        dynamics::mass::<_, N, 18>(&A1Geared, &q, output(mass)?);
+        Ok(())
+    })())
+}
+
+/// Torques of the joints, for 10 kHz: the command inside what the motors can do. Joints whose numbers are not finite get
+/// zero torque.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_joint_pd(
+    command: *const A1Command,
+    joints: *const [f64; 12],
+    joint_velocities: *const [f64; 12],
+    torques: *mut [f64; 12],
+) -> Status {
+    status((|| {
+        let (q, qd) = (input(joints)?, input(joint_velocities)?);
+        *output(torques)? = input(command)?.read().torques(q, qd, &MOTORS);
+        Ok(())
+    })())
+}
+
+/// The Cartesian PD of push-off and flight, for 1 kHz: feet along a reference. `then` is the reference for the time when
+/// the state was measured.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_cartesian_pd(
+    state: *const A1State,
+    reference: *const A1Reference,
+    then: *const A1Reference,
+    command: *mut A1Command,
+) -> Status {
+    status((|| {
+        let out = output(command)?;
+        *out = SAFE;
+        let (q, v) = input(state)?.read()?;
+        let read = |given: &A1Reference| {
+            let mut numbers = given.joints.iter().chain(&given.joint_velocities);
+            let finite =
+                numbers.all(|x| x.is_finite()) && given.torques.iter().all(|x| x.is_finite());
+            let reference = Reference {
+                joints: given.joints,
+                joint_velocities: given.joint_velocities,
+                torques: given.torques,
+                node: 0,
+            };
+            finite.then_some(reference).ok_or(Status::BadData)
+        };
+        let (reference, then) = (read(input(reference)?)?, read(input(then)?)?);
+        let measured = Measurement {
+            base: q.base,
+            base_velocity: v.base,
+            joints: q.joints,
+            joint_velocities: v.joints,
+            foot_forces: [0.0; 4],
+            age: 0.0,
+        };
+        let pd = CartesianPd {
+            feet: FEET.each_ref().map(|foot| foot.frame),
+            gains: CartesianGains {
+                stiffness: [200.0; 3],
+                damping: [5.0; 3],
+            },
+            joint_gains: [JointGains {
+                stiffness: 60.0,
+                damping: 1.5,
+            }; N],
+        };
+        let c = pd.command(&A1Geared, &measured, &reference, &then);
+        *out = A1Command {
+            position: c.position,
+            velocity: c.velocity,
+            feed_forward: c.feed_forward,
+            stiffness: c.gains.map(|g| g.stiffness),
+            damping: c.gains.map(|g| g.damping),
+        };
+        Ok(())
+    })())
+}
+
+/// Bytes of the block of the landing controller.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_landing_size() -> usize {
+    size::<A1Landing>()
+}
+
+/// Alignment of the block of the landing controller.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_landing_align() -> usize {
+    align::<A1Landing>()
+}
+
+/// Initialises the landing controller in a block; `version` is `SALTUS_VERSION`.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_landing_init(
+    memory: *mut c_void,
+    bytes: usize,
+    version: u32,
+) -> Status {
+    status(place(memory, bytes, version, || A1Landing {
+        landing: Landing::new(
+            FEET.each_ref().map(|foot| foot.frame),
+            Settings::a1(),
+            MOTORS.each_ref().map(|motor| motor.torque),
+        ),
+        workspace: Workspace::new(),
+    }))
+}
+
+/// One tick of the landing, for 1 kHz: forces of the feet in contact (`contacts`, zero or not) that bring the body to rest.
+/// Whatever the status, `command` may be given to the joints if it is neither `NullPointer` nor `Misaligned`.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_landing_step(
+    memory: *mut c_void,
+    state: *const A1State,
+    contacts: *const [u8; 4],
+    target: *const A1Target,
+    command: *mut A1Command,
+) -> Status {
+    status((|| {
+        let out = output(command)?;
+        *out = SAFE;
+        let controller = resident::<A1Landing>(memory)?;
+        let (q, v) = input(state)?.read()?;
+        let given = input(target)?;
+        let rotation = A1State {
+            rotation_wb: given.rotation_wb,
+            joints: given.waiting,
+            position_w: [given.height, given.offset_w[0], given.offset_w[1]],
+            linear_velocity_b: [0.0; 3],
+            angular_velocity_b: [0.0; 3],
+            joint_velocities: [0.0; N],
+        };
+        let (checked, _) = rotation.read()?;
+        let target = Target {
+            height: given.height,
+            rot_wb: checked.base.rotation,
+            offset_w: given.offset_w,
+        };
+        let on = input(contacts)?.map(|contact| contact != 0);
+        let A1Landing { landing, workspace } = controller;
+        let c = landing.step(&A1Geared, &q, &v, &on, &target, &given.waiting, workspace);
+        *out = A1Command {
+            position: c.position,
+            velocity: [0.0; N],
+            feed_forward: c.feed_forward,
+            stiffness: c.stiffness,
+            damping: c.damping,
+        };
+        match c.outcome {
+            Outcome::Airborne | Outcome::Solved(_) => Ok(()),
+            Outcome::Failed(_) => Err(Status::NotSolved),
+            Outcome::BadData => Err(Status::BadData),
+        }
+    })())
+}

@@ -1,0 +1,287 @@
+//! A1 jumps: joint PD at 10 kHz, Cartesian PD and landing at 1 kHz, from a plan in flash.
+
+use a1_model::A1Geared;
+use contact_sim::{Block, ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use jump_control::{Measurement, Plan, Torques};
+use jump_machine::{Inputs, Jump, Machine, Tick, Work};
+use landing::{Landing, Target, Workspace};
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::{Configuration, Frame, Link, Model, Motion, Tangent, Transform, joint_friction};
+
+use super::digested;
+use super::plan::{self, Planned};
+use crate::inputs::Stream;
+use crate::{Numbers, Real, Recorder};
+
+const SUBJECT: &str = "a1-jump";
+/// Time of standing before the jump, s.
+pub const HOLD: f64 = 0.3;
+/// Time after the planned touchdown at which the run ends, s.
+const SETTLE: f64 = 0.8;
+/// Joint ticks per tick of the machine.
+const RATIO: usize = 10;
+/// Balls that touch the ground: feet and knees.
+const BALLS: usize = 8;
+/// States that no jump visits, on which the landing is tried.
+const WILD: usize = 100;
+
+impl Numbers for Tick {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        take(f64::from(self.phase as u8));
+        take(f64::from(u8::from(self.fault.is_some())));
+    }
+}
+
+/// A simulated A1 in the place of the robot: on its box, at rest.
+#[derive(Clone, Debug)]
+pub struct Flight<T: Planned>
+where
+    A1Geared: Model<T, 12>,
+{
+    plant: NativeSimulator<T, A1Geared, 12, BALLS>,
+    felt: [T; 12],
+    steps: usize,
+    broken: bool,
+}
+
+impl<T: Planned> Flight<T>
+where
+    A1Geared: Model<T, 12>,
+{
+    /// Where the plan begins.
+    #[must_use]
+    pub fn new() -> Self {
+        let motors = crate::control::motors(&A1Geared);
+        let mut plant = NativeSimulator::new(
+            A1Geared,
+            balls(&feet()),
+            behind_the_box(),
+            Settings::new(A1Geared.limits(), &motors),
+        );
+        if let Some(first) = T::nodes().first() {
+            let start = Configuration {
+                base: first.base,
+                joints: first.joints,
+            };
+            plant.reset(&start, &Tangent::ZERO);
+        }
+        Self {
+            plant,
+            felt: [T::ZERO; 12],
+            steps: 0,
+            broken: false,
+        }
+    }
+
+    /// Joint positions and velocities of now.
+    pub fn joints(&self) -> ([T; 12], [T; 12]) {
+        let (q, v) = (self.plant.configuration(), self.plant.velocity());
+        (q.joints, v.joints)
+    }
+
+    /// What a controller is told, the truth, and the mean torques since it was told last.
+    pub fn hear(&mut self) -> Inputs<T, 12, 4> {
+        let (q, v) = (self.plant.configuration(), self.plant.velocity());
+        let forces = self.plant.contact_forces_w();
+        let measured = Measurement {
+            base: q.base,
+            base_velocity: v.base,
+            joints: q.joints,
+            joint_velocities: v.joints,
+            foot_forces: core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
+            age: T::ZERO,
+        };
+        let felt = core::mem::replace(&mut self.felt, [T::ZERO; 12]);
+        Inputs { measured, felt }
+    }
+
+    /// 100 µs under these torques.
+    pub fn step(&mut self, torques: &[T; 12]) {
+        let speeds = self.plant.velocity().joints;
+        self.broken |= self.plant.step(torques).is_err();
+        self.steps += 1;
+        let losses = joint_friction(A1Geared.limits(), &speeds, T::of(0.1));
+        let given = self.plant.delivered().iter().zip(losses);
+        for (felt, (tau, loss)) in self.felt.iter_mut().zip(given) {
+            *felt += (*tau + loss) / T::of(RATIO as f64);
+        }
+    }
+
+    /// Whether enough time has passed to land and to come to rest.
+    pub fn is_over(&self) -> bool {
+        let end = ((HOLD + plan::TIMES[2] + SETTLE) * 1e3) as usize * RATIO;
+        self.broken || self.steps >= end
+    }
+}
+
+impl<T: Planned> Default for Flight<T>
+where
+    A1Geared: Model<T, 12>,
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real> Numbers for Inputs<T, 12, 4> {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        let Measurement {
+            base,
+            base_velocity,
+            joints,
+            joint_velocities,
+            foot_forces,
+            age,
+        } = &self.measured;
+        (base, base_velocity).visit(take);
+        (joints, joint_velocities).visit(take);
+        (foot_forces, age, self.felt).visit(take);
+    }
+}
+
+fn feet<T: Planned>() -> [Frame<T>; 4]
+where
+    A1Geared: Model<T, 12>,
+{
+    let contacts = A1Geared.contacts();
+    core::array::from_fn(|i| contacts.get(i).map_or(Frame::IDENTITY, |c| c.frame))
+}
+
+/// A1's settings of the machine.
+#[must_use]
+pub fn settings<T: Planned>() -> jump_machine::Settings<T, 12, 4>
+where
+    A1Geared: Model<T, 12>,
+{
+    let motors = crate::control::motors(&A1Geared);
+    jump_machine::Settings::a1(feet(), motors, plan::LANDING.map(T::of))
+}
+
+/// The double backflip; `None` if the plan in flash is refused.
+#[must_use]
+pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
+    let [takeoff, posing, touchdown] = plan::TIMES.map(T::of);
+    Some(Jump {
+        plan: Plan::new(T::nodes(), takeoff, posing, touchdown, Torques::Hold).ok()?,
+        weight: T::of(plan::WEIGHT),
+        goal_w: Vector3::from(plan::GOAL.map(T::of)),
+        rot_goal: Rotation3::identity(),
+        landing_joints: plan::LANDING.map(T::of),
+    })
+}
+
+/// Flies the double backflip and lands it, then tries the landing where no jump comes.
+pub fn a1<T: Planned, R: Recorder>(recorder: &mut R)
+where
+    A1Geared: Model<T, 12>,
+{
+    let mut workspace = Workspace::new();
+    let mut machine = Machine::<T, _, 12, 4, 12, 28>::new(&A1Geared, settings(), &mut workspace);
+    let Some(jump) = jump() else { return };
+    if machine.arm(jump, T::of(HOLD)).is_err() {
+        return;
+    }
+    let mut flight = Flight::new();
+    let mut k = 0_u32;
+    while !flight.is_over() {
+        let inputs = flight.hear();
+        let now = T::of(f64::from(k)) * T::of(1e-3);
+        let input = (&mut machine, now, &inputs);
+        digested::<T, _, _, _>(
+            recorder,
+            SUBJECT,
+            input,
+            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
+            |tick| match tick.work {
+                Work::Cartesian => "Cartesian PD tick",
+                Work::Landing(_) => "landing tick",
+                Work::Damping => "damping tick",
+            },
+        );
+        for i in 0..RATIO {
+            let (q, v) = flight.joints();
+            let torques = if i == 0 {
+                digested::<T, _, _, _>(
+                    recorder,
+                    SUBJECT,
+                    (&mut machine, &q, &v),
+                    |(machine, q, v)| machine.joint_tick(q, v, T::of(1e-4)),
+                    |_| "joint PD tick",
+                )
+            } else {
+                machine.joint_tick(&q, &v, T::of(1e-4))
+            };
+            flight.step(&torques);
+        }
+        k += 1;
+    }
+    let end = (*flight.plant.configuration(), *flight.plant.velocity());
+    end.visit(&mut |x| recorder.value(crate::canonical_bits(x)));
+    recorder.value(machine.phase() as u64);
+    wild(recorder, &A1Geared, &feet());
+}
+
+/// The robot starts on a box and lands on the floor behind it.
+fn behind_the_box<T: Real>() -> Terrain<T> {
+    let [height, edge] = plan::BOX.map(T::of);
+    let wide = T::of(0.6);
+    Terrain {
+        floor: -height,
+        block: Some(Block {
+            lower: [-edge, -wide, -height],
+            upper: [wide, wide, T::ZERO],
+        }),
+    }
+}
+
+/// Feet, and the calf joints as knees.
+fn balls<T: Real>(feet: &[Frame<T>; 4]) -> [ContactSphere<T>; BALLS] {
+    core::array::from_fn(|i| match feet.get(i) {
+        Some(foot) => ContactSphere {
+            link: foot.link,
+            offset: foot.offset,
+            radius: T::of(a1_model::FOOT_RADIUS),
+        },
+        None => ContactSphere {
+            link: Link::Joint(3 * (i - feet.len()) + 2),
+            offset: [T::ZERO; 3],
+            radius: T::of(0.02),
+        },
+    })
+}
+
+/// The landing in states far from any jump: any posture, tilt, speed and set of feet.
+fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet: &[Frame<T>; 4]) {
+    let motors = crate::control::motors(model);
+    let torques = motors.map(|motor| motor.torque);
+    let landing = Landing::<T, 12, 4, 12, 28>::new(*feet, landing::Settings::a1(), torques);
+    let mut workspace = Workspace::new();
+    let stream = &mut Stream::new(2026);
+    for k in 0..WILD {
+        let base = Transform::new(
+            so3::exp(&Vector3::from(stream.array::<T, 3>(1.5))),
+            Vector3::from(stream.array::<T, 3>(0.3)),
+        );
+        let q = Configuration {
+            base,
+            joints: stream.array(1.5),
+        };
+        let v = Tangent {
+            base: Motion::from_array(stream.array(6.0)),
+            joints: stream.array(20.0),
+        };
+        let target = Target {
+            height: T::of(0.25),
+            ..Target::LEVEL
+        };
+        let on = core::array::from_fn(|i| (k >> i) & 1 == 0);
+        let input = (&q, &v, &mut workspace);
+        digested::<T, _, _, _>(
+            recorder,
+            SUBJECT,
+            input,
+            |(q, v, ws)| landing.step(model, q, v, &on, &target, &q.joints, ws),
+            |_| "wild landing tick",
+        );
+    }
+}

@@ -1,0 +1,233 @@
+//! iCub pushes off by the torque program, paper B eqs. (6a) to (6f), in double precision, as `saltus run icub/torque`.
+
+use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use icub_model::gazebo::joint;
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use jump_control::{ComProfile, Curve, JointCommand, takeoff_speed};
+use nalgebra::Vector3;
+use rbd_core::{
+    Configuration, JointLimits, Kinematics, Motion, Posture, Tangent, Transform, center_of_mass,
+    forward_kinematics,
+};
+use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
+use wbc_qp::{Contact, Snapshot};
+
+use super::digested;
+use crate::Recorder;
+use crate::inputs::Stream;
+
+const SUBJECT: &str = "icub-jump";
+const N: usize = 23;
+/// Time of standing in the squat, and of the push-off, ms.
+const HOLD: usize = 100;
+const PUSH: usize = 430;
+const GRAVITY: f64 = 9.81;
+/// States that no jump visits.
+const WILD: usize = 40;
+
+type Program = TorqueJump<f64, N, 12, 35, 55>;
+
+/// Legs, torso and arms of a squat.
+fn squat() -> [f64; N] {
+    let mut q = [0.0; N];
+    let mut set = |i: usize, x: f64| {
+        if let Some(slot) = q.get_mut(i) {
+            *slot = x;
+        }
+    };
+    for (hip, knee, ankle) in [
+        (joint::L_HIP_PITCH, joint::L_KNEE, joint::L_ANKLE_PITCH),
+        (joint::R_HIP_PITCH, joint::R_KNEE, joint::R_ANKLE_PITCH),
+    ] {
+        set(hip, 1.496);
+        set(knee, -2.013);
+        set(ankle, -0.817);
+    }
+    set(joint::TORSO_PITCH, 0.2);
+    for first in [joint::L_SHOULDER_PITCH, joint::R_SHOULDER_PITCH] {
+        set(first, -0.5);
+        set(first + 1, 0.4);
+        set(first + 3, 0.8);
+    }
+    q
+}
+
+fn poses(q: &Configuration<f64, N>) -> Kinematics<f64, N> {
+    let mut kinematics = Kinematics::IDENTITY;
+    forward_kinematics(&Icub23, &Posture::new(&Icub23, q), &mut kinematics);
+    kinematics
+}
+
+/// With both soles flat on the floor.
+fn standing() -> Configuration<f64, N> {
+    let mut q = Configuration {
+        joints: squat(),
+        ..Configuration::NEUTRAL
+    };
+    let [left, right] = SOLES.each_ref().map(|sole| &sole.frame);
+    q.base.rotation = poses(&q).frame(left).rotation.inverse();
+    let kinematics = poses(&q);
+    let middle = kinematics.frame(left).translation + kinematics.frame(right).translation;
+    q.base.translation = -middle * 0.5;
+    q
+}
+
+/// Corners of the soles.
+fn balls() -> [ContactSphere<f64>; 8] {
+    let corners = SOLES
+        .each_ref()
+        .map(|sole| ContactSphere::corners(sole, 0.005));
+    core::array::from_fn(|i| {
+        let sole = corners.get(i / 4).and_then(|corners| corners.as_ref());
+        let ball = sole.and_then(|balls| balls.get(i % 4));
+        ball.copied().unwrap_or(ContactSphere {
+            link: rbd_core::Link::Base,
+            offset: [0.0; 3],
+            radius: 0.0,
+        })
+    })
+}
+
+fn settings() -> TorqueJumpSettings<f64, N> {
+    let mut settings = TorqueJumpSettings::icub();
+    for (i, weight) in settings.posture_weight.iter_mut().enumerate() {
+        *weight = match i {
+            joint::L_KNEE | joint::R_KNEE => 3.0,
+            joint::L_HIP_PITCH | joint::R_HIP_PITCH => 0.7,
+            joint::L_SHOULDER_PITCH.. => 0.3,
+            _ => 1.0,
+        };
+    }
+    settings
+}
+
+/// Limits with a margin on speed.
+fn guarded() -> [JointLimits<f64>; N] {
+    let mut limits = LIMITS;
+    for (i, limits) in limits.iter_mut().enumerate() {
+        limits.speed *= if i < joint::L_SHOULDER_PITCH {
+            0.95
+        } else {
+            0.9
+        };
+    }
+    limits
+}
+
+/// Pushes off in closed loop with the simulator, then tries the program where no push-off comes.
+pub fn icub<R: Recorder>(recorder: &mut R) {
+    let limits = guarded();
+    let start = standing();
+    let mut plant = NativeSimulator::new(
+        Icub23,
+        balls(),
+        Terrain::FLAT,
+        Settings::new(&LIMITS, &MOTORS),
+    );
+    plant.reset(&start, &Tangent::ZERO);
+    let mut program = Program::new(settings(), start.joints);
+    let mut snapshot = Snapshot::ZERO;
+    let contacts = SOLES.each_ref().map(|sole| Contact::new(sole, 0.5, 1000.0));
+    let com = center_of_mass(&Icub23, &Posture::new(&Icub23, &start)).position_w;
+    let speed = takeoff_speed(0.04, GRAVITY);
+    let Some(profile) = ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY) else {
+        return;
+    };
+    let mut command = JointCommand::<f64, N>::damp(0.0);
+    for k in 0..HOLD + PUSH {
+        let point = profile.at(1e-3 * (k as f64 - HOLD as f64));
+        let wanted = ComReference {
+            position_w: com + Vector3::z() * point.rise,
+            velocity_w: Vector3::z() * point.speed,
+            acceleration_w: Vector3::z() * point.acceleration,
+        };
+        let (q, v) = (*plant.configuration(), *plant.velocity());
+        let input = (&mut program, &mut snapshot);
+        let torques = digested::<f64, _, _, _>(
+            recorder,
+            SUBJECT,
+            input,
+            |(program, snapshot)| {
+                snapshot.update(&Icub23, &q, &v);
+                let tick = program.tick(&Icub23, snapshot, &contacts, (&limits, &MOTORS), &wanted);
+                tick.map(|tick| (tick.answer.torques, f64::from(tick.answer.iterations)))
+                    .ok()
+            },
+            |_| "torque tick",
+        );
+        if let Some((torques, _)) = torques {
+            command.feed_forward = torques;
+        }
+        for i in 0..10 {
+            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+            let input = (&command, &q, &v);
+            let torques = if i == 0 {
+                digested::<f64, _, _, _>(
+                    recorder,
+                    SUBJECT,
+                    input,
+                    |(command, q, v)| command.torques(q, v, &MOTORS),
+                    |_| "joint PD tick",
+                )
+            } else {
+                command.torques(&q, &v, &MOTORS)
+            };
+            if plant.step(&torques).is_err() {
+                return;
+            }
+        }
+    }
+    let end = plant.velocity().base.to_array();
+    end.iter().for_each(|x| recorder.value(x.to_bits()));
+    wild(recorder, &contacts, &limits);
+}
+
+/// The program in states far from any push-off: tilted, fast, at the ends of the joints, on one sole or none.
+fn wild<R: Recorder>(
+    recorder: &mut R,
+    contacts: &[Contact<f64>; 2],
+    limits: &[JointLimits<f64>; N],
+) {
+    let stream = &mut Stream::new(2026);
+    let mut program = Program::new(settings(), squat());
+    let mut snapshot = Snapshot::ZERO;
+    for k in 0..WILD {
+        let base = Transform::new(
+            so3::exp(&Vector3::from(stream.array::<f64, 3>(0.8))),
+            Vector3::new(0.0, 0.0, 0.5),
+        );
+        let mut joints = squat();
+        for x in &mut joints {
+            *x += stream.next::<f64>(0.6);
+        }
+        let q = Configuration { base, joints };
+        let v = Tangent {
+            base: Motion::from_array(stream.array(2.0)),
+            joints: stream.array(6.0),
+        };
+        let mut contacts = *contacts;
+        for (i, contact) in contacts.iter_mut().enumerate() {
+            if (k >> i) & 1 == 1 {
+                contact.max_force = 0.0;
+            }
+        }
+        let wanted = ComReference {
+            position_w: Vector3::from(stream.array::<f64, 3>(0.5)),
+            velocity_w: Vector3::from(stream.array::<f64, 3>(2.0)),
+            acceleration_w: Vector3::from(stream.array::<f64, 3>(20.0)),
+        };
+        let input = (&mut program, &mut snapshot);
+        digested::<f64, _, _, _>(
+            recorder,
+            SUBJECT,
+            input,
+            |(program, snapshot)| {
+                snapshot.update(&Icub23, &q, &v);
+                let tick = program.tick(&Icub23, snapshot, &contacts, (limits, &MOTORS), &wanted);
+                tick.map(|tick| (tick.answer.torques, f64::from(tick.answer.iterations)))
+                    .ok()
+            },
+            |_| "wild torque tick",
+        );
+    }
+}

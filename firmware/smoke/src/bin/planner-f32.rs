@@ -1,0 +1,5 @@
+//! The planner of a rigid body on few nodes, in f32.
+#![no_std]
+#![no_main]
+
+saltus_smoke::image!(saltus_probe::control::planner::<f32, _>);
