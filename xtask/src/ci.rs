@@ -40,6 +40,7 @@ const STEPS: &[Step] = &[
     ("C interface", &["xtask", "c-abi"]),
     ("instruction counts", &["xtask", "icount"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
+    ("the report in a browser", &["xtask", "report"]),
     (
         "MuJoCo agrees",
         &[

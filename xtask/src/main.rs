@@ -15,6 +15,7 @@ mod mujoco;
 mod panics;
 mod probe;
 mod qemu;
+mod report;
 mod run;
 mod smoke;
 
@@ -53,6 +54,8 @@ enum Command {
     Icount(icount::Args),
     /// Import many robots, compile what comes out, and compare it with Pinocchio.
     ImportCheck(import_check::Args),
+    /// Look at the report of a run with a real browser: not blank, moving, no complaint on the console.
+    Report(report::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
         Command::ImportCheck(args) => import_check::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

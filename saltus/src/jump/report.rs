@@ -28,9 +28,15 @@ pub(crate) fn html(
     table: &[(&str, String, Option<bool>)],
 ) -> String {
     let title = format!("saltus run {}", task.name);
-    let intro = "The robot stands, pushes off, flies and lands under the controllers of the jump; the \
-        plant is simulated at 10 kHz (see the table). The plan is a single-rigid-body optimum with \
-        leg kinematics and inverse dynamics, not a whole-body optimum.";
+    let legs = if reference.whole_body.is_some() {
+        "a whole-body optimum along a single-rigid-body one"
+    } else {
+        "a single-rigid-body optimum with leg kinematics and inverse dynamics"
+    };
+    let intro = format!(
+        "The robot stands, pushes off, flies and lands under the controllers of the jump; the plant is simulated at 10 kHz (see \
+         the table). The plan is {legs}."
+    );
     let data = json!({
         "frames": frames(&run.samples),
         "scene": scene(task),
@@ -45,7 +51,7 @@ pub(crate) fn html(
     let data = data.to_string().replace("</", "<\\/");
     TEMPLATE
         .replace("@TITLE@", &title)
-        .replace("@INTRO@", intro)
+        .replace("@INTRO@", &intro)
         .replace("@UPLOT_CSS@", UPLOT_CSS)
         .replace("@UPLOT@", UPLOT)
         .replace("@THREE@", THREE)
