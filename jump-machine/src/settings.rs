@@ -67,7 +67,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             rest: (of(0.05), of(0.2)),
             settling: of(0.2),
             stand_height: of(0.25),
-            lean: of(0.03),
+            lean: of(0.06),
             safe_damping: T::TWO,
             slew: of(1e4),
             pd: CartesianPd::a1(feet),
