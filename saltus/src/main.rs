@@ -6,6 +6,7 @@ mod jump;
 mod noise;
 mod observer;
 mod reference;
+mod report;
 mod track;
 
 use clap::{Parser, Subcommand};

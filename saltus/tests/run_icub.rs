@@ -52,3 +52,46 @@ fn the_velocity_program_jumps_four_centimetres_and_stands() {
 fn the_torque_program_jumps_four_centimetres_and_stands() {
     check("icub/torque", "icub-torque");
 }
+
+/// The page opens offline, and carries the paper's figures and a second run for figure 6.
+#[test]
+fn the_report_has_the_figures_of_the_paper() {
+    run("icub/velocity", "icub-report", &[]);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("icub-report/report.html");
+    let page = std::fs::read_to_string(path).unwrap();
+    let data = page.split("const DATA = ").nth(1).unwrap();
+    let data: Value = serde_json::from_str(data.split(";</script>").next().unwrap()).unwrap();
+    let titles: Vec<&str> = data["plots"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|plot| plot["title"].as_str().unwrap())
+        .collect();
+    for figure in [
+        "Figure 1:",
+        "Figures 2a, 3a:",
+        "Figures 2c, 3c:",
+        "Figures 2d",
+        "Figure 6:",
+    ] {
+        assert!(titles.iter().any(|t| t.starts_with(figure)), "{figure}");
+    }
+    let pitch = data["plots"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|plot| plot["title"].as_str().unwrap().starts_with("Figure 6"))
+        .unwrap();
+    let spread = |k: usize| {
+        let values = pitch["series"][k]["values"].as_array().unwrap();
+        let numbers = values.iter().filter_map(Value::as_f64);
+        let (low, high) = numbers.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    assert!(spread(1) > 2.0 * spread(0), "{} {}", spread(0), spread(1));
+    let points = &data["frames"]["points"][0];
+    assert_eq!(points.as_array().unwrap().len(), 16);
+    for outside in ["src=\"http", "href=\"http", "import(\"http"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+}

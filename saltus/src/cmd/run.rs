@@ -6,6 +6,7 @@ use crate::jump::planned::Planner;
 use crate::jump::plant::{Disturbance, Sim};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, reference, report};
+use crate::report::Line;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -124,13 +125,38 @@ fn run_humanoid(args: &Args, task: &humanoid::Task) -> Result<ExitCode, String> 
     let run = humanoid::execute::run(task, args.sim, &disturbance, args.seed, |_, _| {})?;
     let verdict = humanoid::judge::Verdict::of(&run);
     let json = verdict.json(task, &run, args.seed, args.sim.name());
+    // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
+    let free = if task.momentum {
+        let free = humanoid::Task {
+            momentum: false,
+            ..*task
+        };
+        Some(humanoid::execute::run(
+            &free,
+            args.sim,
+            &disturbance,
+            args.seed,
+            |_, _| {},
+        )?)
+    } else {
+        None
+    };
     let folder = new_folder(args.out.as_deref(), task.name())?;
     write(&folder, "log.csv", &humanoid::log::csv(&run.samples))?;
     write(&folder, "result.json", &format!("{json:#}\n"))?;
+    let table = verdict.table(task, &run, args.sim.name());
+    write(
+        &folder,
+        "report.html",
+        &humanoid::report::html(task, &run, free.as_ref(), &table)?,
+    )?;
     if args.json {
         println!("{json}");
     } else {
-        println!("{json:#}");
+        for (name, value, _) in &table {
+            println!("{name:26} {value}");
+        }
+        println!("report: {}", folder.join("report.html").display());
     }
     Ok(if verdict.on_target(task) {
         ExitCode::SUCCESS
@@ -138,9 +164,6 @@ fn run_humanoid(args: &Args, task: &humanoid::Task) -> Result<ExitCode, String> 
         ExitCode::from(2)
     })
 }
-
-/// A line of the result: name, value, and whether it is good where that can be said.
-type Line = (&'static str, String, Option<bool>);
 
 /// The result for people.
 fn table(

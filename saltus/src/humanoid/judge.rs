@@ -1,9 +1,10 @@
 //! What a run achieved, as numbers.
 
-use super::Task;
 use super::execute::{Run, SETTLE};
 use super::log::Sample;
-use jump_control::Phase;
+use super::{GRAVITY, Task};
+use crate::report::Line;
+use jump_control::{Phase, takeoff_speed};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -75,6 +76,76 @@ impl Verdict {
             && self.within_limits
             && (self.com_gain - task.height).abs() <= 0.005
             && self.sole_clearance >= task.height - 0.005
+    }
+
+    /// The result for people.
+    pub(crate) fn table(&self, task: &Task, run: &Run, sim: &str) -> Vec<Line> {
+        let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
+        let cm = |x: f64| format!("{:.2} cm", 100.0 * x);
+        // Paper B, II-D: v = sqrt(2 g (h_p - h_to)).
+        let from_gain = takeoff_speed(self.com_gain.max(0.0), GRAVITY);
+        let usage = run.launch.position.max(run.launch.speed);
+        vec![
+            ("task", format!("{}, {sim} simulator", task.name()), None),
+            ("landed", yes(self.landed), Some(self.landed)),
+            ("upright after 2 s", yes(self.upright), Some(self.upright)),
+            (
+                "gain of the CoM",
+                format!(
+                    "{} of {} asked for; paper B: 3.5 by velocity, 1.6 by torque, 3 on the robot (figure 4)",
+                    cm(self.com_gain),
+                    cm(task.height)
+                ),
+                Some((self.com_gain - task.height).abs() <= 0.005),
+            ),
+            (
+                "clearance of the soles",
+                cm(self.sole_clearance),
+                Some(self.sole_clearance >= task.height - 0.005),
+            ),
+            (
+                "take-off speed",
+                format!(
+                    "{:.3} m/s; from the flight √(2 g (h_p − h_to)) = {from_gain:.3}; wanted {:.3}",
+                    self.takeoff_speed, run.wanted_speed
+                ),
+                Some((self.takeoff_speed - from_gain).abs() < 0.02),
+            ),
+            (
+                "locked rotation in flight",
+                format!(
+                    "{:.2}°; the base pitches by {:.1}°",
+                    self.locked_rotation, self.pitch_change
+                ),
+                Some(self.locked_rotation < 1.5),
+            ),
+            (
+                "limits in the launch",
+                format!(
+                    "{:.2} of position or speed, {:.2} of torque",
+                    usage, run.launch.torque
+                ),
+                Some(self.within_limits),
+            ),
+            (
+                "landing",
+                format!(
+                    "asks for {:.2} of a torque limit at most, {:.1} ms beyond; ground {:.0} N",
+                    run.landing_demand,
+                    1e3 * run.landing_saturation,
+                    run.peak_force
+                ),
+                None,
+            ),
+            (
+                "programs",
+                format!(
+                    "{} solved, {} failed, {} ticks relaxed, {} iterations at most",
+                    run.qp.solves, run.qp.failures, run.qp.relaxed_ticks, run.qp.max_iterations
+                ),
+                Some(run.qp.failures == 0),
+            ),
+        ]
     }
 
     /// The object of `--json`.

@@ -4,6 +4,7 @@ pub(crate) mod control;
 pub(crate) mod execute;
 pub(crate) mod judge;
 pub(crate) mod log;
+pub(crate) mod report;
 pub(crate) mod sensors;
 
 use crate::jump::plant::{Disturbance, Sim};

@@ -6,27 +6,13 @@ use super::log::{FEET_NAMES, Sample, joint_names};
 use super::reference::Reference;
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, State, feet};
+use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
 use a1_model::MOTORS;
-use nalgebra::Vector3;
 use rbd_core::Transform;
 use serde_json::{Value, json};
 
-const TEMPLATE: &str = include_str!("../../assets/report.html");
-const THREE: &str = include_str!("../../assets/three.bundle.min.js");
-const UPLOT: &str = include_str!("../../assets/uPlot.iife.min.js");
-const UPLOT_CSS: &str = include_str!("../../assets/uPlot.min.css");
-/// Every so many milliseconds a frame of the animation, and a point of the plots.
-const FRAME: usize = 10;
-const POINT: usize = 4;
-const COLORS: [&str; FOOT_COUNT] = ["#0969da", "#bc4c00", "#1a7f37", "#8250df"];
-
 /// The report's text.
-pub(crate) fn html(
-    task: &Task,
-    reference: &Reference,
-    run: &Run,
-    table: &[(&str, String, Option<bool>)],
-) -> String {
+pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]) -> String {
     let title = format!("saltus run {}", task.name);
     let legs = if reference.whole_body.is_some() {
         "a whole-body optimum along a single-rigid-body one"
@@ -41,31 +27,11 @@ pub(crate) fn html(
         "frames": frames(&run.samples),
         "scene": scene(task),
         "phases": phases(&run.samples),
-        "table": table.iter().map(|(name, value, good)| {
-            json!([name, value, good.map(|good| if good { "good" } else { "bad" })])
-        }).collect::<Vec<_>>(),
+        "table": lines(table),
         "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
         "plots": plots(&run.samples, reference),
     });
-    // A string in the data must not end the script.
-    let data = data.to_string().replace("</", "<\\/");
-    TEMPLATE
-        .replace("@TITLE@", &title)
-        .replace("@INTRO@", &intro)
-        .replace("@UPLOT_CSS@", UPLOT_CSS)
-        .replace("@UPLOT@", UPLOT)
-        .replace("@THREE@", THREE)
-        .replace("@DATA@", &data)
-}
-
-/// A number with so many decimals: the file stays small.
-fn round(x: f64, digits: u32) -> Value {
-    let scale = so3::math::powi(10.0, digits);
-    json!((x * scale).round() / scale)
-}
-
-fn vector(v: &Vector3<f64>) -> Value {
-    json!([round(v.x, 4), round(v.y, 4), round(v.z, 4)])
+    page(&title, &intro, &data)
 }
 
 /// Poses of the links and forces, for the animation.
@@ -106,6 +72,8 @@ fn scene(task: &Task) -> Value {
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),
         "foot_radius": a1_model::FOOT_RADIUS,
+        "trunk": super::TRUNK_SIZE,
+        "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })
 }
@@ -125,24 +93,7 @@ fn phases(samples: &[Sample]) -> Vec<Value> {
         .collect()
 }
 
-/// One curve.
-fn curve(
-    label: &str,
-    color: &str,
-    dashed: bool,
-    samples: &[Sample],
-    value: impl Fn(&Sample) -> f64,
-) -> Value {
-    let values: Vec<Value> = samples
-        .iter()
-        .step_by(POINT)
-        .map(|s| round(value(s), 4))
-        .collect();
-    json!({ "label": label, "color": color, "dashed": dashed, "values": values })
-}
-
 fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
-    let plot = |title: &str, unit: &str, series: Vec<Value>| json!({ "title": title, "unit": unit, "series": series });
     let axes = ["x", "y", "z"];
     let mut out = vec![
         plot(
@@ -185,8 +136,8 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
             })
             .collect();
         let limit = MOTORS[i].torque;
-        series.push(curve("limit", "#b42318", true, samples, move |_| limit));
-        series.push(curve("-limit", "#b42318", true, samples, move |_| -limit));
+        series.push(curve("limit", LIMIT, true, samples, move |_| limit));
+        series.push(curve("-limit", LIMIT, true, samples, move |_| -limit));
         out.push(plot(&format!("{kind} torques"), "N m", series));
     }
     for (axis, title) in [
@@ -231,7 +182,7 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
         "rad/s",
         vec![
             curve("speed", COLORS[0], false, samples, speed),
-            curve("no-load speed", "#b42318", true, samples, |_| {
+            curve("no-load speed", LIMIT, true, samples, |_| {
                 MOTORS[0].no_load_speed
             }),
         ],

@@ -1,0 +1,194 @@
+//! The report of a humanoid jump, with the figures of paper B: 1 (the profile), 2 and 3 (joints and centre of mass), 5 (the
+//! animation), 6 (the base's pitch with and without the rows on angular momentum).
+
+use super::execute::Run;
+use super::log::Sample;
+use super::{JOINTS, ROBOT, State, Task, poses};
+use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
+use icub_model::gazebo::joint;
+use icub_model::{LIMITS, SOLES};
+use jump_control::Phase;
+use rbd_core::{Model, Transform};
+use serde_json::{Value, json};
+
+/// The report's text; `free` is the same jump without the rows on angular momentum.
+pub(crate) fn html(
+    task: &Task,
+    run: &Run,
+    free: Option<&Run>,
+    table: &[Line],
+) -> Result<String, String> {
+    let title = format!("saltus run {}", task.name());
+    let intro = "The robot stands in a squat, pushes off under the program of paper B, flies and lands. The animation stands for \
+        figure 5; plots carry the number of the figure that they stand for. Figure 4 is of the robot itself and has no counterpart.";
+    let data = json!({
+        "frames": frames(&run.samples),
+        "scene": {
+            "floor": 0.0,
+            "block": null,
+            "foot_radius": 0.02,
+            "trunk": [0.12, 0.18, 0.14],
+            // The base's x axis points backwards.
+            "nose": -0.07,
+            "goal": [0.0, 0.0, 0.0],
+        },
+        "phases": phases(&run.samples),
+        "table": lines(table),
+        "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
+        "plots": plots(task, run, free)?,
+    });
+    Ok(page(&title, intro, &data))
+}
+
+/// Both legs and both arms as chains of four points, with the forces on the soles.
+fn frames(samples: &[Sample]) -> Value {
+    let kept: Vec<&Sample> = samples.iter().step_by(FRAME).collect();
+    let points = |s: &Sample| {
+        let q = State {
+            base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
+            joints: s.joints,
+        };
+        let poses = poses(&q);
+        let body = |i: usize| poses.bodies[i].translation;
+        let leg = |hip: usize, sole: usize| {
+            let foot = poses.frame(&SOLES[sole].frame).translation;
+            [body(hip), body(hip + 3), body(hip + 4), foot]
+        };
+        let arm = |shoulder: usize| {
+            let (upper, elbow) = (body(shoulder), body(shoulder + 3));
+            [body(joint::TORSO_YAW), upper, upper, elbow]
+        };
+        let limbs = [
+            leg(joint::L_HIP_PITCH, 0),
+            leg(joint::R_HIP_PITCH, 1),
+            arm(joint::L_SHOULDER_PITCH),
+            arm(joint::R_SHOULDER_PITCH),
+        ];
+        limbs.as_flattened().iter().map(vector).collect::<Vec<_>>()
+    };
+    let zero = json!([0, 0, 0]);
+    let forces = |s: &Sample| {
+        let [left, right] = s.forces_w.each_ref().map(vector);
+        json!([left, right, zero, zero])
+    };
+    let each = |f: &dyn Fn(&Sample) -> Value| kept.iter().map(|s| f(s)).collect::<Vec<_>>();
+    json!({
+        "t": each(&|s| round(s.time, 4)),
+        "phase": each(&|s| json!(format!("{:?}", s.phase))),
+        "position": each(&|s| vector(&s.position)),
+        "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
+        "com": each(&|s| vector(&s.com)),
+        "points": each(&|s| json!(points(s))),
+        "forces": each(&forces),
+    })
+}
+
+/// Runs of equal phase: name, begin, end.
+fn phases(samples: &[Sample]) -> Vec<Value> {
+    let runs = samples.chunk_by(|a, b| a.phase == b.phase);
+    let named = runs.filter_map(|run| {
+        let (first, last) = (run.first()?, run.last()?);
+        let name = format!("{:?}", first.phase);
+        Some(json!([name, first.time, last.time + 1e-3]))
+    });
+    named.collect()
+}
+
+fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, String> {
+    let samples = run.samples.as_slice();
+    let profile = task.profile()?;
+    let pushing = |t: f64| (0.0..=profile.duration).contains(&t);
+    let planned = |f: &dyn Fn(f64) -> f64| {
+        let value = |s: &Sample| if pushing(s.time) { f(s.time) } else { f64::NAN };
+        curve("plan", COLORS[0], true, samples, value)
+    };
+    // The profile goes on as a fall; on the ground again it means nothing.
+    let desired = |s: &Sample| match s.phase {
+        Phase::Landing | Phase::Stand | Phase::Abort => f64::NAN,
+        _ => s.wanted_height,
+    };
+    let mut out = vec![
+        plot(
+            "Figure 1: speed of the CoM, vertical",
+            "m/s",
+            vec![
+                planned(&|t| profile.at(t).speed),
+                curve("measured", COLORS[1], false, samples, |s| s.com_velocity.z),
+            ],
+        ),
+        plot(
+            "Figure 1: acceleration of the CoM, vertical",
+            "m/s²",
+            vec![planned(&|t| profile.at(t).acceleration)],
+        ),
+        plot(
+            "Figures 2d, 3d: height of the CoM",
+            "m",
+            vec![
+                curve("desired", COLORS[0], true, samples, desired),
+                curve("measured", COLORS[1], false, samples, |s| s.com.z),
+            ],
+        ),
+    ];
+    let names = Model::<f64, JOINTS>::joint_names(&ROBOT);
+    for (letter, i) in [
+        ("a", joint::L_ANKLE_PITCH),
+        ("b", joint::L_KNEE),
+        ("c", joint::L_HIP_PITCH),
+    ] {
+        let limits =
+            |limit: f64| [limit, -limit].map(|x| curve("limit", LIMIT, true, samples, move |_| x));
+        let name = names[i];
+        let speed = curve(name, COLORS[0], false, samples, |s| s.joint_velocities[i]);
+        let torque = curve(name, COLORS[0], false, samples, |s| s.torques[i]);
+        let with = |series: Value, limit: f64| {
+            let mut all = vec![series];
+            all.extend(limits(limit));
+            all
+        };
+        let title = |what: &str| format!("Figures 2{letter}, 3{letter}: {what} of {name}");
+        let all = with(speed, LIMITS[i].speed);
+        out.push(plot(&title("speed"), "rad/s", all));
+        let all = with(torque, task.motors()[i].torque);
+        out.push(plot(&title("torque"), "N m", all));
+    }
+    let mut pitch = vec![curve(
+        if task.momentum {
+            "with the rows"
+        } else {
+            "without"
+        },
+        COLORS[0],
+        false,
+        samples,
+        Sample::pitch_deg,
+    )];
+    if let Some(free) = free {
+        let label = "without the rows";
+        pitch.push(curve(
+            label,
+            COLORS[1],
+            false,
+            &free.samples,
+            Sample::pitch_deg,
+        ));
+    }
+    out.push(plot("Figure 6: pitch of the base", "degrees", pitch));
+    out.push(plot(
+        "Forces on the soles, normal",
+        "N",
+        vec![
+            curve("left", COLORS[0], false, samples, |s| s.forces_w[0].z),
+            curve("right", COLORS[1], false, samples, |s| s.forces_w[1].z),
+        ],
+    ));
+    let axes = ["x", "y", "z"].iter().enumerate();
+    let momentum =
+        axes.map(|(i, name)| curve(name, COLORS[i], false, samples, move |s| s.momentum[i]));
+    out.push(plot(
+        "Angular momentum about the CoM",
+        "kg m²/s",
+        momentum.collect(),
+    ));
+    Ok(out)
+}
