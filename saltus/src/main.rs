@@ -1,5 +1,6 @@
 //! Plans jumps of legged robots.
 
+mod audit;
 mod cmd;
 mod humanoid;
 mod jump;
@@ -7,6 +8,7 @@ mod noise;
 mod observer;
 mod reference;
 mod report;
+mod robot;
 mod track;
 
 use clap::{Parser, Subcommand};
@@ -23,6 +25,8 @@ struct Cli {
 enum Command {
     /// Plan a jump.
     Plan(cmd::plan::Args),
+    /// Audit a stored plan again.
+    Verify(cmd::verify::Args),
     /// Turn a URDF into a model crate.
     Import(cmd::import::Args),
     /// Plan a jump, execute it in simulation, and report.
@@ -34,6 +38,7 @@ enum Command {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Plan(args) => cmd::plan::run(&args),
+        Command::Verify(args) => Ok(cmd::verify::run(&args)),
         Command::Import(args) => Ok(cmd::import::run(&args)),
         Command::Run(args) => cmd::run::run(&args),
         Command::Envelope(args) => cmd::envelope::run(&args),

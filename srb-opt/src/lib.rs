@@ -8,6 +8,7 @@ pub mod onboard;
 mod plan;
 mod problem;
 mod rotation;
+mod row;
 mod rows;
 mod state;
 mod transcription;
@@ -15,6 +16,7 @@ mod violation;
 
 pub use error::Error;
 pub use problem::{Edge, Foot, Ground, Phase, Problem, Reference, Weights};
+pub use row::Row;
 pub use rows::row_capacity;
 pub use state::{OMEGA, POSITION, ROTATION, State, TIMES, VELOCITY};
 pub use violation::{Judgement, Sample};

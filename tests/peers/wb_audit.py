@@ -1,4 +1,4 @@
-"""Checks a whole-body plan of `saltus plan --stage product --solution FILE` with Pinocchio, independently of our dynamics.
+"""Checks a whole-body plan of `saltus plan TASK --solution FILE` with Pinocchio, independently of our dynamics.
 
 usage: python wb_audit.py FILE ...      (needs numpy, pin)
 

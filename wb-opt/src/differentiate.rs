@@ -91,13 +91,18 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             cost.add(by_effort, &gradient);
             hessian.add_outer(T::TWO * weights.effort, &gradient, support());
         }
-        let lines = self.problem.groups(self.k).lines;
-        for i in (BASE..N).take(lines) {
-            let mut gradient = jacobian.row(i);
-            gradient.v[i] += Line::of(self.problem.robot.motors[i].as_ref()).slope;
-            let end = self.sweep.bodies[i].subtree_end;
-            let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
-            multipliers[i] += self.push(units.moment, &gradient, support, y, d);
+        if self.problem.groups(self.k).lines > 0 {
+            for offset in self.problem.ends(self.k) {
+                for (i, multiplier) in multipliers.iter_mut().enumerate().skip(BASE) {
+                    let mut gradient = jacobian.row(i);
+                    let slope = Line::of(self.problem.robot.motors[i].as_ref()).slope;
+                    gradient.v[i] += slope;
+                    gradient.a[i] += slope * offset;
+                    let end = self.sweep.bodies[i].subtree_end;
+                    let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
+                    *multiplier += self.push(units.moment, &gradient, support, y, d);
+                }
+            }
         }
         for i in BASE..N {
             hessian.vv[i][i] += multipliers[i] * bends[i];

@@ -145,7 +145,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             above(abs(sample.effort[i]) - limit.effort);
             if let Some(motor) = &self.robot.motors[i] {
                 let line = Line::of(Some(motor));
-                above(abs(sample.effort[i] + line.slope * sample.v[i]) - line.bound);
+                for offset in self.ends(k) {
+                    let speed = sample.v[i] + offset * sample.a[i];
+                    above(abs(sample.effort[i] + line.slope * speed) - line.bound);
+                }
             }
             if self.is_landing(k) {
                 above(abs(state.q[i] - self.goal[i]));
@@ -175,7 +178,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 }
                 above(abs(f.x) - self.friction * f.z);
                 above(abs(f.y) - self.friction * f.z);
-                above(-f.z);
+                above(self.least_force - f.z);
             } else {
                 above(self.swing_height - self.over_ground(&point.pos).height);
             }

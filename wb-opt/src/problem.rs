@@ -82,6 +82,8 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     pub friction_smoothing: T,
     /// Coulomb coefficient of the friction pyramid.
     pub friction: T,
+    /// Least normal force of a foot in contact, N: above 0, it still pushes where the true force leaves the interval's constant one.
+    pub least_force: T,
     /// How far a foot in contact may be from its place, per axis, m.
     pub drift: T,
     /// Weights.
@@ -133,6 +135,13 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         self.phase_of(k).map_or(T::ZERO, |phase| phase.dt)
     }
 
+    /// Times of the ends of interval `k` from its midpoint, s.
+    #[inline(always)]
+    pub(crate) fn ends(&self, k: usize) -> [T; 2] {
+        let half = self.dt(k) * T::HALF;
+        [-half, half]
+    }
+
     /// Adds the joints' friction to efforts.
     #[inline(always)]
     pub(crate) fn add_friction(&self, v: &[T; N], effort: &mut [T; N]) {
@@ -180,6 +189,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             "N: a robot has at least the six coordinates of its base",
         )?;
         require(positive(self.friction), "friction: must be positive")?;
+        require(
+            self.least_force >= T::ZERO && finite(&self.least_force),
+            "least_force: must not be negative",
+        )?;
         require(positive(self.drift), "drift: must be positive")?;
         require(self.start.iter().all(finite), "start: must be finite")?;
         require(self.goal.iter().all(finite), "goal: must be finite")?;

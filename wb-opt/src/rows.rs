@@ -2,8 +2,9 @@
 //!
 //! State rows: at the first landing node, joints at the goal and their speeds zero; at the last node, the
 //! base near the goal. Control rows: per foot in contact four sides of the friction pyramid and the normal
-//! force. Mixed rows, all at the midpoint: effort on the base (zero), acceleration of the feet in contact
-//! (zero), joint efforts, torque-speed lines if any joint has a motor, drift of the feet in contact, clearances, heights of the other feet, and, where
+//! force. Mixed rows, at the midpoint: effort on the base (zero), acceleration of the feet in contact
+//! (zero), joint efforts, torque-speed lines at the speeds of the interval's start and end if any joint has a motor (the effort is held,
+//! and light legs change their speed much over an interval), drift of the feet in contact, clearances, heights of the other feet, and, where
 //! joints move, their positions and speeds. Rows are in the units of [`crate::state::Units`].
 
 use crate::drive::Line;
@@ -27,7 +28,7 @@ pub const fn row_capacity(
     let contacts = feet.saturating_mul(5 + 3 + 3);
     let middle = BASE
         .saturating_add(contacts)
-        .saturating_add(joints.saturating_mul(if lines { 4 } else { 3 }));
+        .saturating_add(joints.saturating_mul(if lines { 5 } else { 3 }));
     middle.saturating_add(clearances)
 }
 
@@ -40,7 +41,7 @@ pub(crate) struct Groups {
     pub(crate) feet: usize,
     /// Joints.
     pub(crate) joints: usize,
-    /// Torque-speed lines.
+    /// Torque-speed lines, at both ends of the interval.
     pub(crate) lines: usize,
     pub(crate) clearances: usize,
     /// Feet in the air.
@@ -85,7 +86,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             feet: layout.feet,
             joints,
             lines: if self.robot.motors.iter().any(Option::is_some) {
-                joints
+                joints.saturating_mul(2)
             } else {
                 0
             },
@@ -139,8 +140,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 push(T::ZERO, T::ZERO, units.speed);
             }
         }
-        for _ in 0..groups.feet.saturating_mul(5) {
-            push(T::ZERO, T::INFINITY, T::ONE);
+        for _ in 0..groups.feet {
+            for _ in 0..4 {
+                push(T::ZERO, T::INFINITY, T::ONE);
+            }
+            push(self.least_force, T::INFINITY, units.force);
         }
         for _ in 0..BASE.saturating_add(groups.feet.saturating_mul(3)) {
             push(T::ZERO, T::ZERO, T::ONE);
@@ -149,7 +153,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         for limit in limits() {
             push(-limit.effort, limit.effort, units.moment);
         }
-        let lines = self.robot.motors.iter().skip(BASE).take(groups.lines);
+        let joints = || self.robot.motors.iter().skip(BASE);
+        let lines = joints().chain(joints()).take(groups.lines);
         for line in lines.map(|motor| Line::of(motor.as_ref())) {
             push(-line.bound, line.bound, units.moment);
         }

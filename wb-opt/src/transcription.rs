@@ -57,9 +57,14 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         for value in effort.iter().skip(BASE) {
             push(*value / units.moment);
         }
-        let drives = effort.iter().zip(&mid.v).zip(&self.robot.motors);
-        for ((effort, v), motor) in drives.skip(BASE).take(self.groups(k).lines) {
-            push((*effort + Line::of(motor.as_ref()).slope * *v) / units.moment);
+        if self.groups(k).lines > 0 {
+            for offset in self.ends(k) {
+                let speeds = mid.v.iter().zip(&mid.a).map(|(v, a)| *v + offset * *a);
+                let drives = effort.iter().zip(speeds).zip(&self.robot.motors);
+                for ((effort, v), motor) in drives.skip(BASE) {
+                    push((*effort + Line::of(motor.as_ref()).slope * v) / units.moment);
+                }
+            }
         }
         for (point, _) in contacts.active() {
             for value in &point.pos {

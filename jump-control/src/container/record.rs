@@ -66,8 +66,12 @@ pub struct GroundStep {
 /// What a plan used, and so what it left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Margins {
-    /// Friction that the plan may use.
+    /// Friction of the ground that was planned for.
     pub friction: f32,
+    /// Share of it that the plan may use.
+    pub friction_share: f32,
+    /// Largest normal force per foot, N.
+    pub max_force: f32,
     /// Share of the torque limits that it may use.
     pub torque_share: f32,
     /// Share of the motors' speeds that it may use.

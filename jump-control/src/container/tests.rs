@@ -33,7 +33,9 @@ fn header() -> Header<'static> {
             distance: 0.18,
         }),
         margins: Margins {
-            friction: 0.45,
+            friction: 0.6,
+            friction_share: 0.75,
+            max_force: 160.0,
             torque_share: 0.7,
             speed_share: 0.85,
             weight: 130.0,

@@ -5,3 +5,4 @@ pub(crate) mod envelope;
 pub(crate) mod import;
 pub(crate) mod plan;
 pub(crate) mod run;
+pub(crate) mod verify;

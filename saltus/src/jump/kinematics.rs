@@ -1,4 +1,4 @@
-//! Legs by inverse kinematics, at the level of positions and of velocities.
+//! Kinematics of A1: poses, and leg velocities under a moving body.
 
 use super::{FOOT_COUNT, JOINTS, ROBOT, State, Velocity, feet};
 use a1_model::FOOT_RADIUS;
@@ -42,57 +42,6 @@ pub(crate) fn contact_frame(kinematics: &Kinematics<f64, JOINTS>, leg: usize) ->
     let down = rot_wl.inverse() * Vector3::new(0.0, 0.0, -FOOT_RADIUS);
     frame.offset = (Vector3::from(frame.offset) + down).into();
     frame
-}
-
-/// Joints that put the balls of the feet at `targets_w`, by damped Newton steps from `q`; the base stays.
-pub(crate) fn place_feet(
-    mut q: State,
-    targets_w: &[Vector3<f64>; FOOT_COUNT],
-) -> Result<State, String> {
-    let mut worst = f64::INFINITY;
-    for _ in 0..60 {
-        let kinematics = poses(&q);
-        worst = 0.0;
-        for (leg, frame) in feet().iter().enumerate() {
-            let error = targets_w[leg] - kinematics.frame(frame).translation;
-            worst = f64::max(worst, error.norm());
-            let j = leg_columns(&jacobian(&kinematics, frame), leg);
-            let damped = j * j.transpose() + Matrix3::identity() * 1e-6;
-            let step = damped.try_inverse().ok_or("singular leg")? * error;
-            let step = j.transpose() * step;
-            let scale = 0.3 / f64::max(0.3, step.amax());
-            for (q, d) in q.joints[3 * leg..3 * leg + 3].iter_mut().zip(step.iter()) {
-                *q += scale * d;
-            }
-        }
-        if worst < 1e-10 {
-            return Ok(q);
-        }
-    }
-    Err(format!(
-        "the legs miss their places by {:.1} mm: out of reach",
-        worst * 1e3
-    ))
-}
-
-/// A standing robot with its centre of mass at `com_w` and its balls over `points_w`, base level.
-pub(crate) fn stand(
-    com_w: &Vector3<f64>,
-    points_w: &[Vector3<f64>; FOOT_COUNT],
-) -> Result<State, String> {
-    let mut q = State::NEUTRAL;
-    q.joints = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
-    q.base.translation = *com_w;
-    let targets = points_w.map(|p| p + Vector3::new(0.0, 0.0, FOOT_RADIUS));
-    for _ in 0..40 {
-        q = place_feet(q, &targets)?;
-        let error = com_w - com(&q);
-        if error.norm() < 1e-9 {
-            return Ok(q);
-        }
-        q.base.translation += error;
-    }
-    Err("no standing posture with this centre of mass".into())
 }
 
 /// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and whose angular momentum about it

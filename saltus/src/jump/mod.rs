@@ -1,5 +1,7 @@
 //! The main job: a jump planned, simulated and judged.
 
+pub(crate) mod answer;
+pub(crate) mod bounds;
 pub(crate) mod envelope;
 pub(crate) mod execute;
 #[cfg(test)]
@@ -12,7 +14,9 @@ pub(crate) mod plant;
 pub(crate) mod reference;
 pub(crate) mod report;
 mod sensors;
+pub(crate) mod stored;
 pub(crate) mod task;
+pub(crate) mod task_file;
 pub(crate) mod whole_body;
 
 use a1_model::{A1Geared, FEET};

@@ -1,9 +1,9 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
-use super::reference::{self, Reference, landing_posture, standing};
+use super::reference::{self, Reference, standing};
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, WholeBodyPlan};
-use super::{FOOT_COUNT, Node};
+use super::{FOOT_COUNT, JOINTS, Node};
 use core::ops::ControlFlow;
 use nalgebra::{Unit, Vector3};
 use ocp_solver::Status;
@@ -60,7 +60,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
     nodes.extend(
         plan.intervals
             .iter()
-            .map(|interval| node(plan.order, interval.start, &interval.state, interval)),
+            .map(|interval| node(plan.order, interval.start, &interval.state, Some(interval))),
     );
     let (mut peak_torque, mut peak_friction) = (0.0, 0.0);
     for interval in plan.intervals.iter().filter(|i| i.start < takeoff) {
@@ -75,7 +75,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
         takeoff,
         posing: touchdown - whole_body::POSED,
         touchdown,
-        landing_joints: landing_posture(task)?,
+        landing_joints: task.robot.landing_joints(&task.start)?,
         durations: plan.phases.iter().map(duration).collect(),
         peak_torque,
         peak_friction,
@@ -90,8 +90,14 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
     })
 }
 
-/// A node of the plan: a state, and what is held over the interval that starts there.
-fn node(order: EulerOrder, time: f64, state: &State<f64, N>, interval: &Interval) -> Node {
+/// A node of the plan: a state, and what is held over the interval that starts there; nothing after the last.
+pub(crate) fn node(
+    order: EulerOrder,
+    time: f64,
+    state: &State<f64, N>,
+    interval: Option<&Interval>,
+) -> Node {
+    let held = interval.map(|interval| &interval.sample);
     let (q, v) = (&state.q, &state.v);
     // Angles turn one after the other, each about an axis of the frame so far.
     let [first, second, third] = match order {
@@ -110,7 +116,9 @@ fn node(order: EulerOrder, time: f64, state: &State<f64, N>, interval: &Interval
         base_velocity: Motion::new(rot_wb.inverse() * Vector3::new(v[0], v[1], v[2]), omega_b),
         joints: core::array::from_fn(|i| q[BASE + i]),
         joint_velocities: core::array::from_fn(|i| v[BASE + i]),
-        torques: core::array::from_fn(|i| interval.sample.effort[BASE + i]),
-        forces_w: interval.sample.forces_w,
+        torques: held.map_or([0.0; JOINTS], |held| {
+            core::array::from_fn(|i| held.effort[BASE + i])
+        }),
+        forces_w: held.map_or([Vector3::zeros(); FOOT_COUNT], |held| held.forces_w),
     }
 }

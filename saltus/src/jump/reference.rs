@@ -6,7 +6,7 @@
 //! changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
-use super::kinematics::{com, contact_frame, jacobian, place_feet, poses, rolling_velocity};
+use super::kinematics::{com, contact_frame, jacobian, poses, rolling_velocity};
 use super::planned::Solved;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
@@ -23,10 +23,6 @@ const STEP: f64 = 1e-3;
 const PULL: f64 = 0.02;
 /// Share of the flight after which the pre-landing posture stands.
 const POSING_SHARE: f64 = 0.5;
-/// Feet outside the hips in the pre-landing posture, m.
-const LANDING_WIDTH: f64 = 0.04;
-/// Foot centre below the hip in the pre-landing posture, m.
-const LANDING_LEG: f64 = 0.29;
 /// Speed at which planned Coulomb friction fades, rad/s.
 const FRICTION_SMOOTHING: f64 = 0.1;
 
@@ -181,39 +177,10 @@ fn swing_torques(q: &State, joints: &[f64; JOINTS], rates: &[f64; JOINTS]) -> [f
     core::array::from_fn(|i| effort.joints[i] - lost[i])
 }
 
-/// The pre-landing posture: feet below and outside the hips.
-pub(super) fn landing_posture(task: &Task) -> Result<[f64; JOINTS], String> {
-    let hips = &task.problem.feet;
-    let com_b = com(&task.start) - task.start.base.translation;
-    let mut q = State {
-        base: Transform::IDENTITY,
-        joints: task.start.joints,
-    };
-    let targets = hips.map(|foot| {
-        let hip = foot.nominal_b + com_b;
-        Vector3::new(
-            hip.x,
-            hip.y + LANDING_WIDTH * hip.y.signum(),
-            hip.z - LANDING_LEG,
-        )
-    });
-    q = place_feet(q, &targets)?;
-    Ok(q.joints)
-}
-
 /// The node before the plan begins: at rest, with the torques that hold the robot.
 pub(crate) fn standing(task: &Task) -> Result<Node, String> {
     let q = task.start;
-    let weight = task.problem.mass * task.problem.gravity;
-    let share = Vector3::new(0.0, 0.0, weight / FOOT_COUNT as f64);
-    let all = [true; FOOT_COUNT];
-    let held = load(
-        &q,
-        &Velocity::ZERO,
-        &Velocity::ZERO,
-        &all,
-        &[share; FOOT_COUNT],
-    )?;
+    let held = task.robot.holding(&q)?;
     Ok(Node {
         time: -1e-3,
         base: q.base,
@@ -227,7 +194,7 @@ pub(crate) fn standing(task: &Task) -> Result<Node, String> {
 /// The whole-body reference of a solved plan.
 pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let intervals = intervals(task, &plan.stages);
-    let landing_joints = landing_posture(task)?;
+    let landing_joints = task.robot.landing_joints(&task.start)?;
     let mut q = task.start;
     let mut swing = [0.0; JOINTS];
     let mut nodes = Vec::new();

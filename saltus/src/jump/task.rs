@@ -1,45 +1,61 @@
-//! From a task's name to the problem that is solved for execution.
+//! From a task file to the problem that is solved for execution.
 //!
 //! The reference problems use Table I of paper A literally; a plan that is to be executed needs the robot that executes it:
-//! the published mass, the composite inertia of the crouch, and margins on friction and force.
+//! its mass, the composite inertia of the crouch, and margins on friction and force.
 
-use super::{FOOT_COUNT, ROBOT, State, kinematics};
-use crate::reference::{File, SHIPPED};
-use nalgebra::{Matrix3, Vector3};
-use ocp_solver::{Settings, Solver, Stage, Status};
-use rbd_core::{CentroidalMap, Posture, centroidal_map};
-use srb_opt::Problem;
+use super::FOOT_COUNT;
+use super::task_file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
+use crate::robot::{PLACES, Quadruped, State};
+use nalgebra::Vector3;
+use ocp_solver::{Progress, Settings, Solver, Stage, Status};
+use rbd_core::Transform;
+use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
+use std::path::Path;
 
 /// Most contact phases of a task.
-pub(crate) const PHASES: usize = 4;
-const NX: usize = 16;
+pub(crate) const PHASES: usize = 6;
+const NX: usize = 12 + PHASES;
 const NU: usize = 12;
-const NI: usize = 40;
-/// Friction that plans may use of the ground's 0.6.
-const PLANNED_FRICTION: f64 = 0.45;
-/// Height of the centre of mass at the planned touchdown over its height at the start, m: legs reach for the ground.
-const LANDING_RISE: f64 = 0.04;
-/// Longest leg that the push-off may use, m: the knees stay clear of their stops and of straight.
-const LONGEST_LEG: f64 = 0.30;
-/// Farthest that the push-off may lean a leg sideways, m.
-const SIDE_REACH: f64 = 0.09;
+const NI: usize = srb_opt::row_capacity(FOOT_COUNT, PHASES);
+/// Height of the hips over the feet at the start, as a share of the leg.
+const STAND: f64 = 0.625;
+/// Height of the centre of mass at the planned touchdown over its height at the start, as a share of the leg: legs reach
+/// for the ground.
+const LANDING_RISE: f64 = 0.1;
+/// Shortest leg, as a share of its length.
+const SHORTEST_LEG: f64 = 0.25;
+/// Longest leg that the push-off may use, as a share of its length: the knees stay clear of their stops and of straight.
+const LONGEST_LEG: f64 = 0.75;
+/// Farthest that the push-off may lean a leg forwards, as a share of its length.
+const FRONT_REACH: f64 = 0.3;
+/// Farthest that the push-off may lean a leg sideways, as a share of its length.
+const SIDE_REACH: f64 = 0.225;
 /// Shortest flight, s: the legs must fold and take up the landing posture.
 const SHORTEST_FLIGHT: f64 = 0.28;
 /// Longer flight where the robot jumps off a box, s per metre: the feet must clear its edge.
 const FLIGHT_PER_DROP: f64 = 0.5;
 /// Box height from which falling alone takes long enough, m.
 const LOW_BOX: f64 = 0.4;
+/// Shortest and longest phase, s.
+const DURATIONS: [f64; 2] = [0.1, 1.0];
 /// Longest stance on all feet, s.
 const LONGEST_FOUR_LEGS: f64 = 0.55;
-/// Longest stance on two feet, s: it is unstable open loop.
+/// Longest stance on fewer feet, s: it is unstable open loop.
 const LONGEST_TWO_LEGS: f64 = 0.35;
+/// Width over which the edge of a box is smoothed, m.
+const EDGE_WIDTH: f64 = 0.03;
+/// Most intervals of a phase: beyond, only memory is used.
+const MOST_INTERVALS: usize = 1000;
 
 pub(crate) type SrbStage = Stage<f64, srb_opt::State<f64, PHASES>, NX, NU, NI>;
 
 /// A task as it is planned for execution.
+#[derive(Clone)]
 pub(crate) struct Task {
-    /// Product name.
+    /// Name of a built-in task, or path of the file.
     pub(crate) name: String,
+    /// Who jumps.
+    pub(crate) robot: Quadruped,
     /// The single-rigid-body problem.
     pub(crate) problem: Problem<f64, FOOT_COUNT, PHASES>,
     /// Standing at the start.
@@ -49,105 +65,414 @@ pub(crate) struct Task {
     /// Wanted heading at the end, rad.
     pub(crate) heading: f64,
     /// Height of the box that the robot starts on, m, with its edge.
-    pub(crate) edge: Option<srb_opt::Edge<f64>>,
+    pub(crate) edge: Option<Edge<f64>>,
+    /// What the plan may use.
+    pub(crate) limits: LimitsTable,
+    /// Weights of the costs.
+    pub(crate) weights: WeightsTable,
 }
 
-/// A single-rigid-body plan, solved.
+/// A single-rigid-body plan, or how far the solver came.
 pub(crate) struct SrbPlan {
     pub(crate) stages: Vec<SrbStage>,
+    pub(crate) status: Status,
     pub(crate) iterations: u32,
     pub(crate) wall_ms: f64,
+    pub(crate) cost: f64,
     pub(crate) max_violation: f64,
 }
 
+/// A value of a task file that cannot be: `(key, what it must be)`.
+type Unusable = (String, String);
+
+/// Fails with the key where a value does not meet its condition.
+fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
+    if ok {
+        Ok(())
+    } else {
+        Err((key.to_owned(), what.to_owned()))
+    }
+}
+
+fn positive(x: f64) -> bool {
+    x > 0.0 && x.is_finite()
+}
+
 impl Task {
-    /// The task of this name, for the robot that is simulated.
-    pub(crate) fn load(name: &str) -> Result<Self, String> {
-        let file = File::parse(SHIPPED)?;
-        let key = file.pick(Some(name))?;
-        if file.phase_count(key) > PHASES {
-            return Err(format!("task {name} has more than {PHASES} phases"));
-        }
-        let mut problem: Problem<f64, FOOT_COUNT, PHASES> = file.problem(key)?;
-        let goal = problem.goal_w - problem.start_w;
-        let points = problem.feet.map(|foot| foot.pos_wf);
-        let start = kinematics::stand(&problem.start_w, &points)?;
-        let mut map = CentroidalMap::ZERO;
-        centroidal_map(&ROBOT, &Posture::new(&ROBOT, &start), &mut map);
-        let s = map.locked_inertia_w;
-        problem.mass = map.mass;
-        problem.inertia_b = Matrix3::new(s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz);
-        problem.friction = PLANNED_FRICTION;
-        // The problem's body frame sits at the centre of mass, the robot's at the trunk's middle.
-        let com_b = kinematics::com(&start) - start.base.translation;
-        for foot in &mut problem.feet {
-            foot.nominal_b -= com_b;
-        }
-        for corner in &mut problem.corners {
-            *corner -= com_b;
-        }
-        problem.goal_w.z += LANDING_RISE;
-        problem.reach_lower.z = problem.reach_lower.z.max(-LONGEST_LEG);
-        problem.reach_lower.y = problem.reach_lower.y.max(-SIDE_REACH);
-        problem.reach_upper.y = problem.reach_upper.y.min(SIDE_REACH);
-        let drop = problem
-            .edge
-            .map_or(0.0, |edge| edge.drop.clamp(0.0, LOW_BOX));
-        let shortest = SHORTEST_FLIGHT + FLIGHT_PER_DROP * drop;
-        for phase in &mut problem.phases[..problem.phase_count] {
-            let feet = phase.contacts.iter().filter(|on| **on).count();
-            if feet == 0 {
-                phase.min_duration = phase.min_duration.max(shortest).min(phase.max_duration);
-            } else if feet < FOOT_COUNT {
-                phase.max_duration = phase.max_duration.min(LONGEST_TWO_LEGS);
-            } else {
-                phase.max_duration = phase.max_duration.min(LONGEST_FOUR_LEGS);
-            }
-            let guess = phase.duration_guess.min(phase.max_duration);
-            phase.duration_guess = guess.max(phase.min_duration);
-        }
-        problem
-            .check()
-            .map_err(|error| format!("task {name}: {error}"))?;
-        let heading = if problem.axis.z.abs() > 0.5 {
-            problem.angle * problem.axis.z
+    /// The task of this name, or of the TOML file of this path, for the robot that is simulated.
+    pub(crate) fn load(name: &str) -> Result<Self, TaskError> {
+        let task = Self::load_for(name, None, &[])?;
+        if task.robot.is_a1() {
+            Ok(task)
         } else {
-            0.0
+            Err(TaskError::Value {
+                task: name.to_owned(),
+                key: "robot".to_owned(),
+                what: "only a1 is simulated; `saltus plan` plans for others".to_owned(),
+            })
+        }
+    }
+
+    /// The task of this name or path, for the robot of another URDF where one is given.
+    pub(crate) fn load_for(
+        name: &str,
+        urdf: Option<&Path>,
+        locks: &[String],
+    ) -> Result<Self, TaskError> {
+        let (file, folder) = TaskFile::load(name)?;
+        let robot = match urdf {
+            Some(path) => Quadruped::from_urdf(path, locks),
+            None if file.robot == "a1" => Quadruped::a1(),
+            None => Quadruped::from_urdf(&folder.join(&file.robot), &file.lock),
+        };
+        let robot = robot.map_err(|error| TaskError::Robot {
+            task: name.to_owned(),
+            robot: urdf.map_or(file.robot.clone(), |path| path.display().to_string()),
+            error: Box::new(error),
+        })?;
+        Self::of(name, &file, robot).map_err(|(key, what)| TaskError::Value {
+            task: name.to_owned(),
+            key,
+            what,
+        })
+    }
+
+    fn of(name: &str, file: &TaskFile, robot: Quadruped) -> Result<Self, Unusable> {
+        check_limits(&file.limits)?;
+        check_weights(&file.weights)?;
+        let goal = Vector3::from(file.goal_m);
+        require(
+            goal.iter().all(|x| x.is_finite()),
+            "goal_m",
+            "must be three finite numbers",
+        )?;
+        let (start, start_w) = standing(&robot).map_err(|what| ("robot".to_owned(), what))?;
+        let com_b = start_w - start.base.translation;
+        let leg = robot.leg_length;
+        let (axis, angle) = turn(file)?;
+        let edge = edge(file, &robot)?;
+        let total = file.total;
+        require(
+            positive(total.min_s) && total.max_s.is_finite() && total.min_s <= total.max_s,
+            "total",
+            "min_s must be positive and not above max_s",
+        )?;
+        let (phases, reference) = phases(file, &robot, edge)?;
+        let limits = &file.limits;
+        let problem = Problem {
+            mass: robot.mass(),
+            inertia_b: robot.locked_inertia(&start),
+            gravity: 9.81,
+            // The problem's body frame sits at the centre of mass, the robot's at the trunk's middle.
+            feet: core::array::from_fn(|i| Foot {
+                pos_wf: Vector3::new(robot.hips[i].x, robot.hips[i].y, 0.0),
+                nominal_b: robot.hips[i] - com_b,
+            }),
+            reach_lower: Vector3::new(-FRONT_REACH, -SIDE_REACH, -LONGEST_LEG) * leg,
+            reach_upper: Vector3::new(FRONT_REACH, SIDE_REACH, -SHORTEST_LEG) * leg,
+            friction: limits.friction * limits.friction_share,
+            max_force: limits.force_weights * robot.mass() * 9.81,
+            corners: robot.corners.map(|corner| corner - com_b),
+            clearance: limits.clearance_m,
+            edge,
+            phases,
+            phase_count: file.phases.len(),
+            min_total: total.min_s,
+            max_total: total.max_s,
+            start_w,
+            goal_w: start_w + goal + Vector3::z() * (LANDING_RISE * leg),
+            axis,
+            angle,
+            min_final_trace: 2.5,
+            reference,
+            weights: Weights {
+                omega: file.weights.omega,
+                force: file.weights.force,
+                rotation: file.weights.rotation,
+            },
+            log_epsilon: 1e-6,
         };
         Ok(Self {
             name: name.to_owned(),
-            edge: problem.edge,
+            robot,
+            edge,
             problem,
             start,
             goal,
-            heading,
+            heading: if axis.z.abs() > 0.5 {
+                angle * axis.z
+            } else {
+                0.0
+            },
+            limits: *limits,
+            weights: file.weights,
+        })
+    }
+
+    /// Fixes the durations of the phases, s: the manual timing of paper A. The bounds of the task give way.
+    pub(crate) fn fix_timing(&mut self, durations: &[f64]) -> Result<(), TaskError> {
+        let count = self.problem.phase_count;
+        let refuse = |what: String| TaskError::Value {
+            task: self.name.clone(),
+            key: "--timing".to_owned(),
+            what,
+        };
+        if durations.len() != count {
+            return Err(refuse(format!(
+                "the task has {count} phases, {} durations are given",
+                durations.len()
+            )));
+        }
+        if let Some(bad) = durations.iter().find(|t| !positive(**t)) {
+            return Err(refuse(format!("{bad} s is no duration")));
+        }
+        for (phase, duration) in self.problem.phases.iter_mut().zip(durations) {
+            phase.duration_guess = *duration;
+            (phase.min_duration, phase.max_duration) = (*duration, *duration);
+        }
+        let total: f64 = durations.iter().sum();
+        // Wide: a bound on the sum that fixed durations just meet would only be in the solver's way.
+        (self.problem.min_total, self.problem.max_total) = (0.5 * total, 2.0 * total);
+        Ok(())
+    }
+
+    /// Name of a phase: the feet on the ground.
+    pub(crate) fn phase_name(&self, contacts: &[bool; FOOT_COUNT]) -> String {
+        let on: Vec<&str> = PLACES
+            .into_iter()
+            .filter(|place| self.robot.leg(place).is_some_and(|leg| contacts[leg]))
+            .collect();
+        match on.len() {
+            0 => "flight".to_owned(),
+            FOOT_COUNT => "four legs".to_owned(),
+            _ => on.join(" "),
+        }
+    }
+
+    /// Tries to solve the single-rigid-body problem.
+    pub(crate) fn attempt(
+        &self,
+        settings: &Settings<f64>,
+        observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
+    ) -> Result<SrbPlan, String> {
+        let problem = &self.problem;
+        problem
+            .check()
+            .map_err(|error| format!("task {}: {error}", self.name))?;
+        let mut stages = vec![Stage::new(srb_opt::State::new()); problem.intervals() + 1];
+        let clock = std::time::Instant::now();
+        problem.write_guess(&mut stages, || 0.0);
+        let solution = Solver::new(*settings)
+            .solve(problem, &mut stages, observer)
+            .map_err(|error| error.to_string())?;
+        let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
+        let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
+        Ok(SrbPlan {
+            stages,
+            status: solution.status,
+            iterations: solution.iterations as u32,
+            wall_ms,
+            cost: judged.cost,
+            max_violation: judged.max_violation,
         })
     }
 
     /// Solves the single-rigid-body problem; anything but a solved problem is an error.
     pub(crate) fn solve(&self) -> Result<SrbPlan, String> {
-        let problem = &self.problem;
-        let mut stages = vec![Stage::new(srb_opt::State::new()); problem.intervals() + 1];
-        let clock = std::time::Instant::now();
-        problem.write_guess(&mut stages, || 0.0);
-        let solution = Solver::new(Settings::new())
-            .solve(problem, &mut stages, |_| {
-                core::ops::ControlFlow::Continue(())
-            })
-            .map_err(|error| error.to_string())?;
-        let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
-        let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
-        if solution.status != Status::Solved {
+        let plan = self.attempt(&Settings::new(), |_| core::ops::ControlFlow::Continue(()))?;
+        if plan.status != Status::Solved {
             return Err(format!(
                 "task {}: the planner ended with {:?} after {} iterations, violation {:.1e}",
-                self.name, solution.status, solution.iterations, judged.max_violation
+                self.name, plan.status, plan.iterations, plan.max_violation
             ));
         }
-        Ok(SrbPlan {
-            stages,
-            iterations: solution.iterations as u32,
-            wall_ms,
-            max_violation: judged.max_violation,
-        })
+        Ok(plan)
     }
+}
+
+/// The robot standing at the origin, and its centre of mass.
+fn standing(robot: &Quadruped) -> Result<(State, Vector3<f64>), String> {
+    let points = robot.hips.map(|hip| Vector3::new(hip.x, hip.y, 0.0));
+    // A1 stands with its centre of mass, not its hips, at the paper's height; there the two are 2 mm apart.
+    let mut com_w = Vector3::z() * (STAND * robot.leg_length);
+    if !robot.is_a1() {
+        let hip = robot.hips.iter().map(|hip| hip.z).sum::<f64>() / robot.hips.len() as f64;
+        let height = STAND * robot.leg_length + robot.foot_radius - hip;
+        let base = Transform::new(
+            nalgebra::Rotation3::identity(),
+            Vector3::new(0.0, 0.0, height),
+        );
+        com_w.z = robot.com(&robot.near(base)).z;
+    }
+    Ok((robot.stand(&com_w, &points)?, com_w))
+}
+
+fn turn(file: &TaskFile) -> Result<(Vector3<f64>, f64), Unusable> {
+    let Some(turn) = file.turn else {
+        return Ok((Vector3::z(), 0.0));
+    };
+    let axis = Vector3::from(turn.axis);
+    let length = axis.norm();
+    require(positive(length), "turn.axis", "must be finite and not zero")?;
+    require(
+        turn.angle_deg.is_finite(),
+        "turn.angle_deg",
+        "must be finite",
+    )?;
+    Ok((axis / length, turn.angle_deg.to_radians()))
+}
+
+fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusable> {
+    let Some(table) = file.r#box else {
+        return Ok(None);
+    };
+    require(table.drop_m.is_finite(), "box.drop_m", "must be finite")?;
+    require(table.side.abs() == 1, "box.side", "must be 1 or -1")?;
+    let axis = match table.axis {
+        Across::X => 0,
+        Across::Y => 1,
+    };
+    let sign = f64::from(table.side);
+    let nearest = robot.hips.iter().map(|hip| sign * hip[axis]);
+    let nearest = nearest.fold(f64::NEG_INFINITY, f64::max);
+    let distance = match (table.beyond_feet_m, table.distance_m) {
+        (Some(beyond), None) => nearest + beyond,
+        (None, Some(distance)) => distance,
+        _ => f64::NAN,
+    };
+    require(
+        distance.is_finite(),
+        "box.beyond_feet_m",
+        "give either this or distance_m, finite",
+    )?;
+    Ok(Some(Edge {
+        drop: table.drop_m,
+        axis,
+        sign,
+        distance,
+        width: EDGE_WIDTH,
+    }))
+}
+
+type Phases = ([Phase<f64, FOOT_COUNT>; PHASES], Reference);
+
+fn phases(file: &TaskFile, robot: &Quadruped, edge: Option<Edge<f64>>) -> Result<Phases, Unusable> {
+    let count = file.phases.len();
+    require(
+        (1..=PHASES).contains(&count),
+        "phase",
+        &format!("there must be 1 to {PHASES} phases"),
+    )?;
+    let turning = file.phases.iter().filter(|p| p.turn_deg.is_some()).count();
+    require(
+        turning == 0 || turning == count,
+        "phase.turn_deg",
+        "must be in all phases or in none",
+    )?;
+    let drop = edge.map_or(0.0, |edge| edge.drop.clamp(0.0, LOW_BOX));
+    let mut phases = [Phase {
+        contacts: [false; FOOT_COUNT],
+        intervals: 0,
+        duration_guess: 0.0,
+        min_duration: 0.0,
+        max_duration: 0.0,
+        reference_angle: 0.0,
+    }; PHASES];
+    for (i, (slot, table)) in phases.iter_mut().zip(&file.phases).enumerate() {
+        *slot = phase(table, robot, SHORTEST_FLIGHT + FLIGHT_PER_DROP * drop)
+            .map_err(|(key, what)| (format!("phase {}: {key}", i + 1), what))?;
+    }
+    let reference = if turning > 0 {
+        Reference::PerPhase
+    } else {
+        Reference::Linear
+    };
+    Ok((phases, reference))
+}
+
+fn phase(
+    table: &PhaseTable,
+    robot: &Quadruped,
+    shortest_flight: f64,
+) -> Result<Phase<f64, FOOT_COUNT>, Unusable> {
+    let mut contacts = [false; FOOT_COUNT];
+    for foot in &table.feet {
+        let leg = robot.leg(foot).ok_or_else(|| {
+            let known = PLACES.join(", ");
+            (
+                "feet".to_owned(),
+                format!("no foot `{foot}`; there are {known}"),
+            )
+        })?;
+        contacts[leg] = true;
+    }
+    let [shortest, longest] = match table.feet.len() {
+        0 => [shortest_flight, DURATIONS[1]],
+        FOOT_COUNT => [DURATIONS[0], LONGEST_FOUR_LEGS],
+        _ => [DURATIONS[0], LONGEST_TWO_LEGS],
+    };
+    let min = table.min_s.unwrap_or(shortest);
+    let max = table.max_s.unwrap_or(longest.max(min));
+    let min = table.min_s.unwrap_or(min.min(max));
+    require(positive(min), "min_s", "must be positive")?;
+    require(
+        max.is_finite() && min <= max,
+        "max_s",
+        "must be finite and not below min_s",
+    )?;
+    require(positive(table.guess_s), "guess_s", "must be positive")?;
+    require(
+        (1..=MOST_INTERVALS).contains(&table.intervals),
+        "intervals",
+        &format!("must be 1 to {MOST_INTERVALS}"),
+    )?;
+    let turn = table.turn_deg.unwrap_or(0.0);
+    require(turn.is_finite(), "turn_deg", "must be finite")?;
+    Ok(Phase {
+        contacts,
+        intervals: table.intervals,
+        duration_guess: table.guess_s.clamp(min, max),
+        min_duration: min,
+        max_duration: max,
+        reference_angle: turn.to_radians(),
+    })
+}
+
+fn check_limits(limits: &LimitsTable) -> Result<(), Unusable> {
+    require(
+        limits.friction >= 0.0 && limits.friction.is_finite(),
+        "limits.friction",
+        "must be finite and not negative",
+    )?;
+    for (key, x) in [
+        ("limits.friction_share", limits.friction_share),
+        ("limits.force_weights", limits.force_weights),
+        ("limits.speed_share", limits.speed_share),
+    ] {
+        require(positive(x), key, "must be positive")?;
+    }
+    require(
+        limits.clearance_m.is_finite(),
+        "limits.clearance_m",
+        "must be finite",
+    )?;
+    require(
+        limits.torque_shares.iter().all(|x| positive(*x)),
+        "limits.torque_shares",
+        "must be three positive numbers",
+    )
+}
+
+fn check_weights(weights: &WeightsTable) -> Result<(), Unusable> {
+    for (key, x) in [
+        ("weights.omega", weights.omega),
+        ("weights.force", weights.force),
+        ("weights.rotation", weights.rotation),
+        ("weights.position", weights.position),
+        ("weights.torque", weights.torque),
+        ("weights.goal", weights.goal),
+    ] {
+        require(positive(x), key, "must be positive")?;
+    }
+    Ok(())
 }

@@ -1,16 +1,13 @@
 //! The whole-body plan of a task as it is to be executed: the geared A1 on rolling ball feet, with margins.
 
-use super::kinematics::com;
-use super::reference::landing_posture;
 use super::task::{SrbPlan, Task};
-use super::{FOOT_COUNT, JOINTS, ROBOT, feet};
+use super::{FOOT_COUNT, JOINTS};
 use crate::track::Track;
-use a1_model::FOOT_RADIUS;
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
-use ocp_solver::{Progress, Solution, Stage, Status};
+use ocp_solver::{Progress, Solution, Stage, Status, blocking_rows};
 use wb_opt::{
-    BASE, Clearance, EulerOrder, Foot, Gains, Judgement, Phase, Point, Problem, Robot, Sample,
+    BASE, Clearance, EulerOrder, Foot, Gains, Judgement, Phase, Point, Problem, Robot, Row, Sample,
     State, Weights,
 };
 
@@ -22,16 +19,12 @@ const NU: usize = N + 3 * FOOT_COUNT;
 const CLEARANCES: usize = 12;
 const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, CLEARANCES, true);
 
-/// Longest interval in contact, s: the rate at which a controller is given new torques.
-const CONTACT_DT: f64 = 0.01;
+/// Longest interval in contact, s. At twice the length the audit finds limits exceeded between nodes.
+const CONTACT_DT: f64 = 0.005;
 /// Longest interval in flight, s: no forces change, but the turn must be right.
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub(crate) const POSED: f64 = 0.05;
-/// Torques that plans may use of the motors' 33.5 N m: the first with which the task is solved.
-const PLANNED_TORQUES: [f64; 3] = [24.0, 28.0, 30.0];
-/// Share of the motors' speeds that plans may use: on the falling part of their line feedback needs torque as well.
-const PLANNED_SPEED: f64 = 0.85;
 /// Iterations after which more torque is tried; a task that is solved takes a third of it.
 const PATIENCE: usize = 100;
 /// How much farther than it is a box edge is taken to be, m.
@@ -39,24 +32,35 @@ const EDGE_MARGIN: f64 = 0.12;
 /// How far a ball may roll from where it stood, per axis, m.
 const ROLL: f64 = 0.03;
 const KNEE_CLEARANCE: f64 = 0.03;
-const FRICTION_SMOOTHING: f64 = 0.3;
-const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
-const WEIGHTS: Weights<f64> = Weights {
-    position: 1.0,
-    effort: 1e-4,
-    goal: 10.0,
-};
+/// Least normal force of a foot that stands, in weights of the robot.
+const LEAST_FORCE: f64 = 0.04;
+/// Speed at which planned Coulomb friction of the joints fades, rad/s.
+pub(crate) const FRICTION_SMOOTHING: f64 = 0.3;
+pub(crate) const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 
 /// A solved whole-body plan.
 pub(crate) struct WholeBodyPlan {
     pub(crate) outcome: Solution<f64>,
     pub(crate) judged: Judgement<f64>,
-    /// Torque that the plan was allowed, N m.
+    /// Torque that the plan was allowed of the strongest joint, N m.
     pub(crate) torque_limit: f64,
     /// Order of the base coordinates.
     pub(crate) order: EulerOrder,
     pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
     pub(crate) intervals: Vec<Interval>,
+    /// State at the planned touchdown.
+    pub(crate) end: State<f64, N>,
+    /// What blocks, worst first; nothing if the plan was solved.
+    pub(crate) blocked: Vec<Blocked>,
+    /// Share of the torque limits that the plan was allowed.
+    pub(crate) torque_share: f64,
+}
+
+/// A row that is violated where the solver stopped.
+pub(crate) struct Blocked {
+    pub(crate) row: Row,
+    /// By how much, in the row's own unit.
+    pub(crate) violation: f64,
 }
 
 /// One interval of a plan; torques and forces are held over it.
@@ -84,7 +88,7 @@ pub(crate) fn plan(
     } else {
         EulerOrder::Zyx
     };
-    let landing_joints = landing_posture(task)?;
+    let landing_joints = task.robot.landing_joints(&task.start)?;
     let coordinates = |pos: &Vector3<f64>, angles: [f64; 3], joints: &[f64; JOINTS]| {
         core::array::from_fn(|i| match i {
             0..3 => pos[i],
@@ -138,8 +142,7 @@ pub(crate) fn plan(
         .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
         .collect();
 
-    let frames = feet();
-    let com_b = com(&task.start) - standing;
+    let com_b = task.robot.com(&task.start) - standing;
     let corner = |corner: &Vector3<f64>| Clearance {
         point: Point {
             link: BASE - 1,
@@ -166,39 +169,55 @@ pub(crate) fn plan(
         edge
     });
     let mut problem = Problem {
-        robot: Robot::on_euler_base(&ROBOT, order),
+        robot: Robot::on_euler_base(&task.robot, order),
         feet: core::array::from_fn(|i| Foot {
-            point: Robot::<f64, N>::point(&frames[i]),
-            pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, FOOT_RADIUS),
-            radius: FOOT_RADIUS,
+            point: Robot::<f64, N>::point(&task.robot.feet[i]),
+            pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, task.robot.foot_radius),
+            radius: task.robot.foot_radius,
         }),
         clearances: &clearances,
         // A foot that grazes the edge of a box turns the robot over.
-        swing_height: FOOT_RADIUS,
+        swing_height: task.robot.foot_radius,
         edge,
         phases: &phases,
         reference: &reference,
         start,
         goal,
         goal_tolerance: GOAL_TOLERANCE,
+        least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
         landing_intervals: (POSED / FLIGHT_DT) as usize,
         friction_smoothing: FRICTION_SMOOTHING,
         friction: rigid.friction,
         drift: ROLL,
-        weights: WEIGHTS,
+        weights: Weights {
+            position: task.weights.position,
+            effort: task.weights.torque,
+            goal: task.weights.goal,
+        },
     };
-    for motor in problem.robot.motors.iter_mut().flatten() {
-        motor.corner_speed *= PLANNED_SPEED;
-        motor.no_load_speed *= PLANNED_SPEED;
+    for (motor, limit) in problem
+        .robot
+        .motors
+        .iter_mut()
+        .zip(&mut problem.robot.limits)
+    {
+        match motor {
+            Some(motor) => {
+                motor.corner_speed *= task.limits.speed_share;
+                motor.no_load_speed *= task.limits.speed_share;
+            }
+            None => limit.speed *= task.limits.speed_share,
+        }
     }
     let mut stages: Vec<Stage<f64, State<f64, N>, NX, NU, NI>> =
         vec![Stage::new(State::at_rest(start)); problem.intervals() + 1];
     let mut settings = wb_opt::settings();
     (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
     let mut solved = None;
-    for torque in PLANNED_TORQUES {
-        for limit in problem.robot.limits.iter_mut().skip(BASE) {
-            limit.effort = torque;
+    let given = problem.robot.limits;
+    for share in task.limits.torque_shares {
+        for (limit, given) in problem.robot.limits.iter_mut().zip(&given).skip(BASE) {
+            limit.effort = share * given.effort;
         }
         let force = |k: usize, foot: usize| {
             let k = track.interval(times[k]);
@@ -209,12 +228,14 @@ pub(crate) fn plan(
         let outcome = problem
             .plan(&settings, &mut stages, &mut observer)
             .map_err(|error| format!("task {}: {error}", task.name))?;
-        solved = Some((outcome, torque));
+        solved = Some((outcome, share));
         if matches!(outcome.status, Status::Solved | Status::Cancelled) {
             break;
         }
     }
-    let (outcome, torque_limit) = solved.ok_or("no torque to plan with")?;
+    let (outcome, torque_share) = solved.ok_or("no torque to plan with")?;
+    let strongest = given.iter().skip(BASE).map(|limit| limit.effort);
+    let torque_limit = torque_share * strongest.fold(0.0, f64::max);
     let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
     let intervals = stages[..problem.intervals()].iter().enumerate();
     let intervals = intervals.map(|(k, stage)| Interval {
@@ -224,7 +245,21 @@ pub(crate) fn plan(
         sample: problem.sample(k, &stage.state, &stage.control),
         gains: problem.gains(k, &stage.state, &stage.control, stage.gain()),
     });
+    let blocking = blocking_rows::<4, _, _, _, _, _, _>(&stages);
+    let blocked = blocking.iter().flatten().filter_map(|found| {
+        let (row, unit) = problem.row(found.stage, found.row)?;
+        let violation = (found.violation * unit).abs();
+        Some(Blocked { row, violation })
+    });
+    let blocked = match outcome.status {
+        Status::Solved => Vec::new(),
+        _ => blocked.collect(),
+    };
+    let end = stages.last().map(|stage| stage.state);
     Ok(WholeBodyPlan {
+        end: end.ok_or("no nodes")?,
+        torque_share,
+        blocked,
         outcome,
         judged,
         torque_limit,
@@ -241,7 +276,7 @@ fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
 
 /// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
 fn track(task: &Task, srb: &SrbPlan, order: EulerOrder) -> Track {
-    let com_b = com(&task.start) - task.start.base.translation;
+    let com_b = task.robot.com(&task.start) - task.start.base.translation;
     let mut time = 0.0;
     let mut times = Vec::new();
     for (k, stage) in srb.stages.iter().enumerate() {

@@ -138,6 +138,7 @@ impl Data {
             start: self.start,
             goal: self.goal,
             goal_tolerance: GOAL_TOLERANCE,
+            least_force: 0.0,
             landing_intervals: LANDING_INTERVALS,
             friction_smoothing: FRICTION_SMOOTHING,
             friction: self.friction,

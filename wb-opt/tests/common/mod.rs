@@ -98,6 +98,7 @@ pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> 
         start: crouch(),
         goal,
         goal_tolerance: [0.02, 0.02, 0.02, 0.05, 0.05, 0.05],
+        least_force: 0.0,
         landing_intervals: 5,
         friction_smoothing: 0.5,
         friction: 0.6,

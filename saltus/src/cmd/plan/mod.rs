@@ -1,7 +1,8 @@
-//! `saltus plan`: solve a reference problem.
+//! `saltus plan`: plan a task, or solve a reference problem.
 
-mod product;
+mod layout;
 mod srb;
+mod task;
 mod whole_body;
 
 use crate::reference::whole_body::shipped;
@@ -16,21 +17,39 @@ use std::time::Instant;
 /// Options of `saltus plan`.
 #[derive(clap::Args, Clone)]
 pub(crate) struct Args {
+    /// Task: a built-in one such as a1/lateral, or the path of a TOML file.
+    #[arg(required_unless_present_any = ["reference", "problem"], conflicts_with_all = ["reference", "problem", "srb"])]
+    task: Option<String>,
+    /// Durations of the phases, s: plan with this timing instead of finding the best.
+    #[arg(long, value_delimiter = ',', requires = "task")]
+    timing: Option<Vec<f64>>,
+    /// Plan for the quadruped of this URDF instead of the task's robot: twelve joints, four legs of three below a floating base, one per
+    /// quadrant, with effort and speed limits.
+    #[arg(long, requires = "task")]
+    robot: Option<PathBuf>,
+    /// Lock joints of that robot at a position, rad or m.
+    #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
+    lock: Vec<String>,
+    /// New folder for the plan: plan.bin, the container that controllers read, and plan.json.
+    #[arg(long, requires = "task")]
+    out: Option<PathBuf>,
+    /// Leave the feedback gains out of the container: they take seven eighths of it.
+    #[arg(long, requires = "out")]
+    no_gains: bool,
     /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).
     #[arg(long)]
     reference: Option<String>,
     /// JSON description to take tasks from instead of the shipped nine.
     #[arg(long)]
     problem: Option<PathBuf>,
-    /// Stage to solve: the reference problems `srb` and `whole-body`, or `product`, both for the robot that executes
-    /// the task, with margins.
-    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body", "product"])]
+    /// Stage of the reference problem to solve.
+    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"])]
     stage: String,
     /// SRB solution that the whole-body stage follows; default: the shipped one of the reference task, or,
     /// for tasks of a problem file, one that is solved first.
     #[arg(long)]
     srb: Option<PathBuf>,
-    /// Write the solution here, in the layout of the reference checkers.
+    /// Write the solution here, in the layout of the checkers.
     #[arg(long)]
     solution: Option<PathBuf>,
     /// Print one JSON object instead of text.
@@ -73,6 +92,9 @@ impl Planned {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    if let Some(name) = &args.task {
+        return Ok(task::run(args, name));
+    }
     let text = match &args.problem {
         Some(path) => read(path)?,
         None => SHIPPED.to_owned(),
@@ -80,14 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let file = File::parse(&text)?;
     let name = file.pick(args.reference.as_deref())?;
     let mut report = json!({ "task": name });
-    let (key, planned) = if args.stage == "product" {
-        if args.problem.is_some() || args.srb.is_some() {
-            return Err("--stage product plans the shipped tasks from its own rigid body".into());
-        }
-        let (srb, planned) = product::solve(args, name)?;
-        report["srb"] = srb;
-        ("whole_body", planned)
-    } else if args.stage == "whole-body" {
+    let (key, planned) = if args.stage == "whole-body" {
         let srb = match &args.srb {
             Some(path) => read(path)?,
             None => match shipped(name).filter(|_| args.problem.is_none()) {

@@ -1,0 +1,231 @@
+//! Whether a plan is one: an independent check of a stored plan.
+//!
+//! The planner's rows hold at the middle of its intervals, in its own transcription. Here the robot moves by the forward dynamics of
+//! `rbd-core` instead, in steps of 0.1 ms under the plan's torques as they are held, with the feet that stand rolling on their balls,
+//! and every limit is looked at in every step. Two integrations:
+//!
+//! - the flight, from the planned take-off to the touchdown in one piece: nothing corrects it, as nothing can in the air;
+//! - every interval from its own node, for the limits: an open-loop stance on two feet is unstable, and what is asked is whether a robot
+//!   that is on the plan keeps its limits between nodes.
+
+mod forward;
+mod limits;
+
+use crate::jump::stored::Stored;
+use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use forward::{Forward, Velocity};
+use jump_control::container::PlanNode;
+use limits::Limits;
+use rbd_core::difference;
+use serde_json::{Value, json};
+
+/// Step of the integration, s.
+const STEP: f64 = 1e-4;
+/// Largest orientation error after the flight, rad.
+const ORIENTATION: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// Largest position error after the flight, m.
+const POSITION: f64 = 0.01;
+/// How far a limit may be exceeded between nodes, as a share of its range.
+const BEYOND: f64 = 0.01;
+
+/// The smallest distance from one limit over the whole plan.
+#[derive(Clone, Debug)]
+pub(crate) struct Margin {
+    /// Which limit, of which joint or foot.
+    pub(crate) name: String,
+    /// Distance as a share of the limit's range; negative beyond it.
+    pub(crate) value: f64,
+    /// When, s.
+    pub(crate) time: f64,
+}
+
+/// What an audit found.
+#[derive(Clone, Debug)]
+pub(crate) struct Audit {
+    /// Angle between the planned and the integrated base at touchdown, rad.
+    pub(crate) flight_orientation_error: f64,
+    /// Distance between them, m.
+    pub(crate) flight_position_error: f64,
+    /// Time for which each joint's torque is at its limit, s.
+    pub(crate) saturation: [f64; JOINTS],
+    /// Time for which any joint's is, s.
+    pub(crate) any_saturation: f64,
+    /// Largest difference of an integrated interval from the next node: base or joint position, m or rad, and velocity.
+    pub(crate) defect: [f64; 2],
+    /// All limits, the worst first.
+    pub(crate) margins: Vec<Margin>,
+}
+
+impl Audit {
+    /// Audits a stored plan of this robot.
+    pub(crate) fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
+        let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
+        let takeoff = f64::from(plan.header().takeoff);
+        let mut forward = Forward::new(robot);
+        let mut limits = Limits::new(robot, plan.header());
+        let mut defect = [0.0, 0.0];
+        let mut flight = None;
+        let last = nodes.len().saturating_sub(2);
+        for (k, pair) in nodes.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            let mut held = Held::of(plan, from, f64::from(to.time - from.time))?;
+            held.last = k == last;
+            let (mut q, mut v) = state(from);
+            let time = f64::from(from.time);
+            for i in 0..held.steps {
+                let at = time + i as f64 * held.h;
+                let forces_w = forward.step(&mut q, &mut v, &held.torques, &held.contacts, held.h);
+                limits.check(at, held.h, &q, &v, &held, &forces_w);
+            }
+            let (end, end_v) = state(to);
+            let miss = difference(&end, &q);
+            let largest = |x: &Velocity| {
+                let parts = x.base.to_array();
+                let parts = parts.iter().chain(&x.joints);
+                parts.fold(0.0, |most: f64, x| most.max(x.abs()))
+            };
+            defect[0] = f64::max(defect[0], largest(&miss));
+            defect[1] = f64::max(defect[1], largest(&(v - end_v)));
+            // Half a step earlier: times are stored in single precision.
+            if time >= takeoff - 0.5 * STEP {
+                let (q, v) = flight.get_or_insert_with(|| state(from));
+                for _ in 0..held.steps {
+                    forward.step(q, v, &held.torques, &held.contacts, held.h);
+                }
+            }
+        }
+        let (landed, _) = flight.ok_or("the plan has no flight")?;
+        let end = nodes.last().map(|node| state(node).0).ok_or("no nodes")?;
+        let turn = end.base.rotation.inverse() * landed.base.rotation;
+        let mut margins = limits.margins;
+        margins.retain(|margin| margin.value.is_finite());
+        margins.sort_by(|a, b| a.value.total_cmp(&b.value));
+        Ok(Self {
+            flight_orientation_error: so3::log(&turn).norm(),
+            flight_position_error: (end.base.translation - landed.base.translation).norm(),
+            saturation: limits.saturation,
+            any_saturation: limits.any_saturation,
+            defect,
+            margins,
+        })
+    }
+
+    /// Whether the plan may be called solved.
+    pub(crate) fn passes(&self) -> bool {
+        self.flight_orientation_error <= ORIENTATION
+            && self.flight_position_error <= POSITION
+            && self.margins.iter().all(|margin| margin.value >= -BEYOND)
+    }
+
+    /// What was found, in a line.
+    pub(crate) fn summary(&self) -> String {
+        let worst = self.margins.first().map_or_else(String::new, |m| {
+            format!(
+                ", worst margin {} {:.4} at {:.3} s",
+                m.name, m.value, m.time
+            )
+        });
+        format!(
+            "flight error {:.2} deg and {:.1} mm, torque saturation {:.1} ms{worst}",
+            self.flight_orientation_error.to_degrees(),
+            self.flight_position_error * 1e3,
+            self.any_saturation * 1e3
+        )
+    }
+
+    /// Why the plan does not pass.
+    pub(crate) fn complaint(&self) -> String {
+        let mut told = Vec::new();
+        // Not <=: NaN is no agreement either.
+        if !(self.flight_orientation_error <= ORIENTATION && self.flight_position_error <= POSITION)
+        {
+            told.push(format!(
+                "the flight ends {:.2} deg and {:.1} mm off",
+                self.flight_orientation_error.to_degrees(),
+                self.flight_position_error * 1e3
+            ));
+        }
+        let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
+        told.extend(beyond.map(|m| {
+            format!(
+                "{} exceeds its limit by {:.1} % of its range at {:.3} s",
+                m.name,
+                -100.0 * m.value,
+                m.time
+            )
+        }));
+        told.join("; ")
+    }
+
+    /// The object of `--json`.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "flight_orientation_error_deg": self.flight_orientation_error.to_degrees(),
+            "flight_position_error_m": self.flight_position_error,
+            "torque_saturation_ms": self.any_saturation * 1e3,
+            "worst_margin": self.margins.first().map(|m| json!({ "name": m.name, "value": m.value })),
+        })
+    }
+
+    /// Everything that was found.
+    pub(crate) fn details(&self, robot: &Quadruped) -> Value {
+        let mut details = self.json();
+        let names = (0..JOINTS).map(|i| crate::jump::stored::joint_name(robot, i));
+        let saturation = names.zip(self.saturation.map(|t| json!(t * 1e3)));
+        details["torque_saturation_by_joint_ms"] = Value::Object(saturation.collect());
+        details["interval_defect"] = json!({
+            "position": self.defect[0],
+            "velocity": self.defect[1],
+        });
+        let row = |m: &Margin| json!({ "name": m.name, "value": m.value, "time_s": m.time });
+        details["margins"] = self.margins.iter().map(row).collect();
+        details
+    }
+}
+
+/// What is held over an interval.
+struct Held {
+    torques: [f64; JOINTS],
+    contacts: [bool; LEGS],
+    steps: usize,
+    /// Length of a step, s.
+    h: f64,
+    /// Whether the plan ends with this interval.
+    last: bool,
+}
+
+impl Held {
+    fn of(plan: &Stored<'_>, node: &PlanNode<JOINTS, LEGS>, dt: f64) -> Result<Self, String> {
+        let header = plan.header();
+        let phases = header.phases.get(..usize::from(header.phase_count));
+        let phase = phases.and_then(|phases| phases.get(usize::from(node.phase)));
+        let bits = phase
+            .ok_or("a node is in a phase that there is not")?
+            .contacts;
+        if !(dt > 0.0 && dt < 1.0) {
+            return Err(format!("an interval of {dt} s"));
+        }
+        let steps = (dt / STEP).round().max(1.0);
+        Ok(Self {
+            torques: node.torques.0.map(f64::from),
+            contacts: core::array::from_fn(|i| (bits >> i) & 1 == 1),
+            steps: steps as usize,
+            h: dt / steps,
+            last: false,
+        })
+    }
+}
+
+/// Configuration and velocity at a node.
+fn state(node: &PlanNode<JOINTS, LEGS>) -> (State, Velocity) {
+    let node = node.node::<f64>();
+    let q = State {
+        base: node.base,
+        joints: node.joints,
+    };
+    let v = Velocity {
+        base: node.base_velocity,
+        joints: node.joint_velocities,
+    };
+    (q, v)
+}

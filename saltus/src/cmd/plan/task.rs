@@ -1,0 +1,218 @@
+//! A task, planned for execution: bounds, single rigid body, whole body, container, audit.
+//!
+//! Exit code 0 for a plan that passed its audit, 2 for everything else.
+
+use super::Args;
+use super::layout::layout;
+use crate::audit::Audit;
+use crate::jump::answer::Answer;
+use crate::jump::bounds::impossible;
+use crate::jump::stored::{open, store};
+use crate::jump::task::{SrbPlan, Task};
+use crate::jump::whole_body::{self, WholeBodyPlan};
+use core::time::Duration;
+use indicatif::ProgressBar;
+use ocp_solver::{Progress, Settings, Status};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// How far planning came.
+#[derive(Default)]
+struct Report {
+    task: Option<Task>,
+    srb: Option<SrbPlan>,
+    whole_body: Option<(WholeBodyPlan, f64)>,
+    bytes: Vec<u8>,
+    audit: Option<Audit>,
+    answer: Option<Answer>,
+}
+
+/// Runs the command.
+pub(super) fn run(args: &Args, name: &str) -> ExitCode {
+    let bar = ProgressBar::new_spinner();
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let mut report = Report::default();
+    let result = plan(args, name, &bar, &mut report);
+    bar.finish_and_clear();
+    let result = result.and_then(|()| write(args, &report));
+    if args.json {
+        println!("{}", report.json(name, result.as_ref().err()));
+    } else if result.is_ok() {
+        report.print(name);
+    }
+    match result {
+        Ok(()) if report.answer.is_none() => ExitCode::SUCCESS,
+        Ok(()) => ExitCode::from(2),
+        Err(message) => {
+            eprintln!("saltus: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Plans, and leaves in the report how far that came.
+fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Result<(), String> {
+    if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
+        return Err(format!(
+            "{} exists already: choose another --out, nothing is overwritten",
+            path.display()
+        ));
+    }
+    let mut task = Task::load_for(name, args.robot.as_deref(), &args.lock)?;
+    if let Some(timing) = &args.timing {
+        task.fix_timing(timing)?;
+    }
+    let task = report.task.insert(task);
+    if let Some(proof) = impossible(task) {
+        report.answer = Some(Answer::proven(proof));
+        return Ok(());
+    }
+    let observe = |stage: &str, progress: &Progress<f64>| {
+        bar.set_message(format!(
+            "{stage}: iteration {}, violation {:.1e}",
+            progress.iteration, progress.residual.primal
+        ));
+        args.observe(progress)
+    };
+    let srb = task.attempt(&Settings::new(), |progress| observe("body", progress))?;
+    let srb = report.srb.insert(srb);
+    if srb.status != Status::Solved {
+        bar.set_message("looking for what would have to change");
+        report.answer = Some(Answer::no_body_plan(task, srb));
+        return Ok(());
+    }
+    let clock = Instant::now();
+    let plan = whole_body::plan(task, srb, |progress| observe("whole body", progress))?;
+    let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
+    let (plan, _) = report.whole_body.insert((plan, wall_ms));
+    if plan.outcome.status != Status::Solved {
+        bar.set_message("looking for what would have to change");
+        report.answer = Some(Answer::no_whole_body_plan(task, srb, plan));
+        return Ok(());
+    }
+    bar.set_message("audit");
+    report.bytes = store(task, plan, !args.no_gains)?;
+    let stored = open(&report.bytes, &task.robot).map_err(|error| error.to_string())?;
+    let audit = report.audit.insert(Audit::of(&task.robot, &stored)?);
+    if !audit.passes() {
+        report.answer = Some(Answer {
+            status: "AuditFailed",
+            because: audit.complaint(),
+            relaxations: Vec::new(),
+        });
+    }
+    Ok(())
+}
+
+/// Writes what was asked for.
+fn write(args: &Args, report: &Report) -> Result<(), String> {
+    let (Some(task), Some((plan, _))) = (&report.task, &report.whole_body) else {
+        return Ok(());
+    };
+    let show = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+    if let Some(path) = &args.solution {
+        std::fs::write(path, layout(&task.name, plan).to_string()).map_err(|e| show(path, e))?;
+    }
+    let (Some(folder), None) = (&args.out, &report.answer) else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(folder).map_err(|e| show(folder, e))?;
+    let mut json = report.json(&task.name, None);
+    if let Some(audit) = &report.audit {
+        json["audit"] = audit.details(&task.robot);
+    }
+    let text = format!("{json:#}\n");
+    for (name, bytes) in [
+        ("plan.bin", report.bytes.as_slice()),
+        ("plan.json", text.as_bytes()),
+    ] {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|e| show(&path, e))?;
+    }
+    Ok(())
+}
+
+impl Report {
+    fn status(&self) -> &'static str {
+        match (&self.answer, &self.audit) {
+            (Some(answer), _) => answer.status,
+            (None, Some(_)) => "Solved",
+            (None, None) => "Error",
+        }
+    }
+
+    /// Durations of the phases, s: none before the body's motion is planned.
+    fn phases(&self) -> Vec<(String, f64)> {
+        let (Some(task), Some(srb)) = (&self.task, &self.srb) else {
+            return Vec::new();
+        };
+        let durations = srb.stages.first().map(|stage| stage.state.durations);
+        let phases = task.problem.used_phases().iter();
+        let names = phases.map(|phase| task.phase_name(&phase.contacts));
+        names.zip(durations.into_iter().flatten()).collect()
+    }
+
+    /// The object of `--json`.
+    fn json(&self, name: &str, error: Option<&String>) -> Value {
+        let phase = |(name, t): &(String, f64)| json!({ "name": name, "duration_s": t });
+        let mut report = json!({
+            "task": name,
+            "status": self.status(),
+            "phases": self.phases().iter().map(phase).collect::<Vec<_>>(),
+            "srb": self.srb.as_ref().map(|plan| json!({
+                "wall_ms": plan.wall_ms,
+                "iterations": plan.iterations,
+                "cost": plan.cost,
+                "max_violation": plan.max_violation,
+            })),
+            "whole_body": self.whole_body.as_ref().map(|(plan, wall_ms)| json!({
+                "wall_ms": wall_ms,
+                "iterations": plan.outcome.iterations,
+                "cost": plan.judged.cost,
+                "max_violation": plan.judged.max_violation,
+            })),
+            "audit": self.audit.as_ref().map(Audit::json),
+        });
+        if let Some(answer) = &self.answer {
+            report["answer"] = answer.json();
+        }
+        if let Some(error) = error {
+            report["error"] = json!(error);
+        }
+        report
+    }
+
+    /// The report for people.
+    fn print(&self, name: &str) {
+        println!("{name}: {}", self.status());
+        let phases: Vec<String> = (self.phases().iter())
+            .map(|(name, t)| format!("{name} {t:.3} s"))
+            .collect();
+        if !phases.is_empty() {
+            println!("  phases      {}", phases.join(", "));
+        }
+        if let Some(plan) = &self.srb {
+            println!(
+                "  body        {:.1} ms, {} iterations, cost {:.4}, violation {:.1e}",
+                plan.wall_ms, plan.iterations, plan.cost, plan.max_violation
+            );
+        }
+        if let Some((plan, wall_ms)) = &self.whole_body {
+            println!(
+                "  whole body  {wall_ms:.0} ms, {} iterations, cost {:.4}, violation {:.1e}, peak torque {:.1} N m",
+                plan.outcome.iterations,
+                plan.judged.cost,
+                plan.judged.max_violation,
+                plan.judged.peak_effort
+            );
+        }
+        if let Some(audit) = &self.audit {
+            println!("  audit       {}", audit.summary());
+        }
+        if let Some(answer) = &self.answer {
+            println!("{}", answer.text());
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! `saltus verify`: read a stored plan and audit it again.
+//!
+//! Exit code 0 for a plan that passes, 2 for one that does not or cannot be read.
+
+use crate::audit::Audit;
+use crate::jump::stored::open;
+use crate::robot::Quadruped;
+use serde_json::json;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Options of `saltus verify`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The container: plan.bin of `saltus plan --out`.
+    file: PathBuf,
+    /// URDF of the robot that the plan is for; A1 without it.
+    #[arg(long)]
+    robot: Option<PathBuf>,
+    /// Joints of that robot that were locked.
+    #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
+    lock: Vec<String>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> ExitCode {
+    match verify(args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(2),
+        Err(message) => {
+            if args.json {
+                println!("{}", json!({ "status": "Error", "error": message }));
+            }
+            eprintln!("saltus: {}: {message}", args.file.display());
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether the plan passes.
+fn verify(args: &Args) -> Result<bool, String> {
+    let robot = match &args.robot {
+        Some(path) => Quadruped::from_urdf(path, &args.lock),
+        None => Quadruped::a1(),
+    };
+    let robot = robot.map_err(|error| error.to_string())?;
+    let bytes = std::fs::read(&args.file).map_err(|error| error.to_string())?;
+    let plan = open(&bytes, &robot).map_err(|error| error.to_string())?;
+    let audit = Audit::of(&robot, &plan)?;
+    let header = plan.header();
+    let status = if audit.passes() {
+        "Solved"
+    } else {
+        "AuditFailed"
+    };
+    if args.json {
+        let report = json!({
+            "task": header.task,
+            "robot": header.robot,
+            "status": status,
+            "audit": audit.details(&robot),
+        });
+        println!("{report}");
+    } else {
+        println!("{} for {}: {status}", header.task, header.robot);
+        println!("  {}", audit.summary());
+        if !audit.passes() {
+            println!("  {}", audit.complaint());
+        }
+    }
+    Ok(audit.passes())
+}

@@ -1,0 +1,250 @@
+//! `saltus plan TASK`: margins kept, torques held, audited, stored; and what happens to tasks that cannot be.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("saltus-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn saltus(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+fn numbers(row: &Value) -> Vec<f64> {
+    let row = row.as_array().unwrap();
+    row.iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+/// The text of a built-in task.
+fn built_in(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tasks/{name}.toml"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn plans_keep_margins_pass_the_audit_and_are_stored() {
+    let folder = folder("plans");
+    for task in ["a1/lateral", "a1/barrel-roll"] {
+        let out = folder.join(task.replace('/', "-"));
+        let solution = folder.join("solution.json");
+        let (out, solution) = (out.to_str().unwrap(), solution.to_str().unwrap());
+        let output = saltus(&["plan", task, "--json", "--out", out, "--solution", solution]);
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["status"], "Solved", "{report}");
+        assert_eq!(output.status.code(), Some(0));
+        let keys: Vec<_> = report.as_object().unwrap().keys().cloned().collect();
+        assert_eq!(
+            keys,
+            ["audit", "phases", "srb", "status", "task", "whole_body"]
+        );
+        for stage in ["srb", "whole_body"] {
+            let keys: Vec<_> = report[stage].as_object().unwrap().keys().cloned().collect();
+            assert_eq!(keys, ["cost", "iterations", "max_violation", "wall_ms"]);
+            assert!(report[stage]["max_violation"].as_f64().unwrap() <= 1e-6);
+        }
+        let audit = &report["audit"];
+        assert!(audit["flight_orientation_error_deg"].as_f64().unwrap() <= 2.0);
+        assert!(audit["flight_position_error_m"].as_f64().unwrap() <= 0.01);
+        assert!(audit["worst_margin"]["value"].as_f64().unwrap() >= -0.01);
+        let plan = serde_json::from_str(&std::fs::read_to_string(solution).unwrap()).unwrap();
+        margins_are_kept(task, &plan);
+        refused_when_damaged(&Path::new(out).join("plan.bin"));
+        // Nothing is overwritten.
+        let again = saltus(&["plan", task, "--out", out]);
+        assert_eq!(again.status.code(), Some(2));
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+fn margins_are_kept(task: &str, plan: &Value) {
+    let rows = |key: &str| plan[key].as_array().unwrap().iter().map(numbers);
+    let dt = numbers(&plan["dt"]);
+    let (q, v, a): (Vec<_>, Vec<_>, Vec<_>) = (
+        rows("q").collect(),
+        rows("v").collect(),
+        rows("a").collect(),
+    );
+    for torques in rows("tau") {
+        assert!(torques.iter().all(|t| t.abs() <= 24.0 + 1e-6), "{task}");
+    }
+    for forces in plan["F"].as_array().unwrap() {
+        for f in forces.as_array().unwrap().iter().map(numbers) {
+            assert!(f[0].abs().max(f[1].abs()) <= 0.45 * f[2] + 1e-6, "{task}");
+        }
+    }
+    for (k, dt) in dt.iter().enumerate().take(dt.len() - 1) {
+        for i in 0..18 {
+            let reached = q[k][i] + dt * v[k][i] + 0.5 * dt * dt * a[k][i];
+            assert!((reached - q[k + 1][i]).abs() < 1e-7, "{task} {k} {i}");
+            let speed = v[k][i] + dt * a[k][i];
+            assert!((speed - v[k + 1][i]).abs() < 1e-6, "{task} {k} {i}");
+        }
+    }
+    // Two-leg stance is unstable open loop: it is kept short.
+    for phase in plan["phases"].as_array().unwrap() {
+        let feet = phase["contacts"].as_array().unwrap();
+        let lasts = phase["intervals"].as_f64().unwrap() * phase["dt"].as_f64().unwrap();
+        if feet.iter().filter(|on| on.as_bool().unwrap()).count() == 2 {
+            assert!(lasts <= 0.35 + 1e-6, "{task}");
+        }
+    }
+    // Feedback of every joint, finite everywhere.
+    for gains in plan["tau_by_q"].as_array().unwrap() {
+        let gains = gains.as_array().unwrap();
+        assert_eq!(gains.len(), 12);
+        let finite = |row: &Value| numbers(row).iter().all(|x| x.is_finite());
+        assert!(gains.iter().all(finite));
+    }
+}
+
+/// The plan passes as it is, and is refused with a reason when it is cut, changed, or for another robot.
+fn refused_when_damaged(path: &Path) {
+    let verify = |path: &Path| {
+        let output = saltus(&["verify", path.to_str().unwrap(), "--json"]);
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+        )
+    };
+    let (code, report) = verify(path);
+    assert_eq!(code, Some(0), "{report}");
+    let bytes = std::fs::read(path).unwrap();
+    let bad = path.with_extension("bad");
+    let mut changed = bytes.clone();
+    changed[1000] ^= 4;
+    let mut newer = bytes.clone();
+    newer[4] += 1;
+    let mut other = bytes.clone();
+    other[12] ^= 1;
+    for (content, reason) in [
+        (&changed[..], "checksum"),
+        (&bytes[..bytes.len() - 1], "cut off"),
+        (&newer[..], "version"),
+        (&other[..], "checksum"),
+        (b"hello".as_slice(), "cut off"),
+    ] {
+        std::fs::write(&bad, content).unwrap();
+        let (code, report) = verify(&bad);
+        assert_eq!(code, Some(2));
+        assert!(report.contains(reason), "{reason}: {report}");
+    }
+}
+
+/// Absurd and impossible tasks: exit code 2, at once, with what blocks and what would have to change.
+#[test]
+fn impossible_tasks_are_answered() {
+    let folder = folder("impossible");
+    let lateral = built_in("a1/lateral");
+    let down = built_in("a1/lateral-down");
+    let cases = [
+        (
+            "goal",
+            lateral.replace("[0.0, 0.3, 0.0]", "[0.0, 0.3, 5.0]"),
+            "force",
+        ),
+        (
+            "friction",
+            format!("{lateral}\n[limits]\nfriction = 0.0\n"),
+            "friction",
+        ),
+        (
+            "box",
+            down.replace("beyond_feet_m = 0.0492", "distance_m = 0.05")
+                .replace("drop_m = 0.3", "drop_m = -0.3"),
+            "farther",
+        ),
+        (
+            "air",
+            lateral.replace("\"FL\", \"FR\", \"RL\", \"RR\"", ""),
+            "foot",
+        ),
+        (
+            "sum",
+            lateral
+                .replace("max_s = 0.8", "max_s = 0.5")
+                .replace("guess_s = 0.5", "guess_s = 0.5\nmin_s = 0.4"),
+            "total.max_s",
+        ),
+    ];
+    for (name, text, told) in cases {
+        let path = folder.join(format!("{name}.toml"));
+        std::fs::write(&path, &text).unwrap();
+        let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["status"], "Infeasible", "{report}");
+        assert!(report["answer"].to_string().contains(told), "{report}");
+    }
+    let output = saltus(&[
+        "plan",
+        "a1/double-backflip",
+        "--timing",
+        "0.5,0.33,0.2",
+        "--json",
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["status"], "Infeasible", "{report}");
+    assert!(
+        report["answer"]
+            .to_string()
+            .contains("flight would have to last")
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// What is no task: exit code 2, and the culprit is named.
+#[test]
+fn bad_input_is_named() {
+    let folder = folder("bad");
+    let text = built_in("a1/lateral");
+    let cases = [
+        ("nan", text.replace("0.3, 0.0]", "nan, 0.0]"), "goal_m"),
+        ("foot", text.replace("\"FL\"", "\"FX\""), "FX"),
+        ("typo", text.replace("guess_s", "gues_s"), "gues_s"),
+        (
+            "robot",
+            text.replace("\"a1\"", "\"nowhere.urdf\""),
+            "nowhere.urdf",
+        ),
+        ("mass", text.replace("\"a1\"", "\"negative.urdf\""), "mass"),
+        (
+            "weight",
+            format!("{text}\n[weights]\nforce = -1.0\n"),
+            "weights.force",
+        ),
+        ("range", text.replace("min_s = 0.5", "min_s = 1.5"), "total"),
+    ];
+    let negative = r#"<robot name="r"><link name="base"><inertial><mass value="-1"/>
+        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"#;
+    std::fs::write(folder.join("negative.urdf"), negative).unwrap();
+    for (name, content, told) in cases {
+        let path = folder.join(format!("{name}.toml"));
+        std::fs::write(&path, &content).unwrap();
+        let output = saltus(&["plan", path.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(told), "{name}: {message}");
+    }
+    for args in [
+        &["plan", "a1/nowhere"][..],
+        &["plan", "a1/lateral", "--timing", "0.5"],
+        &["plan", "a1/lateral", "--timing", "0.5,-1"],
+        &["plan", "a1/lateral", "--timing", "0.5,nan"],
+        &["plan"],
+        &["verify", "nowhere.bin"],
+    ] {
+        assert_eq!(saltus(args).status.code(), Some(2), "{args:?}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
