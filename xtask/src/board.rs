@@ -105,6 +105,11 @@ impl Selection {
         jumps.filter(|jump| self.image.as_deref().is_none_or(|only| only == *jump))
     }
 
+    /// Whether all images are called for.
+    pub(crate) fn names_no_image(&self) -> bool {
+        self.image.is_none()
+    }
+
     /// A board's images called for: the one named, or all.
     pub(crate) fn images(&self, board: &Board) -> impl Iterator<Item = &'static str> {
         let images = board.images.iter().copied();

@@ -11,10 +11,10 @@ use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSegment};
 
 use crate::bare::Bare;
-use crate::board::{Board, Selection};
+use crate::board::{BOARDS, Board, Selection};
 use crate::image::Image;
 use crate::qemu::{self, Worst};
-use crate::{probe, run};
+use crate::{probe, replay, run};
 
 /// What may be added to a stored number before it is an error.
 const TOLERANCE: f64 = 1.05;
@@ -88,6 +88,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
                 ticks += 1;
                 missed += usize::from(judge(board, name, worst, &mut lines, &mut exceeded));
             }
+        }
+        if board.name == BOARDS[0].name && args.selection.names_no_image() {
+            replay::run(&bare)?;
         }
     }
     ensure!(ticks > 0, "no such image on such a board");

@@ -15,6 +15,7 @@ mod mujoco;
 mod panics;
 mod probe;
 mod qemu;
+mod replay;
 mod report;
 mod run;
 mod smoke;
