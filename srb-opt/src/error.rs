@@ -13,6 +13,9 @@ pub enum Error {
     Capacity,
     /// More intervals than [`crate::onboard::INTERVALS`].
     Intervals,
+    /// Clarabel could not solve a quadratic program.
+    #[cfg(feature = "clarabel")]
+    Program,
 }
 
 impl core::fmt::Display for Error {
@@ -26,6 +29,8 @@ impl core::fmt::Display for Error {
             Self::Intervals => {
                 f.write_str("more than 30 intervals: shorten the phases, or own a longer slice of stages")
             }
+            #[cfg(feature = "clarabel")]
+            Self::Program => f.write_str("Clarabel could not solve a quadratic program: start from a better guess"),
         }
     }
 }

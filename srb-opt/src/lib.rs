@@ -10,6 +10,8 @@ mod problem;
 mod rotation;
 mod row;
 mod rows;
+#[cfg(feature = "clarabel")]
+mod sqp;
 mod state;
 mod transcription;
 mod violation;
@@ -18,5 +20,7 @@ pub use error::Error;
 pub use problem::{Edge, Foot, Ground, Phase, Problem, Reference, Weights};
 pub use row::Row;
 pub use rows::row_capacity;
+#[cfg(feature = "clarabel")]
+pub use sqp::{SqpNode, SqpSolution};
 pub use state::{OMEGA, POSITION, ROTATION, State, TIMES, VELOCITY};
 pub use violation::{Judgement, Sample};
