@@ -280,9 +280,11 @@ impl<const FEET: usize, const PHASES: usize> Problem<f64, FEET, PHASES> {
             CscMatrix::new_from_triplets(count, count, hessian.row, hessian.column, hessian.value);
         let a = CscMatrix::new_from_triplets(total, count, equal.row, equal.column, equal.value);
         let cones = [ZeroConeT(first), NonnegativeConeT(total - first)];
-        let mut settings = DefaultSettings::default();
-        settings.verbose = false;
-        settings.max_iter = 200;
+        let settings = DefaultSettings {
+            verbose: false,
+            max_iter: 200,
+            ..DefaultSettings::default()
+        };
         let mut solver = DefaultSolver::new(&p, &gradient, &a, &equal_to, &cones, settings)
             .map_err(|_| Error::Program)?;
         solver.solve();
