@@ -10,7 +10,7 @@
 use nalgebra::Vector3;
 use so3::Scalar;
 
-use super::blocks::BlockMatrix;
+use super::blocks::{BlockMatrix, add_scaled};
 use super::gravity::gravity;
 use super::minv::MassFactors;
 use super::rnea_derivatives::{
@@ -154,13 +154,24 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     for (x, y) in drive.joints.iter_mut().zip(id.efforts()) {
         *x -= y;
     }
-    out.acceleration = factors.solve(&drive);
-    id.accelerate(model, &out.acceleration.base, &out.acceleration.joints);
-    gradient_blocks(model, id, &base, &whole, efforts);
-
-    factors.joints_inverse(joints_inverse);
+    factors.joints().inverse(joints_inverse);
     out.by_effort.joints = *joints_inverse;
     factors.complete_inverse(&mut out.by_effort);
+    // M⁻¹ is there, and symmetric: its rows together are quicker than another solve.
+    let (mut base_acceleration, mut joint_accelerations) = ([T::ZERO; 6], [T::ZERO; N]);
+    let inverse = &out.by_effort;
+    let rows = inverse.base.iter().zip(&inverse.base_joints);
+    let rows = rows.chain(inverse.joints_base.iter().zip(&inverse.joints));
+    for (x, (left, right)) in drive.base.to_array().iter().chain(&drive.joints).zip(rows) {
+        add_scaled(&mut base_acceleration, *x, left);
+        add_scaled(&mut joint_accelerations, *x, right);
+    }
+    out.acceleration = Tangent {
+        base: Motion::from_array(base_acceleration),
+        joints: joint_accelerations,
+    };
+    id.accelerate(model, &out.acceleration.base, &out.acceleration.joints);
+    gradient_blocks(model, id, &base, &whole, efforts);
     for (d, to) in [
         (&efforts.by_position, &mut out.by_position),
         (&efforts.by_velocity, &mut out.by_velocity),

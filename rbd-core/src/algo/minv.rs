@@ -2,25 +2,20 @@
 //!
 //! By blocks M = [A C; Cᵀ H] with the locked robot A, the coupling C and the joints' H:
 //!
-//! - H = Lᵀ D L with a unit lower triangular L whose entry (i, j) is not zero only if joint j moves
-//!   joint i: no fill-in, work by pairs on one branch (Featherstone 2008, section 8.5).
+//! - H = Lᵀ D L along the branches of the tree ([`JointFactors`]).
 //! - X = H⁻¹ Cᵀ, and the base feels the articulated inertia Ã = A − C X, 6 × 6.
 //! - M⁻¹ = [Ã⁻¹, −Ã⁻¹ Xᵀ; −X Ã⁻¹, H⁻¹ + X Ã⁻¹ Xᵀ], and H⁻¹ alone for a fixed base.
 //!
 //! A joint or a base direction without any inertia has an infinitely stiff pivot: it does not answer.
 
-#![allow(
-    clippy::needless_range_loop,
-    reason = "one index walks several tables, and what lies before it is written too"
-)]
-
 use so3::Scalar;
 
 use super::blocks::{BlockMatrix, add_scaled};
 use super::crba::MassMatrix;
+use super::joint_factors::JointFactors;
 use super::{at, put};
 use crate::linear::spd_inverse_6;
-use crate::model::{BaseKind, Link};
+use crate::model::BaseKind;
 use crate::spatial::{ArticulatedInertia, Motion};
 use crate::state::{Effort, Tangent};
 use crate::tree::Tree;
@@ -31,14 +26,8 @@ use crate::tree::Tree;
 pub struct MassFactors<T, const N: usize> {
     /// Whether the base moves.
     floating: bool,
-    /// One more than the index of the joint before, 0 for the base; never more than the own index.
-    before: [usize; N],
-    /// Number of joints between this one and the base.
-    depth: [usize; N],
-    /// L left of the diagonal, by rows: entry d of row i belongs to the ancestor of i at depth d.
-    lower: [[T; N]; N],
-    /// D⁻¹.
-    pivots: [T; N],
+    /// H.
+    joints: JointFactors<T, N>,
     /// X, by rows.
     coupling: [[T; 6]; N],
     /// Ã⁻¹.
@@ -51,19 +40,16 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     pub const fn new() -> Self {
         Self {
             floating: false,
-            before: [0; N],
-            depth: [0; N],
-            lower: [[T::ZERO; N]; N],
-            pivots: [T::ZERO; N],
+            joints: JointFactors::ZERO,
             coupling: [[T::ZERO; 6]; N],
             base: [[T::ZERO; 6]; 6],
         }
     }
 
-    /// The ancestors of joint `i` and their depths, from its parent to the root of its branch.
+    /// The factors of H.
     #[inline(always)]
-    fn ancestors(&self, i: usize) -> Ancestors<'_, N> {
-        Ancestors::new(&self.before, &self.depth, i)
+    pub(crate) const fn joints(&self) -> &JointFactors<T, N> {
+        &self.joints
     }
 
     /// Factors the mass matrix of a robot in the posture it was computed for.
@@ -73,16 +59,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline]
     pub fn factor<M: Tree<T, N>>(&mut self, model: &M, mass: &MassMatrix<T, N>) {
         self.floating = model.base_kind() == BaseKind::Floating;
-        for (i, body) in model.bodies().iter().enumerate() {
-            let (before, depth) = match body.parent {
-                Link::Base => (0, 0),
-                // Capped, so that walking up ends whatever the table says.
-                Link::Joint(p) => ((p + 1).min(i), at(&self.depth, p) + 1),
-            };
-            self.before[i] = before;
-            self.depth[i] = if before == 0 { 0 } else { depth.min(i) };
-        }
-        self.factor_joints(mass);
+        self.joints.factor(model.bodies(), &mass.joints);
         for (row, column) in self.coupling.iter_mut().zip(&mass.coupling) {
             *row = column.to_array();
         }
@@ -91,98 +68,22 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// H = Lᵀ D L, from the leaves inwards.
-    ///
-    /// By depths, the entries of an ancestor's row are a prefix of those of its descendants' rows, so the
-    /// inner loop runs over contiguous numbers.
-    #[inline(always)]
-    fn factor_joints(&mut self, mass: &MassMatrix<T, N>) {
-        // Entries are written where they are read: no copies of rows that were filled number by number.
-        let mut diagonal = [T::ZERO; N];
-        for ((i, from), slot) in mass.joints.iter().enumerate().zip(&mut diagonal) {
-            *slot = at(from, i);
-            let up = Ancestors::new(&self.before, &self.depth, i);
-            if let Some(row) = self.lower.get_mut(i) {
-                for (a, d) in up {
-                    put(row, d, at(from, a));
-                }
-            }
-        }
-        for k in (0..N).rev() {
-            let pivot = diagonal[k];
-            let good = pivot > mass.joints[k][k] * T::EPSILON;
-            let inverse = if good { T::ONE / pivot } else { T::ZERO };
-            self.pivots[k] = inverse;
-            let (above, rest) = self.lower.split_at_mut(k);
-            let Some(row) = rest.first_mut() else { break };
-            for (i, d) in Ancestors::new(&self.before, &self.depth, k) {
-                let x = at(row, d);
-                let l = x * inverse;
-                if let Some(to) = above.get_mut(i) {
-                    for (y, &z) in to.iter_mut().zip(row.iter()).take(d) {
-                        *y -= l * z;
-                    }
-                }
-                if let Some(y) = diagonal.get_mut(i) {
-                    *y -= l * x;
-                }
-                put(row, d, l);
-            }
-        }
-    }
-
     /// X and Ã⁻¹.
     #[inline(always)]
     fn factor_base(&mut self, mass: &MassMatrix<T, N>) {
         // Y = L⁻ᵀ Cᵀ, Ã = A − Yᵀ D⁻¹ Y, X = L⁻¹ D⁻¹ Y.
-        let mut rows = self.coupling;
-        self.inward(&mut rows);
-        let mut scaled = rows;
-        for (row, &pivot) in scaled.iter_mut().zip(&self.pivots) {
-            for x in row {
-                *x *= pivot;
-            }
-        }
+        self.joints.inward(&mut self.coupling);
         let mut base = ArticulatedInertia::from(mass.base).to_rows();
         for (k, to) in base.iter_mut().enumerate() {
             // The sum runs to its end in registers, a whole row at once.
             let mut sum = *to;
-            for (row, scaled) in rows.iter().zip(&scaled) {
-                add_scaled(&mut sum, -at(row, k), scaled);
+            for (row, &pivot) in self.coupling.iter().zip(self.joints.pivots()) {
+                add_scaled(&mut sum, -at(row, k) * pivot, row);
             }
             *to = sum;
         }
-        rows = scaled;
-        self.outward(&mut rows);
-        self.coupling = rows;
+        self.joints.outward(&mut self.coupling);
         self.base = spd_inverse_6(&base);
-    }
-
-    /// b ← L⁻ᵀ b for every column of b, rows of length K.
-    #[inline(always)]
-    fn inward<const K: usize>(&self, b: &mut [[T; K]; N]) {
-        for k in (0..N).rev() {
-            let (row, lower) = (b[k], &self.lower[k]);
-            for (i, d) in self.ancestors(k) {
-                if let Some(to) = b.get_mut(i) {
-                    add_scaled(to, -at(lower, d), &row);
-                }
-            }
-        }
-    }
-
-    /// b ← L⁻¹ b for every column of b.
-    #[inline(always)]
-    fn outward<const K: usize>(&self, b: &mut [[T; K]; N]) {
-        for k in 0..N {
-            let (mut row, lower) = (b[k], &self.lower[k]);
-            for (i, d) in self.ancestors(k) {
-                if let Some(from) = b.get(i) {
-                    add_scaled(&mut row, -at(lower, d), from);
-                }
-            }
-            b[k] = row;
-        }
     }
 
     /// M⁻¹ τ: the acceleration that an effort causes, velocity and gravity apart. A fixed base does
@@ -194,7 +95,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         for ([y], &x) in joints.iter_mut().zip(&effort.joints) {
             *y = x;
         }
-        self.solve_joints(&mut joints);
+        self.joints.solve(&mut joints);
         let mut out = Tangent::ZERO;
         for (y, &[x]) in out.joints.iter_mut().zip(&joints) {
             *y = x;
@@ -242,8 +143,8 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
         b.base = left;
         b.base_joints = right;
-        self.solve_joints(&mut b.joints_base);
-        self.solve_joints(&mut b.joints);
+        self.joints.solve(&mut b.joints_base);
+        self.joints.solve(&mut b.joints);
         if self.floating {
             subtract_product(&mut b.joints_base, &self.coupling, &b.base);
             subtract_product(&mut b.joints, &self.coupling, &b.base_joints);
@@ -270,13 +171,13 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
                 }
             }
         }
-        self.inward(&mut b.joints);
+        self.joints.inward(&mut b.joints);
         for (i, out) in w.iter_mut().enumerate() {
             let mut sum = [T::ZERO; K];
             for (row, answer) in b.base.iter().zip(&answers) {
                 add_scaled(&mut sum, at(row, i), answer);
             }
-            for (row, &pivot) in b.joints.iter().zip(&self.pivots) {
+            for (row, &pivot) in b.joints.iter().zip(self.joints.pivots()) {
                 let x = at(row, i);
                 if x != T::ZERO {
                     add_scaled(&mut sum, x * pivot, row);
@@ -286,83 +187,29 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
     }
 
-    /// b ← H⁻¹ b for every column of b.
-    #[inline(always)]
-    fn solve_joints<const K: usize>(&self, b: &mut [[T; K]; N]) {
-        self.inward(b);
-        for (row, &pivot) in b.iter_mut().zip(&self.pivots) {
-            for x in row {
-                *x *= pivot;
-            }
-        }
-        self.outward(b);
-    }
-
     /// M⁻¹ itself, symmetric. For a fixed base everything but the block of the joints is zero.
     ///
     /// Accuracy: M M⁻¹ = 1 to the condition number of M times the rounding unit.
     #[inline]
     pub fn inverse(&self, out: &mut BlockMatrix<T, N>) {
-        self.joints_inverse(&mut out.joints);
+        self.joints.inverse(&mut out.joints);
         self.complete_inverse(out);
     }
 
     /// The other blocks of M⁻¹, and the block of the joints, which holds H⁻¹.
     #[inline(always)]
     pub(crate) fn complete_inverse(&self, out: &mut BlockMatrix<T, N>) {
+        out.base_joints = [[T::ZERO; N]; 6];
         if !self.floating {
             out.base = [[T::ZERO; 6]; 6];
-            out.base_joints = [[T::ZERO; N]; 6];
             out.joints_base = [[T::ZERO; 6]; N];
             return;
         }
         out.base = self.base;
         let transposed = columns_of(&self.coupling);
-        out.base_joints = [[T::ZERO; N]; 6];
         subtract_product(&mut out.base_joints, &self.base, &transposed);
         out.joints_base = rows_of(&out.base_joints);
         subtract_product(&mut out.joints, &self.coupling, &out.base_joints);
-    }
-
-    /// H⁻¹ = W D⁻¹ Wᵀ with W = L⁻¹, stored by depths as L is; zero between joints of different branches.
-    #[inline(always)]
-    pub(crate) fn joints_inverse(&self, out: &mut [[T; N]; N]) {
-        *out = [[T::ZERO; N]; N];
-        let mut w = [[T::ZERO; N]; N];
-        for i in 0..N {
-            // w_i = e_i − Σ L_ia w_a over the ancestors a; `scaled` is w_i D⁻¹.
-            let depth = at(&self.depth, i);
-            let lower = &self.lower[i];
-            let mut scaled = [T::ZERO; N];
-            let (above, rest) = w.split_at_mut(i);
-            let Some(row) = rest.first_mut() else { break };
-            put(row, depth, T::ONE);
-            for (a, d) in self.ancestors(i) {
-                let l = at(lower, d);
-                if let Some(from) = above.get(a) {
-                    for (y, &x) in row.iter_mut().zip(from).take(d + 1) {
-                        *y -= l * x;
-                    }
-                }
-            }
-            put(&mut scaled, depth, self.pivots[i]);
-            for (a, d) in self.ancestors(i) {
-                put(&mut scaled, d, at(row, d) * at(&self.pivots, a));
-            }
-            // Joint j ≤ i shares with i the ancestors down to the last one that stands before or at j.
-            put(&mut out[i], i, dot(row, &scaled, depth + 1));
-            let mut next = i;
-            for (a, d) in self.ancestors(i) {
-                for j in a..next {
-                    let x = above.get(j).map_or(T::ZERO, |row| dot(row, &scaled, d + 1));
-                    put(&mut out[i], j, x);
-                    if let Some(row) = out.get_mut(j) {
-                        put(row, i, x);
-                    }
-                }
-                next = a;
-            }
-        }
     }
 
     /// −M⁻¹ D for the derivatives D of inverse dynamics, which between the joints have no entries across
@@ -391,11 +238,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         }
         let mut first = 0;
         while first < N {
-            // A branch is the run of joints up to the next one that hangs from the base.
-            let mut end = first + 1;
-            while end < N && self.before[end] != 0 {
-                end += 1;
-            }
+            let end = self.joints.subtree_end(first).min(N);
             let branch = d.joints_base.iter().zip(&d.joints).take(end).skip(first);
             let rows = out.joints_base.iter_mut().zip(&mut out.joints);
             let rows = rows.zip(joints_inverse.iter().zip(&self.coupling));
@@ -455,36 +298,6 @@ impl<T: Scalar, const N: usize, const K: usize> Columns<T, N, K> {
     }
 }
 
-/// The way from a joint to the base.
-struct Ancestors<'a, const N: usize> {
-    before: &'a [usize; N],
-    joint: usize,
-    depth: usize,
-}
-
-impl<'a, const N: usize> Ancestors<'a, N> {
-    #[inline(always)]
-    fn new(before: &'a [usize; N], depth: &[usize; N], joint: usize) -> Self {
-        Self {
-            before,
-            joint,
-            depth: at(depth, joint),
-        }
-    }
-}
-
-impl<const N: usize> Iterator for Ancestors<'_, N> {
-    /// Index and depth.
-    type Item = (usize, usize);
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<(usize, usize)> {
-        self.joint = at(self.before, self.joint).checked_sub(1)?;
-        self.depth = self.depth.saturating_sub(1);
-        Some((self.joint, self.depth))
-    }
-}
-
 /// y ← y − x rows.
 #[inline(always)]
 fn subtract_product<T: Scalar, const R: usize, const K: usize>(
@@ -524,16 +337,6 @@ fn columns_of<T: Scalar, const N: usize>(rows: &[[T; 6]; N]) -> [[T; N]; 6] {
 #[inline(never)]
 fn rows_of<T: Scalar, const N: usize>(columns: &[[T; N]; 6]) -> [[T; 6]; N] {
     core::array::from_fn(|i| columns.each_ref().map(|column| at(column, i)))
-}
-
-/// Dot product of the first `length` entries.
-#[inline(always)]
-fn dot<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K], length: usize) -> T {
-    let mut sum = T::ZERO;
-    for (&x, &y) in a.iter().zip(b).take(length) {
-        sum += x * y;
-    }
-    sum
 }
 
 impl<T: Scalar> ArticulatedInertia<T> {

@@ -12,6 +12,7 @@ pub mod frame_derivatives;
 pub mod friction;
 pub mod gravity;
 pub mod jacobian;
+mod joint_factors;
 pub mod kinematics;
 pub mod minv;
 pub mod motion;

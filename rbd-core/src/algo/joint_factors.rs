@@ -1,0 +1,159 @@
+//! The joints' block of the mass matrix, factored, solved with, and inverted, along the branches of the tree.
+//!
+//! H = Lᵀ D L with a unit lower triangular L whose entry (i, j) is not zero only if joint j moves joint i: no
+//! fill-in, work by pairs on one branch (Featherstone 2008, section 8.5). Columns of W = L⁻¹ are not zero only on the
+//! joints that theirs moves, whose run is contiguous.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "one index walks several tables, and what lies before it is written too"
+)]
+
+use so3::Scalar;
+
+use super::at;
+use super::blocks::add_scaled;
+use crate::model::{Body, Link};
+
+/// L and D; all zero they are those of joints that do not answer.
+///
+/// Every sum collects rows in registers, over joints that another one moves (a contiguous run) or over its ancestors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointFactors<T, const N: usize> {
+    /// One more than the index of the joint before, 0 for the base; never more than the own index.
+    before: [usize; N],
+    /// One more than the index of the last joint that this one moves.
+    subtree_end: [usize; N],
+    /// L by rows. Only entries between a joint and its ancestors mean something; others are never read.
+    lower: [[T; N]; N],
+    /// D⁻¹; zero, an infinitely stiff pivot, for a joint without any inertia.
+    pivots: [T; N],
+}
+
+impl<T: Scalar, const N: usize> JointFactors<T, N> {
+    /// All zero.
+    pub(crate) const ZERO: Self = Self {
+        before: [0; N],
+        subtree_end: [0; N],
+        lower: [[T::ZERO; N]; N],
+        pivots: [T::ZERO; N],
+    };
+
+    /// D⁻¹.
+    #[inline(always)]
+    pub(crate) fn pivots(&self) -> &[T; N] {
+        &self.pivots
+    }
+
+    /// One more than the index of the last joint that joint `i` moves, at least `i` + 1.
+    #[inline(always)]
+    pub(crate) fn subtree_end(&self, i: usize) -> usize {
+        at(&self.subtree_end, i).max(i + 1)
+    }
+
+    /// The ancestors of joint `i`, from its parent to the root of its branch.
+    #[inline(always)]
+    fn ancestors(&self, i: usize) -> impl Iterator<Item = usize> {
+        let mut joint = i;
+        core::iter::from_fn(move || {
+            joint = at(&self.before, joint).checked_sub(1)?;
+            Some(joint)
+        })
+    }
+
+    /// Factors `h`, of which entries on and below the diagonal are read between joints of one branch.
+    #[inline(always)]
+    pub(crate) fn factor(&mut self, bodies: &[Body<T>; N], h: &[[T; N]; N]) {
+        for (i, body) in bodies.iter().enumerate() {
+            self.before[i] = match body.parent {
+                Link::Base => 0,
+                // Capped, so that walking up ends whatever the table says.
+                Link::Joint(p) => (p + 1).min(i),
+            };
+            self.subtree_end[i] = body.subtree_end;
+        }
+        // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves.
+        let mut inertias = [T::ZERO; N];
+        for k in (0..N).rev() {
+            let (mut row, mut inertia) = (h[k], h[k][k]);
+            let moved = self.lower.iter().zip(&inertias);
+            for (lower, &d) in moved.take(self.subtree_end(k)).skip(k + 1) {
+                let l = at(lower, k);
+                inertia -= l * d * l;
+                add_scaled(&mut row, -l * d, lower);
+            }
+            let good = inertia > h[k][k] * T::EPSILON;
+            let inverse = if good { T::ONE / inertia } else { T::ZERO };
+            for x in &mut row {
+                *x *= inverse;
+            }
+            inertias[k] = if good { inertia } else { T::ZERO };
+            self.pivots[k] = inverse;
+            self.lower[k] = row;
+        }
+    }
+
+    /// b ← L⁻ᵀ b for every column of b, rows of length K.
+    #[inline(always)]
+    pub(crate) fn inward<const K: usize>(&self, b: &mut [[T; K]; N]) {
+        for k in (0..N).rev() {
+            let mut row = b[k];
+            let moved = self.lower.iter().zip(b.iter());
+            for (lower, from) in moved.take(self.subtree_end(k)).skip(k + 1) {
+                add_scaled(&mut row, -at(lower, k), from);
+            }
+            b[k] = row;
+        }
+    }
+
+    /// b ← L⁻¹ D⁻¹ b for every column of b.
+    #[inline(always)]
+    pub(crate) fn outward<const K: usize>(&self, b: &mut [[T; K]; N]) {
+        for k in 0..N {
+            let (mut row, lower, pivot) = (b[k], &self.lower[k], self.pivots[k]);
+            for x in &mut row {
+                *x *= pivot;
+            }
+            for a in self.ancestors(k) {
+                if let Some(from) = b.get(a) {
+                    add_scaled(&mut row, -at(lower, a), from);
+                }
+            }
+            b[k] = row;
+        }
+    }
+
+    /// b ← H⁻¹ b for every column of b.
+    #[inline(always)]
+    pub(crate) fn solve<const K: usize>(&self, b: &mut [[T; K]; N]) {
+        self.inward(b);
+        self.outward(b);
+    }
+
+    /// H⁻¹ = W D⁻¹ Wᵀ; zero between joints of different branches.
+    #[inline(always)]
+    pub(crate) fn inverse(&self, out: &mut [[T; N]; N]) {
+        // Columns of W, each as a row: w_k = e_k − Σ L_ak w_a over the joints a that k moves.
+        let mut columns = [[T::ZERO; N]; N];
+        for k in (0..N).rev() {
+            // Compared, not written: a number just stored cannot be loaded with its neighbours without a wait.
+            let mut column: [T; N] =
+                core::array::from_fn(|j| if j == k { T::ONE } else { T::ZERO });
+            let moved = self.lower.iter().zip(&columns);
+            for (lower, from) in moved.take(self.subtree_end(k)).skip(k + 1) {
+                add_scaled(&mut column, -at(lower, k), from);
+            }
+            columns[k] = column;
+        }
+        for (i, to) in out.iter_mut().enumerate() {
+            let mut row = [T::ZERO; N];
+            add_scaled(&mut row, self.pivots[i], &columns[i]);
+            for k in self.ancestors(i) {
+                if let Some(column) = columns.get(k) {
+                    add_scaled(&mut row, at(column, i) * at(&self.pivots, k), column);
+                }
+            }
+            *to = row;
+        }
+    }
+}
