@@ -1,4 +1,4 @@
-//! The joint controller, eq. (7) of paper A, inside what the motor can do.
+//! The joint controller, paper A eq. (7), inside what the motor can do.
 
 use rbd_core::Motor;
 use so3::{Scalar, math};

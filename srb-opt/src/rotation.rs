@@ -1,4 +1,4 @@
-//! Rotations as problem (2) uses them: the Taylor-4 exponential and the smoothed logarithm error.
+//! Rotations as problem (2) of paper A uses them: the Taylor-4 exponential and the smoothed logarithm error.
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;

@@ -1,4 +1,4 @@
-//! Constraint rows of problem (2): reach, clearance, friction, forces, durations, goal.
+//! Constraint rows of problem (2): reach, clearance, friction, forces and goal, paper A eq. (2a), and durations, eq. (2d).
 //!
 //! Order at a node, state rows first: reach of the feet in contact (3 rows each), clearance of the eight
 //! corners; then, at node 0, the durations and their sum, or, at the last node, goal position,

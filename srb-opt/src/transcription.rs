@@ -1,4 +1,5 @@
-//! Problem (2) as an optimal-control problem for `ocp-solver`.
+//! Problem (2) as an optimal-control problem for `ocp-solver`: costs, rows, and the state after an interval, paper A
+//! eq. (2b).
 
 use crate::dynamics::{Interval, force_unit};
 use crate::problem::Problem;

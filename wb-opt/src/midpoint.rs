@@ -1,4 +1,5 @@
-//! The midpoint of an interval, and how derivatives there become derivatives in state and control.
+//! The midpoint of an interval, where dynamics and contacts hold (paper A eq. (5)), and how derivatives there become
+//! derivatives in state and control.
 //!
 //! ```text
 //! qm = q + ½ dt q̇ + ¼ dt² q̈,   vm = q̇ + ½ dt q̈

@@ -1,4 +1,4 @@
-//! Eq. (4) to (6) of paper A as plain data: robot, contacts, reference, limits and weights.
+//! Whole-body dynamics, contacts and cost, paper A eq. (4), eq. (5) and eq. (6), as plain data: robot, contacts, reference, limits and weights.
 
 use crate::error::Error;
 use crate::robot::{BASE, Point, Robot};

@@ -1,4 +1,4 @@
-//! Inverse dynamics and its first derivatives, in one sweep in world axes.
+//! Inverse dynamics, paper A eq. (4), and its first derivatives, in one sweep in world axes.
 //!
 //! With S the axis of a joint as a motion in the world, V and A velocity and acceleration of its body
 //! (gravity as an acceleration of the world the other way), p its parent:

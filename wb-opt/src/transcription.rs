@@ -1,4 +1,4 @@
-//! The whole-body problem as an optimal-control problem for `ocp-solver`.
+//! The whole-body problem as an optimal-control problem for `ocp-solver`, with the cost of paper A eq. (6).
 
 use crate::differentiate::Interval;
 use crate::drive::Line;

@@ -1,4 +1,5 @@
-//! The torque controller, paper B eqs. (6a) to (6f).
+//! The torque controller: posture and continuity, paper B eq. (6a); centre of mass, eq. (6b); feet at rest, eq. (6c);
+//! angular momentum, eq. (6d), which is to decay as in eq. (5); joint and torque limits, eq. (6e); contacts, eq. (6f).
 //!
 //! The paper prints the posture's s̈* = K_d ṡ − K_p (s − s_d): with that sign damping would drive the joints away from rest, so
 //! it is a slip of the pen; s̈* = −K_d ṡ − K_p (s − s_d) here. Likewise K_p and K_d of eq. (6b) act on the errors in

@@ -1,4 +1,5 @@
-//! The velocity controller, paper B eqs. (3a) to (3e).
+//! The velocity controller: posture and continuity, paper B eq. (3a); centre of mass, eq. (3b); feet at rest, eq. (3c);
+//! angular momentum, eq. (3d), driven to zero with its integral as in eq. (4); joint limits, eq. (3e).
 
 use nalgebra::Vector3;
 use rbd_core::{JointLimits, Tree};
