@@ -8,6 +8,7 @@ mod noise;
 mod observer;
 mod reference;
 mod report;
+mod reproduce;
 mod robot;
 mod track;
 
@@ -33,6 +34,8 @@ enum Command {
     Run(cmd::run::Args),
     /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
     Envelope(cmd::envelope::Args),
+    /// Run both papers whole, and print their figures beside ours.
+    Reproduce(cmd::reproduce::Args),
 }
 
 fn main() -> ExitCode {
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Command::Import(args) => Ok(cmd::import::run(&args)),
         Command::Run(args) => cmd::run::run(&args),
         Command::Envelope(args) => cmd::envelope::run(&args),
+        Command::Reproduce(args) => cmd::reproduce::run(&args),
     };
     match outcome {
         Ok(code) => code,

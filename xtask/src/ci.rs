@@ -41,6 +41,7 @@ const STEPS: &[Step] = &[
     ("instruction counts", &["xtask", "icount"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
     ("the report in a browser", &["xtask", "report"]),
+    ("both papers", &["xtask", "reproduce"]),
     (
         "MuJoCo agrees",
         &[

@@ -17,6 +17,7 @@ mod probe;
 mod qemu;
 mod replay;
 mod report;
+mod reproduce;
 mod run;
 mod smoke;
 
@@ -57,6 +58,8 @@ enum Command {
     ImportCheck(import_check::Args),
     /// Look at the report of a run with a real browser: not blank, moving, no complaint on the console.
     Report(report::Args),
+    /// Run both papers at their quick size and see that every item is there.
+    Reproduce(reproduce::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         Command::Icount(args) => icount::run(&args),
         Command::ImportCheck(args) => import_check::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Reproduce(args) => reproduce::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

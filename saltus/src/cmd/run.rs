@@ -263,7 +263,7 @@ fn taken(path: &Path) -> String {
 }
 
 /// A folder that did not exist before.
-fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
+pub(super) fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
     let create = |path: &Path| {
         let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
         parent
@@ -294,7 +294,7 @@ fn new_folder(wanted: Option<&Path>, task: &str) -> Result<PathBuf, String> {
     Err("out/ holds ten thousand runs of this task: clean it up".into())
 }
 
-fn write(folder: &Path, name: &str, text: &str) -> Result<(), String> {
+pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<(), String> {
     let path = folder.join(name);
     std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -1,0 +1,115 @@
+//! Both papers, item by item: what they report, what comes out here, and whether their claim holds.
+
+pub(crate) mod humanoid;
+pub(crate) mod page;
+pub(crate) mod quadruped;
+
+use crate::jump::plant::Sim;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// One item of a paper.
+pub(crate) struct Row {
+    /// `A` or `B`.
+    paper: char,
+    /// Table, figure, remark or section.
+    item: String,
+    /// What the paper reports.
+    theirs: String,
+    /// What came out here.
+    ours: String,
+    /// Where ours was simulated; `None` for what needs no simulator.
+    sim: Option<Sim>,
+    /// Whether the paper's claim holds here; `None` where this program cannot judge.
+    holds: Option<bool>,
+    /// Why a claim does not hold or cannot be judged, or how it is judged.
+    reason: String,
+}
+
+impl Row {
+    fn new(paper: char, item: impl Into<String>, theirs: impl Into<String>) -> Self {
+        Self {
+            paper,
+            item: item.into(),
+            theirs: theirs.into(),
+            ours: String::new(),
+            sim: None,
+            holds: None,
+            reason: String::new(),
+        }
+    }
+
+    fn ours(mut self, ours: impl Into<String>, holds: bool, reason: impl Into<String>) -> Self {
+        self.ours = ours.into();
+        self.holds = Some(holds);
+        self.reason = reason.into();
+        self
+    }
+
+    fn simulated(mut self, sim: Sim) -> Self {
+        self.sim = Some(sim);
+        self
+    }
+
+    /// What failed before there was anything to compare.
+    fn failed(self, error: impl Into<String>) -> Self {
+        self.ours("failed", false, error)
+    }
+
+    fn unjudged(mut self, ours: impl Into<String>, reason: impl Into<String>) -> Self {
+        self.ours = ours.into();
+        self.reason = reason.into();
+        self
+    }
+
+    /// As printed: yes, NO, or a dash.
+    pub(crate) fn mark(&self) -> &'static str {
+        match self.holds {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None => "-",
+        }
+    }
+
+    /// The claim does not hold.
+    pub(crate) fn is_refuted(&self) -> bool {
+        self.holds == Some(false)
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "paper": self.paper.to_string(),
+            "item": self.item,
+            "paper_value": self.theirs,
+            "ours": self.ours,
+            "simulator": self.sim.map(Sim::name),
+            "holds": self.holds,
+            "reason": self.reason,
+        })
+    }
+
+    /// For a terminal.
+    pub(crate) fn print(&self) {
+        let sim = self.sim.map_or("", Sim::name);
+        println!("{:3} {} {} [{sim}]", self.mark(), self.paper, self.item);
+        println!("      paper: {}", self.theirs);
+        println!("      here:  {}", self.ours);
+        if !self.reason.is_empty() {
+            println!("      {}", self.reason);
+        }
+    }
+}
+
+/// The object of `--json`.
+pub(crate) fn json(rows: &[Row]) -> Value {
+    json!({ "rows": rows.iter().map(Row::json).collect::<Vec<_>>() })
+}
+
+/// A report in a folder of its own below `folder`.
+fn write_report(folder: &Path, name: &str, html: &str) -> Result<(), String> {
+    let own = folder.join(name);
+    let path = own.join("report.html");
+    std::fs::create_dir_all(&own)
+        .and_then(|()| std::fs::write(&path, html))
+        .map_err(|error| format!("{}: {error}", path.display()))
+}
