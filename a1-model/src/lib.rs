@@ -12,4 +12,4 @@ pub mod table1;
 pub use a1::A1;
 pub use a1_reference::A1Reference;
 pub use geared::A1Geared;
-pub use hardware::{FEET, FOOT_RADIUS, MOTORS};
+pub use hardware::{FEET, FEET_F32, FOOT_RADIUS, MOTORS, MOTORS_F32};

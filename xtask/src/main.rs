@@ -7,6 +7,7 @@ mod c_abi;
 mod ci;
 mod cross;
 mod firmware;
+mod first_hour;
 mod gen_model;
 mod icount;
 mod image;
@@ -60,6 +61,8 @@ enum Command {
     Report(report::Args),
     /// Run both papers at their quick size and see that every item is there.
     Reproduce(reproduce::Args),
+    /// Type what the README tells a newcomer to type.
+    FirstHour(first_hour::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Command::ImportCheck(args) => import_check::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::FirstHour(args) => first_hour::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

@@ -243,7 +243,7 @@ fn table(
         (
             "trunk touched",
             if run.trunk_contact { "YES" } else { "no" }.to_owned(),
-            Some(!run.trunk_contact),
+            Some(verdict.trunk_is_right),
         ),
         plain(
             "landing QP",

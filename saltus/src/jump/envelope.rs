@@ -47,7 +47,7 @@ impl Sample {
             "fault"
         } else if run.first_contact.is_none() {
             "no_touchdown"
-        } else if run.trunk_contact {
+        } else if !verdict.trunk_is_right {
             "trunk"
         } else if !(verdict.landed && verdict.upright) {
             "fell"

@@ -12,8 +12,10 @@ const UPRIGHT: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
 /// The verdict on one run.
 pub(crate) struct Verdict {
-    /// Touched down on its feet and never lost them to a fault, trunk untouched.
+    /// Touched down on its feet and never lost them to a fault.
     pub(crate) landed: bool,
+    /// The trunk touched nothing, or the task allows that it does.
+    pub(crate) trunk_is_right: bool,
     /// Tilt below 10° two seconds after touchdown.
     pub(crate) upright: bool,
     /// Time from touchdown until the tilt stays below 10°, s.
@@ -62,9 +64,8 @@ impl Verdict {
                 )
             });
         Self {
-            landed: landed_at.is_some()
-                && matches!(run.final_phase, Phase::Landing | Phase::Stand)
-                && !run.trunk_contact,
+            landed: landed_at.is_some() && matches!(run.final_phase, Phase::Landing | Phase::Stand),
+            trunk_is_right: task.trunk_may_touch || !run.trunk_contact,
             upright,
             upright_after,
             position_error,
@@ -77,9 +78,13 @@ impl Verdict {
         }
     }
 
-    /// Landed, upright, within 0.10 m and 10°.
+    /// Landed, upright, trunk untouched where the task wants that, within 0.10 m and 10°.
     pub(crate) fn on_target(&self) -> bool {
-        self.landed && self.upright && self.position_error <= 0.10 && self.orientation_error <= 10.0
+        self.landed
+            && self.trunk_is_right
+            && self.upright
+            && self.position_error <= 0.10
+            && self.orientation_error <= 10.0
     }
 
     /// The object of `--json`.

@@ -66,6 +66,8 @@ pub(crate) struct Task {
     pub(crate) heading: f64,
     /// Height of the box that the robot starts on, m, with its edge.
     pub(crate) edge: Option<Edge<f64>>,
+    /// The trunk may touch the ground in the landing.
+    pub(crate) trunk_may_touch: bool,
     /// What the plan may use.
     pub(crate) limits: LimitsTable,
     /// Weights of the costs.
@@ -204,6 +206,7 @@ impl Task {
             } else {
                 0.0
             },
+            trunk_may_touch: file.trunk_may_touch,
             limits: *limits,
             weights: file.weights,
         })

@@ -47,6 +47,9 @@ pub(crate) struct TaskFile {
     pub(crate) goal_m: [f64; 3],
     pub(crate) turn: Option<TurnTable>,
     pub(crate) r#box: Option<BoxTable>,
+    /// The trunk may touch the ground in the landing.
+    #[serde(default)]
+    pub(crate) trunk_may_touch: bool,
     #[serde(rename = "phase")]
     pub(crate) phases: Vec<PhaseTable>,
     #[serde(default)]
