@@ -73,23 +73,23 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
             self.subtree_end[i] = body.subtree_end;
         }
         // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves.
-        let mut inertias = [T::ZERO; N];
         for k in (0..N).rev() {
             let (mut row, mut inertia) = (h[k], h[k][k]);
-            let moved = self.lower.iter().zip(&inertias);
-            for (lower, &d) in moved.take(self.subtree_end(k)).skip(k + 1) {
-                let l = at(lower, k);
-                inertia -= l * d * l;
-                add_scaled(&mut row, -l * d, lower);
+            let moved = self.lower.iter().zip(&self.pivots);
+            for (from, &pivot) in moved.take(self.subtree_end(k)).skip(k + 1) {
+                let x = at(from, k);
+                let l = x * pivot;
+                inertia -= l * x;
+                add_scaled(&mut row, -l, from);
             }
             let good = inertia > h[k][k] * T::EPSILON;
-            let inverse = if good { T::ONE / inertia } else { T::ZERO };
-            for x in &mut row {
-                *x *= inverse;
-            }
-            inertias[k] = if good { inertia } else { T::ZERO };
-            self.pivots[k] = inverse;
+            self.pivots[k] = if good { T::ONE / inertia } else { T::ZERO };
             self.lower[k] = row;
+        }
+        for (row, &pivot) in self.lower.iter_mut().zip(&self.pivots) {
+            for x in row {
+                *x *= pivot;
+            }
         }
     }
 
