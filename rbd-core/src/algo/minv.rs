@@ -2,7 +2,7 @@
 //!
 //! By blocks M = [A C; Cᵀ H] with the locked robot A, the coupling C and the joints' H:
 //!
-//! - H = Lᵀ D L along the branches of the tree ([`JointFactors`]).
+//! - H = Lᵀ D L along the branches of the tree (`joint_factors.rs`).
 //! - X = H⁻¹ Cᵀ, and the base feels the articulated inertia Ã = A − C X, 6 × 6.
 //! - M⁻¹ = [Ã⁻¹, −Ã⁻¹ Xᵀ; −X Ã⁻¹, H⁻¹ + X Ã⁻¹ Xᵀ], and H⁻¹ alone for a fixed base.
 //!
