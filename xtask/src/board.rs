@@ -1,5 +1,8 @@
 //! The boards that the images run on, as QEMU knows them.
 
+use std::path::Path;
+use std::process::Command;
+
 /// A board and how to build for it.
 pub(crate) struct Board {
     /// QEMU's name of the machine, and of the memory map in `firmware/smoke/memory`.
@@ -12,6 +15,19 @@ pub(crate) struct Board {
     pub(crate) images: &'static [&'static str],
     /// The images that fly whole jumps.
     pub(crate) jumps: &'static [&'static str],
+}
+
+impl Board {
+    /// QEMU with an image on this board, whose output is its standard output.
+    pub(crate) fn emulator(&self, image: &Path) -> Command {
+        let mut qemu = Command::new("qemu-system-arm");
+        qemu.args(["-machine", self.name, "-nographic"])
+            .args(["-monitor", "none", "-serial", "none"])
+            .args(["-semihosting-config", "enable=on,target=native"])
+            .arg("-kernel")
+            .arg(image);
+        qemu
+    }
 }
 
 /// The quickest image to build: the proof that the proof can fail needs only one.

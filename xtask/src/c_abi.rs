@@ -153,17 +153,5 @@ fn on_board(folder: &Path, core: Choice) -> Result<String> {
         .args(["-Wl,--gc-sections,--no-warn-execstack", "-o"])
         .arg(&image);
     run::succeed(&mut compile)?;
-    let mut qemu = Command::new("qemu-system-arm");
-    qemu.args([
-        "-machine",
-        board.name,
-        "-nographic",
-        "-monitor",
-        "none",
-        "-serial",
-        "none",
-    ]);
-    qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-        .arg(&image);
-    run::stdout_within(&mut qemu, LIMIT)
+    run::stdout_within(&mut board.emulator(&image), LIMIT)
 }

@@ -2,7 +2,6 @@
 
 use core::time::Duration;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
@@ -96,25 +95,7 @@ pub(crate) fn on_board(image: &Image<'_>) -> Result<(Vec<Call>, Vec<Worst>)> {
 }
 
 fn simulate(board: &Board, image: &Path) -> Result<String> {
-    let mut qemu = Command::new("qemu-system-arm");
-    qemu.args([
-        "-machine",
-        board.name,
-        "-nographic",
-        "-monitor",
-        "none",
-        "-serial",
-        "none",
-    ])
-    .args([
-        "-semihosting-config",
-        "enable=on,target=native",
-        "-icount",
-        ICOUNT,
-        "-kernel",
-    ])
-    .arg(image);
-    run::stdout_within(&mut qemu, LIMIT)
+    run::stdout_within(board.emulator(image).args(["-icount", ICOUNT]), LIMIT)
 }
 
 /// How ticks become instructions.

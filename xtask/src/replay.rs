@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use anyhow::{Context, Result, ensure};
 use object::{Object, ObjectSegment};
@@ -33,17 +33,9 @@ pub(crate) fn run(bare: &Bare) -> Result<()> {
     let data = elf.segments().filter(|segment| segment.address() >= DATA);
     let data: u64 = data.map(|segment| segment.size()).sum();
     let recording = target.join("flight.bin");
-    let mut qemu = Command::new("qemu-system-arm");
-    qemu.args(["-machine", board.name, "-nographic", "-monitor", "none"]);
-    qemu.args([
-        "-serial",
-        "none",
-        "-semihosting-config",
-        "enable=on,target=native",
-    ]);
+    let mut qemu = board.emulator(&image);
     // One instruction per nanosecond: control tick, simulated robot and recorder fit their periods.
-    qemu.args(["-icount", "shift=0,align=off,sleep=off", "-kernel"]);
-    qemu.arg(&image)
+    qemu.args(["-icount", "shift=0,align=off,sleep=off"])
         .stdin(Stdio::null())
         .stdout(File::create(&recording)?);
     run::succeed(&mut qemu)?;

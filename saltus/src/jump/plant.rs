@@ -93,6 +93,23 @@ impl Disturbance {
         }
     }
 
+    /// Joint positions and speeds as encoders tell them.
+    pub(crate) fn encode<const N: usize>(
+        &self,
+        mut q: [f64; N],
+        mut v: [f64; N],
+        noise: &mut Noise,
+    ) -> ([f64; N], [f64; N]) {
+        let (dq, dv) = self.encoder;
+        if dq > 0.0 || dv > 0.0 {
+            for (q, v) in q.iter_mut().zip(&mut v) {
+                *q += dq * noise.sample();
+                *v += dv * noise.sample();
+            }
+        }
+        (q, v)
+    }
+
     /// The disturbed robot.
     pub(crate) fn robot<M: Tree<f64, N>, const N: usize>(
         &self,

@@ -49,15 +49,8 @@ impl Sensors {
 
     /// Joint positions and speeds as the encoders say now.
     pub(crate) fn encoders(&mut self, plant: &Plant) -> ([f64; JOINTS], [f64; JOINTS]) {
-        let (mut q, mut v) = (plant.configuration().joints, plant.velocity().joints);
-        let (dq, dv) = self.disturbance.encoder;
-        if dq > 0.0 || dv > 0.0 {
-            for (q, v) in q.iter_mut().zip(&mut v) {
-                *q += dq * self.noise.sample();
-                *v += dv * self.noise.sample();
-            }
-        }
-        (q, v)
+        let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+        self.disturbance.encode(q, v, &mut self.noise)
     }
 
     /// What arrives in this millisecond, given the torques since the last one.
