@@ -13,6 +13,7 @@ mod icount;
 mod image;
 mod import_check;
 mod mujoco;
+mod package;
 mod panics;
 mod probe;
 mod qemu;
@@ -63,6 +64,8 @@ enum Command {
     Reproduce(reproduce::Args),
     /// Type what the README tells a newcomer to type.
     FirstHour(first_hour::Args),
+    /// Build every crate from its own archive, with the oldest compiler that it promises.
+    Package(package::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::FirstHour(args) => first_hour::run(&args),
+        Command::Package(args) => package::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };
