@@ -2,6 +2,7 @@
 
 mod audit;
 mod cmd;
+mod examples;
 mod humanoid;
 mod jump;
 mod noise;
@@ -12,11 +13,12 @@ mod reproduce;
 mod robot;
 mod track;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use serde_json::json;
 use std::process::ExitCode;
 
 #[derive(Parser)]
-#[command(version, about)]
+#[command(version, about, after_help = examples::PROGRAM)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -25,33 +27,70 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Plan a jump.
+    #[command(after_help = examples::PLAN)]
     Plan(cmd::plan::Args),
     /// Audit a stored plan again.
+    #[command(after_help = examples::VERIFY)]
     Verify(cmd::verify::Args),
     /// Turn a URDF into a model crate.
+    #[command(after_help = examples::IMPORT)]
     Import(cmd::import::Args),
-    /// Plan a jump, execute it in simulation, and report.
+    /// Plan a jump or take a stored plan, execute it in simulation, and report.
+    #[command(after_help = examples::RUN)]
     Run(cmd::run::Args),
     /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
+    #[command(after_help = examples::ENVELOPE)]
     Envelope(cmd::envelope::Args),
     /// Run both papers whole, and print their figures beside ours.
+    #[command(after_help = examples::REPRODUCE)]
     Reproduce(cmd::reproduce::Args),
+    /// Print the script with which a shell completes these commands.
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(cmd::completions::Args),
+}
+
+impl Command {
+    /// Whether errors are JSON too.
+    fn is_json(&self) -> bool {
+        match self {
+            Self::Plan(args) => args.output.json,
+            Self::Verify(args) => args.output.json,
+            Self::Import(args) => args.output.json,
+            Self::Run(args) => args.output.json,
+            Self::Envelope(args) => args.output.json,
+            Self::Reproduce(args) => args.output.json,
+            Self::Completions(_) => false,
+        }
+    }
 }
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
-        Command::Plan(args) => cmd::plan::run(&args),
-        Command::Verify(args) => Ok(cmd::verify::run(&args)),
-        Command::Import(args) => Ok(cmd::import::run(&args)),
-        Command::Run(args) => cmd::run::run(&args),
-        Command::Envelope(args) => cmd::envelope::run(&args),
-        Command::Reproduce(args) => cmd::reproduce::run(&args),
+    let command = Cli::parse().command;
+    let outcome = match &command {
+        Command::Plan(args) => cmd::plan::run(args),
+        Command::Verify(args) => Ok(cmd::verify::run(args)),
+        Command::Import(args) => Ok(cmd::import::run(args)),
+        Command::Run(args) => cmd::run::run(args),
+        Command::Envelope(args) => cmd::envelope::run(args),
+        Command::Reproduce(args) => cmd::reproduce::run(args),
+        Command::Completions(args) => cmd::completions::run(args, Cli::command()),
     };
-    match outcome {
-        Ok(code) => code,
-        Err(message) => {
-            eprintln!("saltus: {message}");
-            ExitCode::from(1)
+    outcome.unwrap_or_else(|message| {
+        if command.is_json() {
+            println!("{}", json!({ "status": "Error", "error": message }));
         }
+        eprintln!("saltus: {message}");
+        ExitCode::from(1)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
     }
 }

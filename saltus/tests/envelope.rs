@@ -47,3 +47,41 @@ fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     assert!(String::from_utf8_lossy(&other.stderr).contains("another study"));
     assert_eq!(std::fs::read_to_string(&file).unwrap(), now);
 }
+
+/// Ctrl-C: the samples so far make a table, and the same command goes on.
+#[cfg(unix)]
+#[test]
+fn a_study_that_is_interrupted_keeps_what_it_has() {
+    let out = folder("interrupted");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command.args([
+        "envelope",
+        "a1/lateral",
+        "--samples",
+        "400",
+        "--json",
+        "--out",
+    ]);
+    let mut study = command
+        .arg(&out)
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let file = out.join("shard-1-of-1.csv");
+    let lines = || std::fs::read_to_string(&file).map_or(0, |text| text.lines().count());
+    while lines() < 3 {
+        assert!(study.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(core::time::Duration::from_millis(20));
+    }
+    let interrupt = Command::new("kill")
+        .args(["-INT", &study.id().to_string()])
+        .status();
+    assert!(interrupt.unwrap().success());
+    let output = study.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["complete"], false);
+    let done = report["done"].as_u64().unwrap();
+    assert_eq!(done as usize + 2, lines());
+    assert!(read(&out, "table.csv").contains(&format!("\nall,,,,,,{done},")));
+}

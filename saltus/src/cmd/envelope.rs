@@ -3,13 +3,16 @@
 //! Sample i of seed S is the same run on every machine, whatever the shard. Every finished sample is one line in the shard's
 //! file, so a run that was stopped goes on where it was, and the files of all shards in one folder make one table.
 
+use super::folder::describe;
+use super::interrupt;
+use super::output::Output;
 use crate::jump::envelope::{Sample, picture, table};
 use crate::jump::execute;
 use crate::jump::judge::Verdict;
 use crate::jump::planned::Planner;
 use crate::jump::plant::{Disturbance, Sim};
 use crate::jump::task::Task;
-use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::collections::HashSet;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
@@ -24,10 +27,10 @@ pub(crate) struct Args {
     /// Task, such as a1/lateral.
     task: String,
     /// Number of runs over all shards.
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..))]
     samples: u64,
     /// Seed of the whole study.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// Simulator.
     #[arg(long, default_value = "native")]
@@ -38,6 +41,8 @@ pub(crate) struct Args {
     /// Folder of the study; by default out/envelope-TASK. A study that is there already goes on.
     #[arg(long)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: Output,
 }
 
 /// Part of a study.
@@ -57,16 +62,12 @@ fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Runs the command.
+/// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let task = Task::load(&args.task)?;
-    let plan = task.solve()?;
-    let reference = Planner::WholeBody.plan(&task, &plan)?;
     let folder = args.out.clone().unwrap_or_else(|| {
         Path::new("out").join(format!("envelope-{}", task.name.replace('/', "-")))
     });
-    let show = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
-    fs::create_dir_all(&folder).map_err(|e| show(&folder, e))?;
     let study = format!(
         "# task {} sim {} samples {} seed {}",
         task.name,
@@ -74,6 +75,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         args.samples,
         args.seed
     );
+    refuse_strangers(&folder)?;
+    merge(&folder, &study)?;
+    interrupt::listen()?;
+    let bar = args
+        .output
+        .bar(0, "{msg}{pos}/{len} [{bar:40}] {elapsed}, {eta} left")?;
+    bar.set_message("planning ");
+    let plan = task.solve()?;
+    let reference = Planner::WholeBody.plan(&task, &plan)?;
+    bar.set_message("");
+    fs::create_dir_all(&folder).map_err(|e| describe(&folder, &e))?;
     let path = folder.join(format!(
         "shard-{}-of-{}.csv",
         args.shard.part, args.shard.of
@@ -86,23 +98,24 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         .create(true)
         .append(true)
         .open(&path)
-        .map_err(|e| show(&path, e))?;
-    if file.metadata().map_err(|e| show(&path, e))?.len() == 0 {
-        writeln!(file, "{study}\n{}", Sample::HEADER).map_err(|e| show(&path, e))?;
+        .map_err(|e| describe(&path, &e))?;
+    if file.metadata().map_err(|e| describe(&path, &e))?.len() == 0 {
+        writeln!(file, "{study}\n{}", Sample::HEADER).map_err(|e| describe(&path, &e))?;
     }
 
     // A line that was cut by a stop must not swallow the next.
     if fs::read(&path).is_ok_and(|bytes| bytes.last().is_some_and(|b| *b != b'\n')) {
-        writeln!(file).map_err(|e| show(&path, e))?;
+        writeln!(file).map_err(|e| describe(&path, &e))?;
     }
 
-    let bar = ProgressBar::new(todo.len() as u64);
-    let style = ProgressStyle::with_template("{pos}/{len} [{bar:40}] {elapsed}, {eta} left");
-    bar.set_style(style.map_err(|e| e.to_string())?.progress_chars("=> "));
+    bar.set_length(todo.len() as u64);
     let next = AtomicUsize::new(0);
     let file = Mutex::new(file);
     let work = || -> Result<(), String> {
         while let Some(index) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if interrupt::asked() {
+                return Ok(());
+            }
             // Seed 0 would be the nominal run.
             let seed = crate::noise::mix(args.seed, *index).max(1);
             let run = execute::run(&task, &reference, args.sim, seed, |_, _| {})?;
@@ -112,7 +125,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
             let line = format!("{}\n", sample.line());
             let mut file = file.lock().map_err(|e| e.to_string())?;
             file.write_all(line.as_bytes())
-                .map_err(|e| show(&path, e))?;
+                .map_err(|e| describe(&path, &e))?;
             bar.inc(1);
         }
         Ok(())
@@ -136,16 +149,52 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         ("picture.svg", &picture(&samples, &study)),
     ] {
         let path = folder.join(name);
-        fs::write(&path, content).map_err(|e| show(&path, e))?;
+        fs::write(&path, content).map_err(|e| describe(&path, &e))?;
     }
-    print!("{text}");
-    println!(
-        "{} of {} samples in {}",
-        samples.len(),
-        args.samples,
+    let complete = !interrupt::asked();
+    if args.output.json {
+        let on_target = samples.iter().filter(|sample| sample.good()).count();
+        let report = json!({
+            "task": task.name,
+            "sim": args.sim.name(),
+            "seed": args.seed,
+            "samples": args.samples,
+            "done": samples.len(),
+            "on_target": on_target,
+            "complete": complete,
+            "folder": folder,
+        });
+        println!("{report}");
+    } else if !args.output.quiet {
+        print!("{text}");
+        println!(
+            "{} of {} samples in {}",
+            samples.len(),
+            args.samples,
+            folder.display()
+        );
+    }
+    Ok(if complete {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(interrupt::CODE)
+    })
+}
+
+/// A folder that is there already must be a study's, or empty.
+fn refuse_strangers(folder: &Path) -> Result<(), String> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Ok(());
+    };
+    let names: Vec<_> = entries.flatten().map(|entry| entry.file_name()).collect();
+    let is_shard = |name: &std::ffi::OsString| name.to_string_lossy().starts_with("shard-");
+    if names.is_empty() || names.iter().any(is_shard) {
+        return Ok(());
+    }
+    Err(format!(
+        "{} holds something else than a study: choose another --out, nothing is overwritten",
         folder.display()
-    );
-    Ok(ExitCode::SUCCESS)
+    ))
 }
 
 /// The samples of one file; none if it is not there. A file of another study is refused.
@@ -166,10 +215,13 @@ fn read(path: &Path, study: &str) -> Result<Vec<Sample>, String> {
     }
 }
 
-/// The samples of all shards in the folder, in order, each once.
+/// The samples of all shards in the folder, in order, each once; none if it is not there.
 fn merge(folder: &Path, study: &str) -> Result<Vec<Sample>, String> {
     let mut samples = Vec::new();
-    let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(samples),
+        entries => entries.map_err(|error| describe(folder, &error))?,
+    };
     for entry in entries {
         let path = entry.map_err(|e| e.to_string())?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();

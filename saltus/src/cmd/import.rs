@@ -3,6 +3,8 @@
 //! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
 //! folder is not.
 
+use super::folder::describe;
+use super::output::Output;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -41,9 +43,8 @@ pub(crate) struct Args {
     /// Licence of the URDF (SPDX), which becomes the crate's.
     #[arg(long, default_value = "LicenseRef-unknown")]
     licence: String,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) output: Output,
 }
 
 /// Runs the command.
@@ -54,20 +55,20 @@ pub(crate) fn run(args: &Args) -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(message) => {
-            if args.json {
-                println!("{}", json!({ "error": message }));
+            if args.output.json {
+                println!("{}", json!({ "status": "Error", "error": message }));
             }
-            eprintln!("saltus: {}: {message}", args.urdf.display());
+            eprintln!("saltus: {message}");
             ExitCode::from(2)
         }
     }
 }
 
 fn import(args: &Args) -> Result<(Robot, Provenance), String> {
-    let text = std::fs::read_to_string(&args.urdf).map_err(|error| error.to_string())?;
+    let text = std::fs::read_to_string(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)
         .and_then(|options| Robot::from_urdf(&text, &options))
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| format!("{}: {error}", args.urdf.display()))?;
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
@@ -136,11 +137,14 @@ fn default_package(robot: &str) -> String {
 }
 
 fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
+    if args.output.quiet {
+        return;
+    }
     for warning in &robot.warnings {
         eprintln!("warning: {warning}");
     }
     let limbs = expression(&structure(&robot.bodies));
-    if args.json {
+    if args.output.json {
         let locked: Value = (robot.locked.iter())
             .map(|(joint, value)| (joint.clone(), json!(value)))
             .collect::<serde_json::Map<_, _>>()

@@ -1,8 +1,12 @@
-//! One file per subcommand.
+//! One file per subcommand, and what they share.
 
+pub(crate) mod completions;
 mod disturb;
 pub(crate) mod envelope;
+mod folder;
 pub(crate) mod import;
+mod interrupt;
+mod output;
 pub(crate) mod plan;
 pub(crate) mod reproduce;
 pub(crate) mod run;

@@ -2,6 +2,8 @@
 //!
 //! Exit code 0 for a plan that passes, 2 for one that does not or cannot be read.
 
+use super::folder::describe;
+use super::output::Output;
 use crate::audit::Audit;
 use crate::jump::stored::open;
 use crate::robot::Quadruped;
@@ -20,9 +22,8 @@ pub(crate) struct Args {
     /// Joints of that robot that were locked.
     #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
     lock: Vec<String>,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) output: Output,
 }
 
 /// Runs the command.
@@ -31,10 +32,10 @@ pub(crate) fn run(args: &Args) -> ExitCode {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(2),
         Err(message) => {
-            if args.json {
+            if args.output.json {
                 println!("{}", json!({ "status": "Error", "error": message }));
             }
-            eprintln!("saltus: {}: {message}", args.file.display());
+            eprintln!("saltus: {message}");
             ExitCode::from(2)
         }
     }
@@ -47,8 +48,8 @@ fn verify(args: &Args) -> Result<bool, String> {
         None => Quadruped::a1(),
     };
     let robot = robot.map_err(|error| error.to_string())?;
-    let bytes = std::fs::read(&args.file).map_err(|error| error.to_string())?;
-    let plan = open(&bytes, &robot).map_err(|error| error.to_string())?;
+    let bytes = std::fs::read(&args.file).map_err(|error| describe(&args.file, &error))?;
+    let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
     let audit = Audit::of(&robot, &plan)?;
     let header = plan.header();
     let status = if audit.passes() {
@@ -56,7 +57,7 @@ fn verify(args: &Args) -> Result<bool, String> {
     } else {
         "AuditFailed"
     };
-    if args.json {
+    if args.output.json {
         let report = json!({
             "task": header.task,
             "robot": header.robot,
@@ -64,7 +65,7 @@ fn verify(args: &Args) -> Result<bool, String> {
             "audit": audit.details(&robot),
         });
         println!("{report}");
-    } else {
+    } else if !args.output.quiet {
         println!("{} for {}: {status}", header.task, header.robot);
         println!("  {}", audit.summary());
         if !audit.passes() {

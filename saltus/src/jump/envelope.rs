@@ -109,7 +109,7 @@ impl Sample {
         })
     }
 
-    fn good(&self) -> bool {
+    pub(crate) fn good(&self) -> bool {
         self.outcome == "target"
     }
 }

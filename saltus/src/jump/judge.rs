@@ -87,11 +87,11 @@ impl Verdict {
             && self.orientation_error <= 10.0
     }
 
-    /// The object of `--json`.
+    /// The object of `--json`; a stored plan comes without its single rigid body.
     pub(crate) fn json(
         &self,
         task: &Task,
-        plan: &SrbPlan,
+        plan: Option<&SrbPlan>,
         reference: &Reference,
         run: &Run,
         sim: Sim,
@@ -125,18 +125,18 @@ impl Verdict {
                 "max_iterations": run.qp_max_iterations,
             },
             "plan": {
-                "reference": if reference.whole_body.is_some() { "whole-body" } else { "srb+kinematics" },
+                "reference": reference.origin.name(),
                 "durations_s": reference.durations,
-                "whole_body": reference.whole_body.map(|solved| json!({
+                "whole_body": reference.origin.solved().map(|solved| json!({
                     "wall_ms": solved.wall_ms,
                     "iterations": solved.iterations,
                     "cost": solved.cost,
                     "max_violation": solved.max_violation,
                     "torque_limit_nm": solved.torque_limit,
                 })),
-                "solver_ms": plan.wall_ms,
-                "iterations": plan.iterations,
-                "violation": plan.max_violation,
+                "solver_ms": plan.map(|plan| plan.wall_ms),
+                "iterations": plan.map(|plan| plan.iterations),
+                "violation": plan.map(|plan| plan.max_violation),
                 "peak_torque_nm": reference.peak_torque,
                 "peak_friction": reference.peak_friction,
                 "base_residual": reference.base_residual,

@@ -15,6 +15,7 @@ pub(crate) mod reference;
 pub(crate) mod report;
 mod sensors;
 pub(crate) mod stored;
+pub(crate) mod strip;
 pub(crate) mod task;
 pub(crate) mod task_file;
 pub(crate) mod whole_body;

@@ -30,6 +30,36 @@ pub(crate) struct Solved {
     pub(crate) torque_limit: f64,
 }
 
+/// Where a reference comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Origin {
+    /// Leg kinematics.
+    Kinematics,
+    /// Whole-body optimisation, just now.
+    WholeBody(Solved),
+    /// A container that was stored before.
+    Stored,
+}
+
+impl Origin {
+    /// Its name in results.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Kinematics => "srb+kinematics",
+            Self::WholeBody(_) => "whole-body",
+            Self::Stored => "stored",
+        }
+    }
+
+    /// How the whole-body problem was solved, where that is known.
+    pub(crate) fn solved(self) -> Option<Solved> {
+        match self {
+            Self::WholeBody(solved) => Some(solved),
+            Self::Kinematics | Self::Stored => None,
+        }
+    }
+}
+
 impl Planner {
     /// Plans the legs along a plan of the body.
     pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
@@ -62,14 +92,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
             .iter()
             .map(|interval| node(plan.order, interval.start, &interval.state, Some(interval))),
     );
-    let (mut peak_torque, mut peak_friction) = (0.0, 0.0);
-    for interval in plan.intervals.iter().filter(|i| i.start < takeoff) {
-        let torques = interval.sample.effort[BASE..].iter();
-        peak_torque = torques.fold(peak_torque, |m, t| f64::max(m, t.abs()));
-        for f in interval.sample.forces_w.iter().filter(|f| f.z > 5.0) {
-            peak_friction = f64::max(peak_friction, f.x.abs().max(f.y.abs()) / f.z);
-        }
-    }
+    let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
     Ok(Reference {
         nodes,
         takeoff,
@@ -80,7 +103,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
         peak_torque,
         peak_friction,
         base_residual: plan.judged.max_violation,
-        whole_body: Some(Solved {
+        origin: Origin::WholeBody(Solved {
             wall_ms,
             iterations: plan.outcome.iterations,
             cost: plan.judged.cost,
@@ -88,6 +111,21 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
             torque_limit: plan.torque_limit,
         }),
     })
+}
+
+/// Largest torque, N m, and largest tangential over normal force of the nodes before the take-off.
+pub(crate) fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
+    let (mut torque, mut friction) = (0.0, 0.0);
+    for node in nodes.iter().filter(|node| node.time < takeoff) {
+        torque = node
+            .torques
+            .iter()
+            .fold(torque, |m, t| f64::max(m, t.abs()));
+        for f in node.forces_w.iter().filter(|f| f.z > 5.0) {
+            friction = f64::max(friction, f.x.abs().max(f.y.abs()) / f.z);
+        }
+    }
+    [torque, friction]
 }
 
 /// A node of the plan: a state, and what is held over the interval that starts there; nothing after the last.

@@ -7,7 +7,7 @@
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
 use super::kinematics::{com, contact_frame, jacobian, poses, rolling_velocity};
-use super::planned::Solved;
+use super::planned::Origin;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
 use a1_model::a1;
@@ -40,10 +40,10 @@ pub(crate) struct Reference {
     pub(crate) peak_torque: f64,
     /// Largest tangential over normal force in the push-off.
     pub(crate) peak_friction: f64,
-    /// Largest wrench on the base that the forces do not balance: N or N m.
+    /// Largest wrench on the base that the forces do not balance: N or N m; not a number for a stored plan.
     pub(crate) base_residual: f64,
-    /// How the whole-body problem was solved; none for leg kinematics.
-    pub(crate) whole_body: Option<Solved>,
+    /// Where it comes from.
+    pub(crate) origin: Origin,
 }
 
 /// Motion of the single rigid body over one interval.
@@ -276,7 +276,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         peak_torque,
         peak_friction,
         base_residual,
-        whole_body: None,
+        origin: Origin::Kinematics,
     })
 }
 

@@ -3,6 +3,7 @@
 use super::execute::Run;
 use super::kinematics::poses;
 use super::log::{FEET_NAMES, Sample, joint_names};
+use super::planned::Origin;
 use super::reference::Reference;
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, State, feet};
@@ -14,10 +15,12 @@ use serde_json::{Value, json};
 /// The report's text.
 pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]) -> String {
     let title = format!("saltus run {}", task.name);
-    let legs = if reference.whole_body.is_some() {
-        "a whole-body optimum along a single-rigid-body one"
-    } else {
-        "a single-rigid-body optimum with leg kinematics and inverse dynamics"
+    let legs = match reference.origin {
+        Origin::WholeBody(_) => "a whole-body optimum along a single-rigid-body one",
+        Origin::Kinematics => {
+            "a single-rigid-body optimum with leg kinematics and inverse dynamics"
+        }
+        Origin::Stored => "one that was stored before",
     };
     let intro = format!(
         "The robot stands, pushes off, flies and lands under the controllers of the jump; the plant is simulated at 10 kHz (see \

@@ -1,7 +1,7 @@
 //! A whole-body plan as a container, and back.
 
-use super::planned::node;
-use super::reference::standing;
+use super::planned::{Origin, node, peaks};
+use super::reference::{Reference, standing};
 use super::task::Task;
 use super::whole_body::{Interval, POSED, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
@@ -19,6 +19,8 @@ pub(crate) type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
 
 /// Bytes of the header and of everything else that is not a node.
 const OVERHEAD: usize = 1024;
+/// Joint angles that differ by less are the same posture: what single precision leaves, and more, rad.
+const SAME_POSTURE: f64 = 1e-4;
 
 /// The container of a plan, with its feedback gains or without; its nodes begin with the posture in which the robot waits.
 pub(crate) fn store(
@@ -65,12 +67,7 @@ pub(crate) fn store(
         touchdown: touchdown as f32,
         phase_count: plan.phases.len() as u8,
         phases,
-        ground: task.edge.map(|edge| GroundStep {
-            drop: edge.drop as f32,
-            axis: edge.axis as u8,
-            side: edge.sign as i8,
-            distance: edge.distance as f32,
-        }),
+        ground: ground(task),
         margins: Margins {
             friction: task.limits.friction as f32,
             friction_share: task.limits.friction_share as f32,
@@ -91,6 +88,53 @@ pub(crate) fn store(
         write(&mut out, hash(robot), &header, &nodes, &gains).map_err(|e| e.to_string())?;
     out.truncate(length);
     Ok(out)
+}
+
+fn ground(task: &Task) -> Option<GroundStep> {
+    task.edge.map(|edge| GroundStep {
+        drop: edge.drop as f32,
+        axis: edge.axis as u8,
+        side: edge.sign as i8,
+        distance: edge.distance as f32,
+    })
+}
+
+/// A stored plan as the controller follows it, with the task that it is judged by.
+pub(crate) fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
+    let header = plan.header();
+    if header.ground != ground(task) {
+        return Err(format!(
+            "the plan is for another box than task {}: plan again",
+            task.name
+        ));
+    }
+    let nodes: Vec<Node> = plan.nodes().map(|node| node.node()).collect();
+    let gap = |node: &Node| {
+        let pairs = node.joints.iter().zip(&task.start.joints);
+        pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+    };
+    // Not `>`: what is not a number is no start either.
+    if !nodes.first().is_some_and(|node| gap(node) <= SAME_POSTURE) {
+        return Err(format!(
+            "the plan begins in another posture than task {}: plan again",
+            task.name
+        ));
+    }
+    let takeoff = f64::from(header.takeoff);
+    let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
+    let phases = header.phases.iter().take(header.phase_count.into());
+    Ok(Reference {
+        takeoff,
+        posing: f64::from(header.posing),
+        touchdown: f64::from(header.touchdown),
+        landing_joints: task.robot.landing_joints(&task.start)?,
+        durations: phases.map(|phase| f64::from(phase.duration)).collect(),
+        peak_torque,
+        peak_friction,
+        base_residual: f64::NAN,
+        origin: Origin::Stored,
+        nodes,
+    })
 }
 
 /// Opens a container for a robot.

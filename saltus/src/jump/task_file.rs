@@ -203,7 +203,7 @@ pub(crate) enum TaskError {
         known: String,
     },
     /// The file cannot be read.
-    #[error("{path}: {error}")]
+    #[error("{path}: {error}: check the path")]
     File {
         /// The file.
         path: PathBuf,

@@ -5,6 +5,7 @@ use crate::humanoid::execute::{self, Run};
 use crate::humanoid::judge::Verdict;
 use crate::humanoid::{GRAVITY, Task, report};
 use crate::jump::plant::{Disturbance, Sim};
+use core::ops::ControlFlow;
 use jump_control::takeoff_speed;
 use std::path::Path;
 
@@ -13,8 +14,13 @@ fn run(task: &Task, sim: Sim) -> Result<Run, String> {
 }
 
 /// All rows.
-pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> Vec<Row> {
-    let mut rows = takeoff();
+pub(crate) fn rows(
+    sims: &[Sim],
+    folder: &Path,
+    rows: &mut Vec<Row>,
+    mut tell: impl FnMut(&str) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    rows.extend(takeoff());
     for &sim in sims {
         for (name, item, theirs, com, soles) in [
             (
@@ -32,7 +38,7 @@ pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> V
                 0.023,
             ),
         ] {
-            tell(name);
+            tell(name)?;
             let row = Row::new('B', format!("{item}: height of 4 cm asked for"), theirs);
             let row = row.simulated(sim);
             let Some(task) = Task::named(name) else {
@@ -68,7 +74,7 @@ pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> V
             "quoted; simulation cannot judge a claim about hardware",
         ),
     );
-    rows
+    ControlFlow::Continue(())
 }
 
 /// II-D and III-A: figures without a simulator.

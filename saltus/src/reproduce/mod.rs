@@ -100,9 +100,9 @@ impl Row {
     }
 }
 
-/// The object of `--json`.
-pub(crate) fn json(rows: &[Row]) -> Value {
-    json!({ "rows": rows.iter().map(Row::json).collect::<Vec<_>>() })
+/// The object of `--json`; incomplete if the run was stopped.
+pub(crate) fn json(rows: &[Row], complete: bool) -> Value {
+    json!({ "complete": complete, "rows": rows.iter().map(Row::json).collect::<Vec<_>>() })
 }
 
 /// A report in a folder of its own below `folder`.

@@ -146,18 +146,23 @@ fn fly(planned: &Planned, sim: Sim, folder: &Path, kind: &str) -> Result<(Run, V
     Ok((run, verdict))
 }
 
-/// All rows.
-pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> Vec<Row> {
-    let (mut rows, mut plans) = (Vec::new(), Plans::default());
+/// All rows, as they come; `tell` hears what is next and may stop.
+pub(crate) fn rows(
+    sims: &[Sim],
+    folder: &Path,
+    rows: &mut Vec<Row>,
+    mut tell: impl FnMut(&str) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let mut plans = Plans::default();
     for tabled in &TABLE {
-        tell(tabled.0);
+        tell(tabled.0)?;
         rows.extend(table(tabled, &mut plans));
     }
     for &sim in sims {
-        tell("a1/spin-90 by two planners");
+        tell("a1/spin-90 by two planners")?;
         rows.push(spin(&mut plans, sim, folder));
         for (name, item, theirs) in SHOWN {
-            tell(name);
+            tell(name)?;
             let row = Row::new('A', item, theirs).simulated(sim);
             let flown = plans
                 .get(name)
@@ -181,7 +186,7 @@ pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> V
             }
         }
     }
-    tell("a1/forward-60 with other timings");
+    tell("a1/forward-60 with other timings")?;
     rows.push(timing(
         &MANUAL,
         "Fig. 8b, 8c: forward 0.6 m, manual timing 0.50, 0.30, 0.55 s",
@@ -201,7 +206,7 @@ pub(crate) fn rows(sims: &[Sim], folder: &Path, mut tell: impl FnMut(&str)) -> V
         )
         .unjudged("not built", "wb-opt takes the durations as given"),
     );
-    rows
+    ControlFlow::Continue(())
 }
 
 /// Table II: timings and times.
@@ -233,7 +238,7 @@ fn table(&(name, title, phases, [srb_s, whole_body_s]): &Tabled, plans: &mut Pla
             "on another machine",
         ),
     ];
-    if let Some(solved) = planned.reference.whole_body {
+    if let Some(solved) = planned.reference.origin.solved() {
         rows.push(
             row("time for the whole body", format!("{whole_body_s} s")).ours(
                 format!(

@@ -5,6 +5,8 @@ mod srb;
 mod task;
 mod whole_body;
 
+use super::folder::describe;
+use super::output::Output;
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
@@ -52,9 +54,8 @@ pub(crate) struct Args {
     /// Write the solution here, in the layout of the checkers.
     #[arg(long)]
     solution: Option<PathBuf>,
-    /// Print one JSON object instead of text.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    pub(crate) output: Output,
     /// Standard deviation of the noise added to the initial guess.
     #[arg(long, default_value_t = 0.0)]
     guess_noise: f64,
@@ -99,7 +100,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         Some(path) => read(path)?,
         None => SHIPPED.to_owned(),
     };
-    let file = File::parse(&text)?;
+    let shown = |error| match &args.problem {
+        Some(path) => format!(
+            "{}: {error}: it must be like saltus/data/a1-jumps.json",
+            path.display()
+        ),
+        None => error,
+    };
+    let file = File::parse(&text).map_err(shown)?;
     let name = file.pick(args.reference.as_deref())?;
     let mut report = json!({ "task": name });
     let (key, planned) = if args.stage == "whole-body" {
@@ -120,15 +128,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     };
     if let Some(path) = &args.solution {
         std::fs::write(path, planned.solution.to_string())
-            .map_err(|error| format!("{}: {error}", path.display()))?;
+            .map_err(|error| describe(path, &error))?;
     }
-    if args.json {
+    if args.output.json {
         let phase = |t: &f64| json!({ "duration_s": t });
         report["status"] = json!(planned.status);
         report["phases"] = planned.durations.iter().map(phase).collect();
         report[key] = planned.report;
         println!("{report}");
-    } else {
+    } else if !args.output.quiet {
         println!(
             "{name}: {} in {:.2} ms, {} iterations, cost {:.6}, violation {:.1e}, durations {:.3?} s",
             planned.status,
@@ -147,7 +155,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
 }
 
 fn read(path: &PathBuf) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+    std::fs::read_to_string(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {

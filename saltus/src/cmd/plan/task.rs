@@ -5,16 +5,15 @@
 use super::Args;
 use super::layout::layout;
 use crate::audit::Audit;
+use crate::cmd::folder::{describe, must_be_new, publish};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::stored::{open, store};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::whole_body::{self, WholeBodyPlan};
-use core::time::Duration;
 use indicatif::ProgressBar;
 use ocp_solver::{Progress, Settings, Status};
 use serde_json::{Value, json};
-use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -31,15 +30,14 @@ struct Report {
 
 /// Runs the command.
 pub(super) fn run(args: &Args, name: &str) -> ExitCode {
-    let bar = ProgressBar::new_spinner();
-    bar.enable_steady_tick(Duration::from_millis(100));
+    let bar = args.output.spinner();
     let mut report = Report::default();
     let result = plan(args, name, &bar, &mut report);
     bar.finish_and_clear();
     let result = result.and_then(|()| write(args, &report));
-    if args.json {
+    if args.output.json {
         println!("{}", report.json(name, result.as_ref().err()));
-    } else if result.is_ok() {
+    } else if result.is_ok() && !args.output.quiet {
         report.print(name);
     }
     match result {
@@ -54,12 +52,7 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
 
 /// Plans, and leaves in the report how far that came.
 fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Result<(), String> {
-    if let Some(path) = args.out.as_deref().filter(|path| path.exists()) {
-        return Err(format!(
-            "{} exists already: choose another --out, nothing is overwritten",
-            path.display()
-        ));
-    }
+    must_be_new(args.out.as_deref())?;
     let mut task = Task::load_for(name, args.robot.as_deref(), &args.lock)?;
     if let Some(timing) = &args.timing {
         task.fix_timing(timing)?;
@@ -111,27 +104,23 @@ fn write(args: &Args, report: &Report) -> Result<(), String> {
     let (Some(task), Some((plan, _))) = (&report.task, &report.whole_body) else {
         return Ok(());
     };
-    let show = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
     if let Some(path) = &args.solution {
-        std::fs::write(path, layout(&task.name, plan).to_string()).map_err(|e| show(path, e))?;
+        std::fs::write(path, layout(&task.name, plan).to_string())
+            .map_err(|e| describe(path, &e))?;
     }
     let (Some(folder), None) = (&args.out, &report.answer) else {
         return Ok(());
     };
-    std::fs::create_dir_all(folder).map_err(|e| show(folder, e))?;
     let mut json = report.json(&task.name, None);
     if let Some(audit) = &report.audit {
         json["audit"] = audit.details(&task.robot);
     }
     let text = format!("{json:#}\n");
-    for (name, bytes) in [
+    let files = [
         ("plan.bin", report.bytes.as_slice()),
         ("plan.json", text.as_bytes()),
-    ] {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|e| show(&path, e))?;
-    }
-    Ok(())
+    ];
+    publish(Some(folder), &task.name, &files).map(|_| ())
 }
 
 impl Report {

@@ -1,0 +1,43 @@
+//! What a command prints: text, one JSON object, or nothing; and how far it is, on a terminal only.
+
+use core::time::Duration;
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Options of every command that prints a result.
+#[derive(clap::Args, Clone, Copy)]
+pub(crate) struct Output {
+    /// Print one JSON object on standard output and nothing else; an error is an object with the key `error`.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors: the exit code and the files tell the rest.
+    #[arg(long, short, conflicts_with = "json")]
+    pub(crate) quiet: bool,
+}
+
+impl Output {
+    /// Whether text for people is wanted.
+    pub(crate) fn is_text(self) -> bool {
+        !self.json && !self.quiet
+    }
+
+    /// A spinner with a message; hidden where nobody looks.
+    pub(crate) fn spinner(self) -> ProgressBar {
+        if !self.is_text() {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new_spinner();
+        bar.enable_steady_tick(Duration::from_millis(100));
+        bar
+    }
+
+    /// A bar of so many steps; hidden where nobody looks.
+    pub(crate) fn bar(self, steps: u64, template: &str) -> Result<ProgressBar, String> {
+        if !self.is_text() {
+            return Ok(ProgressBar::hidden());
+        }
+        let style = ProgressStyle::with_template(template).map_err(|error| error.to_string())?;
+        let bar = ProgressBar::new(steps);
+        bar.set_style(style.progress_chars("=> "));
+        Ok(bar)
+    }
+}

@@ -1,0 +1,45 @@
+//! A jump of paper B.
+
+use super::{Args, Files, code};
+use crate::cmd::folder::must_be_new;
+use crate::humanoid::{Task, execute, judge::Verdict, log, report};
+use crate::jump::plant::Disturbance;
+use std::process::ExitCode;
+
+/// Runs the jump.
+pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
+    must_be_new(args.out.as_deref())?;
+    let bar = args.output.spinner();
+    bar.set_message("simulating");
+    let disturbance = args.plant.unwrap_or_else(|| Disturbance::draw(args.seed));
+    let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
+    let run = jump(task)?;
+    let verdict = Verdict::of(&run);
+    let result = verdict.json(task, &run, args.seed, args.sim.name());
+    // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
+    let free = if task.momentum {
+        bar.set_message("simulating without control of the angular momentum");
+        Some(jump(&Task {
+            momentum: false,
+            ..*task
+        })?)
+    } else {
+        None
+    };
+    bar.finish_and_clear();
+    let table = verdict.table(task, &run, args.sim.name());
+    if args.output.is_text() {
+        for (name, value, _) in &table {
+            println!("{name:26} {value}");
+        }
+    }
+    let files = Files {
+        task: task.name(),
+        log: log::csv(&run.samples),
+        result: &result,
+        report: report::html(task, &run, free.as_ref(), &table)?,
+        strip: None,
+    };
+    files.publish(args)?;
+    Ok(code(verdict.on_target(task)))
+}

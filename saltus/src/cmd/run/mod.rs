@@ -1,0 +1,139 @@
+//! `saltus run`: a jump in simulation, planned now or before, with its report.
+
+mod humanoid;
+mod quadruped;
+
+use super::folder::publish;
+use super::output::Output;
+use crate::humanoid as icub;
+use crate::jump::planned::Planner;
+use crate::jump::plant::{Disturbance, Sim};
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Options of `saltus run`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// A built-in task such as a1/lateral or icub/velocity, the path of a task file, or plan.bin of `saltus plan --out`.
+    #[arg(value_name = "TASK|PLAN")]
+    what: String,
+    /// Task of a stored plan, by which its run is judged, where it is not found under the name in the plan.
+    #[arg(long)]
+    task: Option<String>,
+    /// Simulator.
+    #[arg(long, default_value = "native")]
+    sim: Sim,
+    /// Seed of the disturbances: 0 is the nominal run, others draw masses, friction, rotor inertia, latency and noise.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    seed: u64,
+    /// How the legs are planned along the single rigid body's motion.
+    #[arg(long, default_value = "whole-body")]
+    planner: Planner,
+    /// Humanoid tasks: height to gain in flight, m.
+    #[arg(long, default_value_t = 0.04, allow_negative_numbers = true, value_parser = height)]
+    height: f64,
+    /// Humanoid tasks: leave the angular momentum alone.
+    #[arg(long)]
+    no_momentum: bool,
+    /// Humanoid tasks: share of the joints' torque limits that there is.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_parser = share)]
+    torque_share: f64,
+    /// Humanoid tasks: what holds the robot in flight and landing.
+    #[arg(long, default_value = "qp")]
+    landing: icub::Landing,
+    /// How the plant differs, instead of a seed's draw: mass=1.1,friction=0.4,latency=2,noise.
+    #[arg(long)]
+    plant: Option<Disturbance>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+    /// New folder for report, log and result; by default out/TASK, or out/TASK-2 and so on if that exists.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+fn height(text: &str) -> Result<f64, String> {
+    number(text)
+        .filter(|x| *x > 0.0 && *x <= 1.0)
+        .ok_or_else(|| "a height above 0 and up to 1 m is needed, such as 0.04".to_owned())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    number(text)
+        .filter(|x| *x > 0.0 && *x <= 1.0)
+        .ok_or_else(|| "a share above 0 and up to 1 is needed, such as 0.8".to_owned())
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.parse().ok()
+}
+
+/// Runs the command. Exit code 0 when the jump is on target, 2 when it is not or cannot be.
+pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    let Some(task) = icub::Task::named(&args.what) else {
+        return quadruped::run(args);
+    };
+    let task = icub::Task {
+        height: args.height,
+        momentum: !args.no_momentum,
+        torque_share: args.torque_share,
+        landing: args.landing,
+        ..task
+    };
+    humanoid::run(args, &task)
+}
+
+/// What a run leaves behind.
+struct Files<'a> {
+    task: &'a str,
+    log: String,
+    result: &'a Value,
+    report: String,
+    /// The jump in one picture, where there is one.
+    strip: Option<String>,
+}
+
+impl Files<'_> {
+    /// Writes a new folder and tells where it is.
+    fn publish(&self, args: &Args) -> Result<(), String> {
+        let result = format!("{:#}\n", self.result);
+        let mut files = vec![
+            ("log.csv", self.log.as_bytes()),
+            ("result.json", result.as_bytes()),
+            ("report.html", self.report.as_bytes()),
+        ];
+        let strip = self.strip.iter();
+        files.extend(strip.map(|svg| ("strip.svg", svg.as_bytes())));
+        let folder = publish(args.out.as_deref(), self.task, &files)?;
+        if args.output.json {
+            println!("{}", self.result);
+        } else if !args.output.quiet {
+            println!("report: {}", folder.join("report.html").display());
+        }
+        Ok(())
+    }
+}
+
+/// 0 on target, 2 not.
+fn code(on_target: bool) -> ExitCode {
+    if on_target {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{height, share};
+
+    #[test]
+    fn shares_and_heights_are_numbers_that_can_be() {
+        for good in ["0.04", "1"] {
+            assert!(height(good).is_ok() && share(good).is_ok(), "{good}");
+        }
+        for bad in ["0", "-1", "nan", "inf", "1e9", "x", ""] {
+            assert!(height(bad).is_err() && share(bad).is_err(), "{bad}");
+        }
+    }
+}

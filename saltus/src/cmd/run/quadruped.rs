@@ -1,0 +1,219 @@
+//! A jump of paper A: planned, or read from a container, and executed.
+
+use super::{Args, Files, code};
+use crate::cmd::folder::{describe, must_be_new};
+use crate::jump::answer::Answer;
+use crate::jump::bounds::impossible;
+use crate::jump::judge::Verdict;
+use crate::jump::planned::Origin;
+use crate::jump::plant::Sim;
+use crate::jump::reference::Reference;
+use crate::jump::task::{SrbPlan, Task};
+use crate::jump::{execute, log, report, stored, strip};
+use crate::report::Line;
+use crate::robot::Quadruped;
+use indicatif::ProgressBar;
+use serde_json::json;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// What is executed; a stored plan comes without its single rigid body.
+struct Made {
+    task: Task,
+    srb: Option<SrbPlan>,
+    reference: Reference,
+}
+
+/// Runs the jump.
+pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
+    if args.plant.is_some() {
+        return Err("--plant is for humanoid tasks: use --seed for this one".into());
+    }
+    must_be_new(args.out.as_deref())?;
+    let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
+    let path = Path::new(&args.what);
+    let made = if !args.what.ends_with(".toml") && path.is_file() {
+        read(path, args.task.as_deref())?
+    } else if args.task.is_some() {
+        return Err("--task is for stored plans: give the task alone".into());
+    } else {
+        let task = Task::load(&args.what)?;
+        if let Some(proof) = impossible(&task) {
+            bar.finish_and_clear();
+            return Ok(refuse(args, &task, &Answer::proven(proof)));
+        }
+        plan(args, task, &bar)?
+    };
+    let (task, reference) = (&made.task, &made.reference);
+    let clock = Instant::now();
+    let end = execute::HOLD + reference.touchdown + execute::SETTLE;
+    let run = execute::run(task, reference, args.sim, args.seed, |t, phase| {
+        bar.set_message(format!("simulating: {phase:?}"));
+        bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
+    })?;
+    let wall = clock.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let verdict = Verdict::of(task, &run);
+    let result = verdict.json(
+        task,
+        made.srb.as_ref(),
+        reference,
+        &run,
+        args.sim,
+        args.seed,
+    );
+    let table = table(&made, &run, &verdict, args.sim, wall);
+    if args.output.is_text() {
+        for (name, value, _) in &table {
+            println!("{name:18} {value}");
+        }
+    }
+    let files = Files {
+        task: &task.name,
+        log: log::csv(&run.samples),
+        result: &result,
+        report: report::html(task, reference, &run, &table),
+        strip: Some(strip::svg(task, &run, reference.takeoff)),
+    };
+    files.publish(args)?;
+    Ok(code(verdict.on_target()))
+}
+
+/// Plans the task.
+fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
+    bar.set_message("planning the body's motion");
+    let srb = task.solve()?;
+    bar.set_message("planning the legs");
+    bar.set_position(50);
+    let reference = args.planner.plan(&task, &srb)?;
+    Ok(Made {
+        task,
+        srb: Some(srb),
+        reference,
+    })
+}
+
+/// Reads a stored plan, and the task by which its run is judged.
+fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
+    let bytes = std::fs::read(path).map_err(|error| describe(path, &error))?;
+    let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
+    let plan = stored::open(&bytes, &Quadruped::a1().map_err(|error| show(&error))?)
+        .map_err(|error| show(&error))?;
+    let name = task.unwrap_or(plan.header().task);
+    let task = Task::load(name).map_err(|error| {
+        show(&format!(
+            "its task cannot be read, give it with --task: {error}"
+        ))
+    })?;
+    let reference = stored::reference(&plan, &task).map_err(|error| show(&error))?;
+    Ok(Made {
+        task,
+        srb: None,
+        reference,
+    })
+}
+
+/// Tells why there is nothing to execute.
+fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
+    if args.output.json {
+        let report = json!({ "task": task.name, "status": answer.status, "answer": answer.json() });
+        println!("{report}");
+    } else if !args.output.quiet {
+        println!("{}: {}\n{}", task.name, answer.status, answer.text());
+    }
+    code(false)
+}
+
+/// The result for people.
+fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64) -> Vec<Line> {
+    let Made {
+        task,
+        srb,
+        reference,
+    } = made;
+    let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
+    let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
+    let span = run.samples.len() as f64 * 1e-3;
+    let plain = |name, value| (name, value, None);
+    let limit = a1_model::MOTORS[0].torque;
+    vec![
+        plain("task", task.name.clone()),
+        plain(
+            "body plan",
+            srb.as_ref().map_or_else(
+                || format!("stored, phases {:.3?} s", reference.durations),
+                |plan| {
+                    format!(
+                        "solved in {:.0} ms, {} iterations, phases {:.3?} s",
+                        plan.wall_ms, plan.iterations, reference.durations
+                    )
+                },
+            ),
+        ),
+        (
+            "leg plan",
+            format!(
+                "{}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
+                match reference.origin {
+                    Origin::Kinematics => "leg kinematics, not a whole-body optimum".to_owned(),
+                    Origin::WholeBody(solved) => format!(
+                        "whole body solved in {:.0} ms, {} iterations",
+                        solved.wall_ms, solved.iterations
+                    ),
+                    Origin::Stored => "stored".to_owned(),
+                },
+                reference.peak_torque,
+                reference.peak_friction
+            ),
+            Some(reference.peak_torque <= limit && reference.peak_friction <= 0.60),
+        ),
+        plain(
+            "simulated",
+            format!(
+                "{span:.1} s in {wall:.1} s, {} simulator, 10 kHz",
+                sim.name()
+            ),
+        ),
+        ("landed", yes(verdict.landed), Some(verdict.landed)),
+        (
+            "upright after 2 s",
+            yes(verdict.upright),
+            Some(verdict.upright),
+        ),
+        plain("first contact", seconds(run.first_contact)),
+        (
+            "position error",
+            format!("{:.3} m", verdict.position_error),
+            Some(verdict.position_error <= 0.10),
+        ),
+        (
+            "orientation error",
+            format!("{:.1} deg", verdict.orientation_error),
+            Some(verdict.orientation_error <= 10.0),
+        ),
+        plain("apex of the CoM", format!("{:.3} m", verdict.apex)),
+        plain("peak torque", format!("{:.1} N m", run.peak_torque)),
+        plain(
+            "torque saturation",
+            format!(
+                "{:.1} ms in the push-off, {:.1} ms in the landing",
+                run.push_off_saturation * 1e3,
+                run.landing_saturation * 1e3
+            ),
+        ),
+        plain("peak foot force", format!("{:.0} N", run.peak_foot_force)),
+        (
+            "trunk touched",
+            if run.trunk_contact { "YES" } else { "no" }.to_owned(),
+            Some(verdict.trunk_is_right),
+        ),
+        plain(
+            "landing QP",
+            format!(
+                "{} solves, {} failures, at most {} iterations",
+                run.qp_solves, run.qp_failures, run.qp_max_iterations
+            ),
+        ),
+    ]
+}

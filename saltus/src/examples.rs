@@ -1,0 +1,70 @@
+//! What stands below the options in `--help`: examples, and what the exit codes mean.
+
+pub(crate) const PROGRAM: &str = "\
+Begin with:
+  saltus run a1/lateral                  plan a jump, simulate it, and write a report for your browser
+  saltus help COMMAND                    more about a command, with examples
+
+Tasks: a1/lateral, a1/lateral-down, a1/spin-90, a1/diagonal, a1/forward-60, a1/barrel-roll, a1/barrel-roll-box,
+a1/double-barrel-roll, a1/double-backflip; icub/velocity and icub/torque for `run`; or a TOML file of your own.
+
+Exit codes: 0 done and good; 2 the answer is no, or the command line or a file is refused; 1 not done, for the reason on
+standard error; 130 stopped by Ctrl-C. NO_COLOR=1 switches colours off.";
+
+pub(crate) const PLAN: &str = "\
+Examples:
+  saltus plan a1/lateral                              plan, audit, and tell
+  saltus plan a1/lateral --out out/lateral            also keep plan.bin, which controllers read, and plan.json
+  saltus plan my-task.toml --robot my.urdf            your own task for your own quadruped
+  saltus plan a1/forward-60 --timing 0.5,0.3,0.55     with given durations of the phases
+  saltus plan --reference spin --stage whole-body     a reference problem of paper A
+
+Exit codes: 0 planned and passed its audit; 2 everything else: the output tells what blocks and what would have to change.";
+
+pub(crate) const VERIFY: &str = "\
+Examples:
+  saltus verify out/lateral/plan.bin
+  saltus verify plan.bin --robot my.urdf --json
+
+Exit codes: 0 the plan passes; 2 it does not, or cannot be read.";
+
+pub(crate) const IMPORT: &str = "\
+Examples:
+  saltus import my.urdf                               check only: what it is, and what is doubtful in it
+  saltus import my.urdf --out my-model                a no_std crate with its tables
+  saltus import arm.urdf --base fixed --lock gripper=0.02
+
+Exit codes: 0 the robot is good (warnings go to standard error); 2 the file, an option or the folder is refused.";
+
+pub(crate) const RUN: &str = "\
+Examples:
+  saltus run a1/barrel-roll                           report, log and result in out/a1-barrel-roll
+  saltus run a1/lateral --seed 3                      a disturbed robot with noisy sensors
+  saltus run out/lateral/plan.bin                     a stored plan, as `saltus plan --out` wrote it
+  saltus run icub/velocity --height 0.03 --plant mass=1.05,noise
+  saltus run my-task.toml --json --out out/mine
+
+Exit codes: 0 on target (landed, upright 2 s later, within 0.10 m and 10°; a humanoid: upright and high enough); 2 not on target, or
+proven to be impossible; 1 not executed, for the reason on standard error. The folder appears only when it is complete.";
+
+pub(crate) const ENVELOPE: &str = "\
+Examples:
+  saltus envelope a1/lateral --samples 20
+  saltus envelope a1/lateral --shard 2/4 --out study   a quarter of a study; shards in one folder make one table
+
+Exit codes: 0 the study or its shard is complete; 130 stopped by Ctrl-C, with the table of the samples so far: the same command goes on;
+1 not done, for the reason on standard error.";
+
+pub(crate) const REPRODUCE: &str = "\
+Examples:
+  saltus reproduce --quick                            native simulator only
+  saltus reproduce --json --out out/papers            also MuJoCo, in a build with the feature `mujoco`
+
+Exit codes: 0 every claim that can be judged holds; 2 one does not; 130 stopped by Ctrl-C, with the page of the rows so far; 1 not done,
+for the reason on standard error.";
+
+pub(crate) const COMPLETIONS: &str = "\
+Examples:
+  saltus completions bash > ~/.local/share/bash-completion/completions/saltus
+  saltus completions fish > ~/.config/fish/completions/saltus.fish
+  saltus completions zsh > ~/.zfunc/_saltus";

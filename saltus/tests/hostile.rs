@@ -1,0 +1,246 @@
+//! What the program says to mistakes and to malice: a code that is documented, a reason, a remedy, and nothing half done.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn saltus(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command
+        .args(arguments)
+        .current_dir(folder())
+        .output()
+        .unwrap()
+}
+
+/// A folder with the files that the commands below name.
+fn folder() -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile");
+    std::fs::create_dir_all(path.join("folder.urdf")).unwrap();
+    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let goal = |goal: &str| {
+        let lines = lateral.lines().map(|line| match line {
+            _ if line.starts_with("goal_m") => format!("goal_m = [{goal}]\n"),
+            _ => format!("{line}\n"),
+        });
+        lines.collect::<String>()
+    };
+    let arm = "<robot name='arm'><link name='a'><inertial><mass value='1'/>\
+               <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>";
+    for (name, text) in [
+        ("empty.toml", String::new()),
+        ("nan.toml", goal("nan, 0.3, 0.0")),
+        ("far.toml", goal("50.0, 0.3, 0.0")),
+        ("short.bin", "SLTS".to_owned()),
+        ("arm.urdf", arm.to_owned()),
+        ("urdf.txt", "not XML".to_owned()),
+    ] {
+        // Tests run at the same time: a file never shrinks while another reads it.
+        let file = path.join(name);
+        if !std::fs::read_to_string(&file).is_ok_and(|old| old == text) {
+            std::fs::write(file, text).unwrap();
+        }
+    }
+    path
+}
+
+/// Command line, exit code, and words that the answer must hold.
+const MISTAKES: &[(&[&str], i32, &[&str])] = &[
+    (&[], 2, &["Usage", "saltus help COMMAND"]),
+    (&["runn", "a1/lateral"], 2, &["a similar subcommand", "run"]),
+    (&["run"], 2, &["<TASK|PLAN>"]),
+    (
+        &["run", "a1/moonwalk"],
+        1,
+        &["no task `a1/moonwalk`", "a1/lateral"],
+    ),
+    (
+        &["plan", "a1/moonwalk"],
+        2,
+        &["no task `a1/moonwalk`", "a1/lateral"],
+    ),
+    (&["run", "nowhere.toml"], 1, &["nowhere.toml"]),
+    (&["run", "empty.toml"], 1, &["empty.toml", "missing field"]),
+    (&["run", "nan.toml"], 1, &["goal_m", "finite"]),
+    (&["run", "far.toml"], 2, &["Infeasible", "friction"]),
+    (
+        &["run", "short.bin"],
+        1,
+        &["short.bin", "cut off", "copy the plan again"],
+    ),
+    (&["run", "urdf.txt"], 1, &["urdf.txt", "cut off"]),
+    (
+        &["run", "a1/lateral", "--task", "a1/lateral"],
+        1,
+        &["--task", "alone"],
+    ),
+    (&["run", "a1/lateral", "--seed", "-1"], 2, &["--seed"]),
+    (
+        &["run", "a1/lateral", "--plant", "mass=2"],
+        1,
+        &["--plant", "--seed"],
+    ),
+    (
+        &["run", "a1/lateral", "--json", "--quiet"],
+        2,
+        &["cannot be used with"],
+    ),
+    (
+        &["run", "icub/velocity", "--height", "nan"],
+        2,
+        &["--height", "0.04"],
+    ),
+    (
+        &["run", "icub/velocity", "--torque-share", "-1"],
+        2,
+        &["--torque-share", "0.8"],
+    ),
+    (
+        &["run", "icub/velocity", "--plant", "mass=0"],
+        2,
+        &["mass must be positive"],
+    ),
+    (
+        &["run", "a1/lateral", "--out", "folder.urdf"],
+        1,
+        &["nothing is overwritten"],
+    ),
+    (
+        &["run", "a1/lateral", "--out", "short.bin"],
+        1,
+        &["nothing is overwritten"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--samples", "0"],
+        2,
+        &["--samples"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--samples", "-3"],
+        2,
+        &["--samples"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--shard", "3/2"],
+        2,
+        &["1 <= k <= n"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--out", "."],
+        1,
+        &["something else than a study"],
+    ),
+    (&["envelope", "icub/velocity"], 1, &["no task"]),
+    (
+        &["plan", "a1/lateral", "--timing", "0.5,nan"],
+        2,
+        &["timing"],
+    ),
+    (
+        &["plan", "a1/lateral", "--robot", "folder.urdf"],
+        2,
+        &["folder.urdf", "folder"],
+    ),
+    (
+        &["plan", "a1/lateral", "--robot", "arm.urdf"],
+        2,
+        &["arm.urdf", "12 movable joints"],
+    ),
+    (
+        &["plan", "--reference", "nope"],
+        1,
+        &["no task `nope`", "spin"],
+    ),
+    (&["plan", "--problem", "empty.toml"], 1, &["empty.toml"]),
+    (&["verify", "short.bin"], 2, &["short.bin", "cut off"]),
+    (
+        &["verify", "folder.urdf"],
+        2,
+        &["folder.urdf", "give a file"],
+    ),
+    (&["verify", "nowhere"], 2, &["nowhere", "check the path"]),
+    (
+        &["import", "folder.urdf"],
+        2,
+        &["folder.urdf", "give a file"],
+    ),
+    (&["import", "urdf.txt"], 2, &["urdf.txt", "not XML"]),
+    (&["completions", "tcl"], 2, &["bash", "zsh"]),
+];
+
+#[test]
+fn mistakes_are_named_with_their_remedy() {
+    for (arguments, code, words) in MISTAKES {
+        let output = saltus(arguments);
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8(said).unwrap();
+        assert_eq!(output.status.code(), Some(*code), "{arguments:?}: {said}");
+        for word in *words {
+            assert!(
+                said.contains(word),
+                "{arguments:?} does not say `{word}`: {said}"
+            );
+        }
+        assert!(
+            !said.contains('\u{1b}'),
+            "colours without a terminal: {said}"
+        );
+    }
+    assert!(!folder().join("out").exists(), "a mistake left a folder");
+}
+
+#[test]
+fn with_json_an_error_is_one_object_too() {
+    for (arguments, code, words) in MISTAKES {
+        let is_known = arguments
+            .first()
+            .is_some_and(|name| *name != "runn" && *name != "completions");
+        // What the command line's grammar refuses is told in words.
+        if !is_known || arguments.contains(&"--quiet") {
+            continue;
+        }
+        let output = saltus(&[*arguments, &["--json"]].concat());
+        assert_eq!(output.status.code(), Some(*code), "{arguments:?}");
+        let Ok(report) = serde_json::from_slice::<Value>(&output.stdout) else {
+            assert!(output.stdout.is_empty(), "{arguments:?}");
+            assert!(
+                String::from_utf8_lossy(&output.stderr).contains("Usage")
+                    || words.len() == 1
+                    || *code == 2
+            );
+            continue;
+        };
+        assert!(
+            report["error"].is_string() || report["answer"].is_object(),
+            "{report}"
+        );
+    }
+}
+
+#[test]
+fn quiet_says_nothing_but_errors() {
+    let good = saltus(&["plan", "a1/lateral", "--quiet"]);
+    assert_eq!(good.status.code(), Some(0));
+    assert!(good.stdout.is_empty() && good.stderr.is_empty());
+    let bad = saltus(&["plan", "a1/moonwalk", "--quiet"]);
+    assert!(bad.stdout.is_empty() && !bad.stderr.is_empty());
+}
+
+#[test]
+fn every_command_explains_itself_and_its_exit_codes() {
+    for command in ["plan", "verify", "import", "run", "envelope", "reproduce"] {
+        let help = String::from_utf8(saltus(&[command, "--help"]).stdout).unwrap();
+        assert!(
+            help.contains("Examples:") && help.contains("Exit codes:"),
+            "{help}"
+        );
+    }
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = String::from_utf8(saltus(&["completions", shell]).stdout).unwrap();
+        assert!(
+            script.contains("envelope") && script.contains("no-momentum"),
+            "{shell}"
+        );
+    }
+}
