@@ -1,6 +1,7 @@
 //! `saltus plan TASK`: margins kept, torques held, audited, stored; and what happens to tasks that cannot be.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -66,6 +67,30 @@ fn plans_keep_margins_pass_the_audit_and_are_stored() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Turns whose Euler angles meet their singularity, in one order or in both: on SO(3) they are as good as any.
+#[test]
+fn turns_about_mixed_axes_are_planned() {
+    let folder = folder("mixed");
+    let roll = built_in("a1/barrel-roll");
+    let turn = |goal: &str, axis: &str| {
+        let text = roll.replace("goal_m = [0.0, -0.3, 0.0]", &format!("goal_m = {goal}"));
+        text.replace("axis = [1.0, 0.0, 0.0]", &format!("axis = {axis}"))
+    };
+    for (name, text) in [
+        ("diagonal-flip", turn("[0.2, -0.2, 0.0]", "[1.0, 1.0, 0.0]")),
+        ("tilted-roll", turn("[0.0, -0.3, 0.0]", "[1.0, 0.0, 0.25]")),
+    ] {
+        assert_ne!(text, roll);
+        let path = folder.join(name).with_extension("toml");
+        std::fs::write(&path, text).unwrap();
+        let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["status"], "Solved", "{report}");
+        assert!(report["whole_body"]["max_violation"].as_f64().unwrap() <= 1e-6);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 fn margins_are_kept(task: &str, plan: &Value) {
     let rows = |key: &str| plan[key].as_array().unwrap().iter().map(numbers);
     let dt = numbers(&plan["dt"]);
@@ -74,6 +99,7 @@ fn margins_are_kept(task: &str, plan: &Value) {
         rows("v").collect(),
         rows("a").collect(),
     );
+    let turned = plan["R"].as_array().unwrap();
     for torques in rows("tau") {
         assert!(torques.iter().all(|t| t.abs() <= 24.0 + 1e-6), "{task}");
     }
@@ -83,12 +109,19 @@ fn margins_are_kept(task: &str, plan: &Value) {
         }
     }
     for (k, dt) in dt.iter().enumerate().take(dt.len() - 1) {
-        for i in 0..18 {
+        // What turns the base is on SO(3).
+        for i in (0..3).chain(6..18) {
             let reached = q[k][i] + dt * v[k][i] + 0.5 * dt * dt * a[k][i];
             assert!((reached - q[k + 1][i]).abs() < 1e-7, "{task} {k} {i}");
+        }
+        for i in 0..18 {
             let speed = v[k][i] + dt * a[k][i];
             assert!((speed - v[k + 1][i]).abs() < 1e-6, "{task} {k} {i}");
         }
+        let turn = Vector3::from_fn(|i, _| dt * (v[k][3 + i] + 0.5 * dt * a[k][3 + i]));
+        let rotation = |k: usize| Matrix3::from_fn(|i, j| turned[k][i][j].as_f64().unwrap());
+        let reached = rotation(k) * so3::exp(&turn).matrix();
+        assert!((reached - rotation(k + 1)).norm() < 1e-7, "{task} {k}");
     }
     // Two-leg stance is unstable open loop: it is kept short.
     for phase in plan["phases"].as_array().unwrap() {

@@ -21,34 +21,20 @@ D = m.createData()
 feet = [m.getFrameId(name) for name in A1.feet]
 
 
-def base(e, ed, edd, order):
-    """Rotation, angular velocity and acceleration (base axes) of roll, pitch, yaw."""
-    axes = {"zyx": (2, 1, 0), "zxy": (2, 0, 1)}[order]
-    R, w, dw = np.eye(3), np.zeros(3), np.zeros(3)
-    for i in axes:
-        axis = np.eye(3)[i]
-        turn = pin.exp3(axis * e[i])
-        R, w, dw = R @ turn, turn.T @ w, turn.T @ dw
-        dw = dw + np.cross(w, axis * ed[i]) + axis * edd[i]
-        w = w + axis * ed[i]
-    return R, w, dw
-
-
-def free_flyer(q, v, a, order):
-    R, w, dw = base(q[3:6], v[3:6], a[3:6], order)
-    linear = R.T @ v[:3]
+def free_flyer(R, q, v, a):
+    linear, w = R.T @ v[:3], v[3:6]
     return (np.concatenate([q[:3], pin.Quaternion(R).coeffs(), q[6:]]), np.concatenate([linear, w, v[6:]]),
-            np.concatenate([R.T @ a[:3] - np.cross(w, linear), dw, a[6:]]))
+            np.concatenate([R.T @ a[:3] - np.cross(w, linear), a[3:6], a[6:]]))
 
 
 def audit(path):
     d = json.load(open(path))
-    q, v, a, tau, F, dt = [np.array(d[key]) for key in ("q", "v", "a", "tau", "F", "dt")]
-    order, residual, slip, line = d["euler"], 0.0, 0.0, np.inf
+    q, v, a, tau, F, dt, R = [np.array(d[key]) for key in ("q", "v", "a", "tau", "F", "dt", "R")]
+    residual, slip, line = 0.0, 0.0, np.inf
     contacts = [p["contacts"] for p in d["phases"] for _ in range(p["intervals"])]
     for k in range(len(dt)):
         qm, vm = q[k] + dt[k] / 2 * v[k] + dt[k] ** 2 / 4 * a[k], v[k] + dt[k] / 2 * a[k]
-        qp, vp, ap = free_flyer(qm, vm, a[k], order)
+        qp, vp, ap = free_flyer(R[k] @ pin.exp3(dt[k] / 2 * vm[3:6]), qm, vm, a[k])
         r = pin.rnea(m, D, qp, vp, ap)
         pin.computeJointJacobians(m, D, qp)
         pin.forwardKinematics(m, D, qp, vp, ap)
@@ -66,7 +52,7 @@ def audit(path):
         slope = LINE[0] / (LINE[2] - LINE[1])
         line = min(line, (slope * LINE[2] - np.abs(tau[k] + slope * qd)).min())
     first = len(dt) - d["phases"][-1]["intervals"]
-    qq, vp, _ = free_flyer(q[first], v[first], a[first], order)
+    qq, vp, _ = free_flyer(R[first], q[first], v[first], a[first])
     pin.ccrba(m, D, qq, vp)
     momentum, spin, mass = D.hg.linear.copy(), D.hg.angular.copy(), sum(i.mass for i in m.inertias)
     for k in range(first, len(dt)):
@@ -88,8 +74,8 @@ def audit(path):
             momentum = momentum - np.array([0, 0, 9.81 * mass * h])
     k = len(dt) - 1
     end = q[k] + dt[k] * v[k] + dt[k] ** 2 / 2 * a[k]
-    R, _, _ = base(end[3:6], np.zeros(3), np.zeros(3), order)
-    turn = np.degrees(np.linalg.norm(pin.log3(R.T @ pin.Quaternion(qq[3:7]).matrix())))
+    landed = R[k] @ pin.exp3(dt[k] * (v[k] + dt[k] / 2 * a[k])[3:6])
+    turn = np.degrees(np.linalg.norm(pin.log3(landed.T @ pin.Quaternion(qq[3:7]).matrix())))
     return dict(task=d["task"], dynamics_residual=float(residual), slip_rate=float(slip), line_margin_nm=float(line),
                 flight_orientation_error_deg=float(turn), flight_position_error_m=float(np.linalg.norm(qq[:3] - end[:3])))
 

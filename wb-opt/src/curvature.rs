@@ -137,6 +137,13 @@ impl<T: Scalar, const N: usize> PositionTerms<T, N> {
             *by_pos += outer(weight, pos);
         }
     }
+
+    /// Adds Σ ν · r of points on body `link` with Σ ν = 0, given Σ ν rᵀ.
+    pub(crate) fn add_spread(&mut self, link: usize, spread: &Matrix3<T>) {
+        if let Some((_, by_pos)) = self.push.get_mut(link) {
+            *by_pos += spread;
+        }
+    }
 }
 
 impl<T: Scalar, const N: usize> Sweep<'_, T, N> {

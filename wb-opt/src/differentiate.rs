@@ -3,9 +3,9 @@
 use crate::curvature::{Multipliers, PositionTerms};
 use crate::drive::Line;
 use crate::midpoint::{Gradient, Hessian, Map, Midpoint};
-use crate::moments::at_point;
+use crate::moments::{at_point, moment_of};
 use crate::problem::Problem;
-use crate::robot::BASE;
+use crate::robot::{BASE, TURN};
 use crate::state::Units;
 use crate::sweep::{Contacts, EffortJacobian, Sweep};
 use nalgebra::Vector3;
@@ -22,6 +22,8 @@ pub(crate) struct Interval<'a, 'p, T: Scalar, const N: usize, const FEET: usize>
     pub(crate) map: Map<T>,
     /// Next row to write.
     pub(crate) row: usize,
+    /// Gradient of the Lagrangian so far in the angles, rates and accelerations that turn the base.
+    pub(crate) turning: [Vector3<T>; 3],
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> {
@@ -41,7 +43,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         if let (Some(x), Some(u)) = (d.rows_x.get_mut(i), d.rows_u.get_mut(i)) {
             self.map.sparse(scale, gradient, support, x, u);
         }
-        y.get(i).copied().unwrap_or(T::ZERO) * scale
+        let multiplier = y.get(i).copied().unwrap_or(T::ZERO) * scale;
+        self.count(multiplier, gradient);
+        multiplier
+    }
+
+    /// Adds to the gradient of the Lagrangian.
+    #[inline(always)]
+    fn count(&mut self, multiplier: T, gradient: &Gradient<T, N, FEET>) {
+        for (sum, part) in self.turning.iter_mut().zip(gradient.turning()) {
+            *sum += part * multiplier;
+        }
     }
 
     /// Writes cost, mixed rows and the Hessian of the Lagrangian.
@@ -71,8 +83,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let mut multipliers = [T::ZERO; N];
         let mut pulls = [Vector3::zeros(); FEET];
         for (i, multiplier) in multipliers.iter_mut().enumerate().take(BASE) {
-            *multiplier = self.push(units.effort(i), &jacobian.row(i), 0..N, y, d);
+            let mut gradient = jacobian.row(i);
+            self.bear(i, &effort, &mut gradient);
+            *multiplier = self.push(units.effort(i), &gradient, 0..N, y, d);
         }
+        self.bear_twice(&multipliers, &effort, &jacobian, &mut hessian);
         for f in 0..self.contacts.count {
             let rows = self.acceleration(f);
             let link = self.contacts.points.get(f).map_or(0, |point| point.link);
@@ -107,7 +122,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         for i in BASE..N {
             hessian.vv[i][i] += multipliers[i] * bends[i];
         }
-        let positions = self.positions(y, d, &mut hessian);
+        let mut positions = self.positions(y, d, &mut hessian);
+        self.distance(&mut cost, &mut hessian, &mut positions);
+        self.count(T::ONE, &cost);
 
         let multipliers = Multipliers {
             effort: &multipliers,
@@ -116,15 +133,77 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         self.sweep
             .curvature(self.contacts, &multipliers, &positions, &mut hessian);
 
-        let two = T::TWO * weights.position;
-        let reference = self.problem.reference.get(self.k).unwrap_or(&self.mid.q);
-        for (i, reference) in reference.iter().enumerate() {
-            hessian.qq[i][i] += two;
-            cost.q[i] += two * (self.mid.q[i] - *reference);
-        }
         self.map
             .gradient(T::ONE, &cost, &mut d.cost_x, &mut d.cost_u);
         self.map.hessian(&hessian, d);
+    }
+
+    /// On SO(3) the moments on the base are about its axes, m = B⁻ᵀ τ, where the chain has them about its joints:
+    /// the same at zero angles, but their derivatives are not. With the angles x and z of the second and third joint
+    /// m₁ = (1 + ½ (x² − z²)) τ₁ + z τ₂ − x τ₃, m₂ = (1 − ½ z²) τ₂ − z τ₁ + x z τ₃, m₃ = τ₃.
+    fn bear(&self, row: usize, effort: &[T; N], gradient: &mut Gradient<T, N, FEET>) {
+        if self.problem.robot.turns_freely() {
+            let [x, z] = [TURN + 1, TURN + 2];
+            if row == TURN {
+                gradient.q[x] -= effort[TURN + 2];
+                gradient.q[z] += effort[TURN + 1];
+            } else if row == TURN + 1 {
+                gradient.q[z] -= effort[TURN];
+            }
+        }
+    }
+
+    /// The second derivatives that belong to [`Self::bear`].
+    fn bear_twice(
+        &self,
+        multipliers: &[T; N],
+        effort: &[T; N],
+        jacobian: &EffortJacobian<T, N, FEET>,
+        hessian: &mut Hessian<T, N, FEET>,
+    ) {
+        if self.problem.robot.turns_freely() {
+            let [x, z] = [TURN + 1, TURN + 2];
+            let [first, second, third] = [TURN, TURN + 1, TURN + 2];
+            let (y_1, y_2) = (multipliers[first], multipliers[second]);
+            hessian.add_product(x, -y_1, &jacobian.row(third));
+            hessian.add_product(z, y_1, &jacobian.row(second));
+            hessian.add_product(z, -y_2, &jacobian.row(first));
+            hessian.qq[x][x] += y_1 * effort[first];
+            hessian.qq[z][z] -= y_1 * effort[first] + y_2 * effort[second];
+            hessian.qq[x][z] += y_2 * effort[third];
+            hessian.qq[z][x] += y_2 * effort[third];
+        }
+    }
+
+    /// Cost of the distance from the reference.
+    fn distance(
+        &self,
+        cost: &mut Gradient<T, N, FEET>,
+        hessian: &mut Hessian<T, N, FEET>,
+        terms: &mut PositionTerms<T, N>,
+    ) {
+        let Some(reference) = self.problem.reference.get(self.k) else {
+            return;
+        };
+        let weight = self.problem.weights.position;
+        let two = T::TWO * weight;
+        for (i, reference) in reference.q.iter().enumerate() {
+            cost.q[i] += two * (self.mid.q[i] - *reference);
+        }
+        let mut straight = 0..N;
+        if self.problem.robot.turns_freely() {
+            // The distance of the rotation R from its reference is 3 − Σ c·r with columns c and r of the two.
+            let rot_w = self.mid.rot_wc.matrix();
+            let spread = reference.rot_wc.matrix() * rot_w.transpose() * -weight;
+            terms.add_spread(BASE - 1, &spread);
+            let pull = moment_of(&spread);
+            for k in TURN..BASE {
+                cost.q[k] += self.sweep.joints[k].axis.angular.dot(&pull);
+            }
+            (0..TURN).for_each(|i| hessian.qq[i][i] += two);
+            straight.start = BASE;
+        }
+        straight.for_each(|i| hessian.qq[i][i] += two);
     }
 
     /// Gradients of the acceleration of the f-th foot in contact.

@@ -7,7 +7,8 @@ use crate::state::{Layout, State, Units};
 use crate::sweep::{EffortJacobian, Sweep};
 use so3::Scalar;
 
-/// Changes that the optimum asks for per deviation of the state at the start of an interval, by rows.
+/// Changes that the optimum asks for per deviation of the state at the start of an interval, by rows. On SO(3) the
+/// base deviates by `R Exp(θ)` and by its angular velocity, both in base axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains<T, const N: usize, const FEET: usize> {
     /// Effort of coordinate i per m or rad of each coordinate, N m/rad for joints; the base's rows are zero.
@@ -36,11 +37,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     ) -> Gains<T, N, FEET> {
         let units = Units::<T>::new();
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = Sweep::new(&self.robot.bodies, &mid.q, &mid.v, &mid.a);
+        let sweep = Sweep::new(&self.robot.bodies, &mid);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut jacobian = EffortJacobian::<T, N, FEET>::zero();
         sweep.differentiate(&contacts, &mut jacobian);
-        let map = Map::new(self.dt(k), mid.layout);
+        let map = Map::new(self.dt(k), mid.layout, self.turn(k, &mid));
         let mut out = Gains {
             effort_by_q: [[T::ZERO; N]; N],
             effort_by_v: [[T::ZERO; N]; N],

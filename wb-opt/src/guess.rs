@@ -1,8 +1,8 @@
 //! The initial guess: the reference, its rates, and given contact forces.
 
 use crate::problem::Problem;
-use crate::robot::BASE;
-use crate::state::{Layout, State, Units};
+use crate::robot::{BASE, TURN};
+use crate::state::{Layout, Pose, State, Units};
 use nalgebra::Vector3;
 use ocp_solver::Stage;
 use so3::Scalar;
@@ -10,14 +10,14 @@ use so3::Scalar;
 impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// Writes the guess into the stages.
     ///
-    /// Configurations are those of `nodes`, one per node; rates and accelerations of the base their
-    /// differences; joints do not move. `forces` gives the force on each foot during an interval, world
+    /// Configurations are those of `nodes`, one per node, less than half a turn apart; rates and accelerations of the
+    /// base are their differences; joints do not move. `forces` gives the force on each foot during an interval, world
     /// axes, N; only feet in contact are asked for. `perturb` gives the offset of every unknown in the
     /// solver's units: pass `|| T::ZERO` for the plain guess.
     pub fn write_guess<const NX: usize, const NU: usize, const NI: usize>(
         &self,
         stages: &mut [Stage<T, State<T, N>, NX, NU, NI>],
-        nodes: &[[T; N]],
+        nodes: &[Pose<T, N>],
         mut forces: impl FnMut(usize, usize) -> Vector3<T>,
         mut perturb: impl FnMut() -> T,
     ) {
@@ -25,8 +25,16 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let last = nodes.len().saturating_sub(1);
         // Speed over interval k of the plain guess; none before the start.
         let speed = |k: usize, i: usize| {
-            let at = |k: usize| nodes.get(k.min(last)).map_or(T::ZERO, |q| q[i]);
-            (at(k.saturating_add(1)) - at(k)) / self.dt(k.min(last.saturating_sub(1)))
+            let at = |k: usize| nodes.get(k.min(last)).unwrap_or(&self.start);
+            let (from, to) = (at(k), at(k.saturating_add(1)));
+            let dt = self.dt(k.min(last.saturating_sub(1)));
+            let straight = to.q[i] - from.q[i];
+            match i.checked_sub(TURN) {
+                Some(axis) if self.robot.turns_freely() => {
+                    so3::log(&(from.rot_wc.inverse() * to.rot_wc))[axis] / dt
+                }
+                _ => straight / dt,
+            }
         };
         let before = |k: usize, i: usize| k.checked_sub(1).map_or(T::ZERO, |k| speed(k, i));
         for (k, stage) in stages.iter_mut().enumerate() {
@@ -38,12 +46,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             if k == 0 {
                 state = State::at_rest(self.start);
             } else {
-                for q in &mut state.q {
-                    *q += perturb();
-                }
-                for v in &mut state.v {
-                    *v += units.speed * perturb();
-                }
+                state = self.moved(&state, core::iter::repeat_with(&mut perturb));
             }
             stage.state = state;
             if k >= self.intervals() {

@@ -3,18 +3,22 @@
 use crate::drive::Line;
 use crate::midpoint::Midpoint;
 use crate::problem::Problem;
-use crate::robot::BASE;
+use crate::robot::{BASE, TURN};
+use crate::rotation::{angular_acceleration, set_triple, triple, vee_skew};
 use crate::state::State;
 use crate::sweep::Sweep;
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use so3::Scalar;
 use so3::math::{abs, max};
 
-/// An interval in physical units, at its midpoint.
+/// An interval in physical units, at its midpoint. On SO(3) the base's rates and accelerations are angular velocity and
+/// acceleration in base axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<T: Scalar, const N: usize, const FEET: usize> {
-    /// Configuration.
+    /// Configuration, see [`crate::Pose::q`].
     pub q: [T; N],
+    /// See [`crate::Pose::rot_wc`].
+    pub rot_wc: Rotation3<T>,
     /// Rates.
     pub v: [T; N],
     /// Accelerations, constant over the interval.
@@ -48,8 +52,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         control: &[T; NU],
     ) -> Sample<T, N, FEET> {
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = Sweep::new(&self.robot.bodies, &mid.q, &mid.v, &mid.a);
-        let contacts = self.contact_motions(k, &sweep, &mid);
+        let sweep = Sweep::new(&self.robot.bodies, &mid);
+        self.sampled(k, &mid, &sweep)
+    }
+
+    fn sampled(
+        &self,
+        k: usize,
+        mid: &Midpoint<T, N, FEET>,
+        sweep: &Sweep<'_, T, N>,
+    ) -> Sample<T, N, FEET> {
+        let contacts = self.contact_motions(k, sweep, mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
         self.add_friction(&mid.v, &mut effort);
@@ -60,13 +73,20 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 *slot = *force;
             }
         }
-        Sample {
+        let mut sample = Sample {
             q: mid.q,
+            rot_wc: mid.rot_wc,
             v: mid.v,
             a: mid.a,
             effort,
             forces_w,
+        };
+        if self.robot.turns_freely() {
+            let joints = triple(&mid.a, TURN);
+            let alpha = angular_acceleration(&triple(&mid.v, TURN), &joints);
+            set_triple(&mut sample.a, TURN, &alpha);
         }
+        sample
     }
 
     /// Judges a motion given node by node: `(state, control)` for nodes `0 ..= intervals()`.
@@ -78,37 +98,46 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let (mut cost, mut peak_force, mut peak_effort) = (T::ZERO, T::ZERO, T::ZERO);
         let mut worst = T::ZERO;
         let mut above = |amount: T| worst = if amount <= worst { worst } else { amount };
-        let square = |sum: T, (x, y): (&T, &T)| sum + (*x - *y) * (*x - *y);
-        let mut before: Option<(State<T, N>, Sample<T, N, FEET>)> = None;
+        let mut before: Option<(State<T, N>, Midpoint<T, N, FEET>)> = None;
         for (k, (state, control)) in nodes.enumerate() {
             match before {
                 None => {
-                    for ((q, v), start) in state.q.iter().zip(&state.v).zip(&self.start) {
+                    for ((q, v), start) in state.q.iter().zip(&state.v).zip(&self.start.q) {
                         above(abs(*q - *start));
                         above(abs(*v));
                     }
+                    let turned = so3::log(&(self.start.rot_wc.inverse() * state.rot_wc));
+                    turned.iter().for_each(|x| above(abs(*x)));
                 }
                 Some((from, over)) => {
-                    let dt = self.dt(k.saturating_sub(1));
-                    for i in 0..N {
-                        above(abs(from.q[i] + dt * over.v[i] - state.q[i]));
-                        above(abs(from.v[i] + dt * over.a[i] - state.v[i]));
-                    }
+                    let gap = self.gap(k.saturating_sub(1), &from, &over, state);
+                    gap.iter().flatten().for_each(|x| above(abs(*x)));
                 }
             }
             if k >= self.intervals() {
-                cost += self.weights.goal * state.q.iter().zip(&self.goal).fold(T::ZERO, square);
-                for ((q, goal), tolerance) in
-                    state.q.iter().zip(&self.goal).zip(&self.goal_tolerance)
-                {
+                let goal = &self.goal;
+                cost += self.weights.goal * goal.distance_squared(&state.q, &state.rot_wc);
+                let ends = state.q.iter().zip(&goal.q).zip(&self.goal_tolerance);
+                for ((q, goal), tolerance) in ends {
                     above(abs(*q - *goal) - *tolerance);
+                }
+                if self.robot.turns_freely() {
+                    let e = goal.seen(&state.rot_wc);
+                    let tolerances = self.goal_tolerance.iter().skip(TURN);
+                    for (sine, tolerance) in vee_skew(&e).iter().zip(tolerances) {
+                        above(abs(*sine) - *tolerance);
+                    }
+                    // The sine is small at half a turn, too.
+                    above(T::ONE - e.trace());
                 }
                 break;
             }
-            let sample = self.sample(k, state, control);
+            let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
+            let sweep = Sweep::new(&self.robot.bodies, &mid);
+            let sample = self.sampled(k, &mid, &sweep);
             if let Some(reference) = self.reference.get(k) {
-                cost +=
-                    self.weights.position * sample.q.iter().zip(reference).fold(T::ZERO, square);
+                let distance = reference.distance_squared(&mid.q, &mid.rot_wc);
+                cost += self.weights.position * distance;
             }
             for (i, effort) in sample.effort.iter().enumerate() {
                 if i < BASE {
@@ -119,11 +148,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 }
             }
             self.judge_limits(k, state, &sample, &mut above);
-            self.judge_contacts(k, &sample, &mut above);
+            self.judge_contacts(k, &sweep, &sample, &mut above);
             for force in &sample.forces_w {
                 peak_force = max(peak_force, force.z);
             }
-            before = Some((*state, sample));
+            before = Some((*state, mid));
         }
         Judgement {
             cost,
@@ -151,7 +180,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 }
             }
             if self.is_landing(k) {
-                above(abs(state.q[i] - self.goal[i]));
+                above(abs(state.q[i] - self.goal.q[i]));
                 above(abs(state.v[i]));
                 above(abs(sample.a[i]));
             } else {
@@ -163,8 +192,13 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     }
 
     /// Feet, friction and clearances.
-    fn judge_contacts(&self, k: usize, sample: &Sample<T, N, FEET>, above: &mut impl FnMut(T)) {
-        let sweep = Sweep::new(&self.robot.bodies, &sample.q, &sample.v, &sample.a);
+    fn judge_contacts(
+        &self,
+        k: usize,
+        sweep: &Sweep<'_, T, N>,
+        sample: &Sample<T, N, FEET>,
+        above: &mut impl FnMut(T),
+    ) {
         let feet = self.feet.iter().zip(&sample.forces_w);
         for ((foot, f), on) in feet.zip(self.contacts(k)) {
             let point = sweep.point(&foot.point);

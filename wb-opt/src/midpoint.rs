@@ -5,17 +5,20 @@
 //! qm = q + ½ dt q̇ + ¼ dt² q̈,   vm = q̇ + ½ dt q̈
 //! ```
 //!
-//! is linear, so whatever is differentiated in (qm, vm, q̈, F) is brought to (q, q̇; q̈, F) by one fixed map.
+//! is linear, so whatever is differentiated in (qm, vm, q̈, F) is brought to (q, q̇; q̈, F) by one fixed map. A base on SO(3)
+//! turns by the same rule on the group, and the map of its three coordinates is that of [`crate::rotation`].
 
 use crate::problem::Problem;
-use crate::robot::BASE;
+use crate::robot::{BASE, TURN};
+use crate::rotation::{Turn, angular_acceleration, joint_acceleration, set_triple, triple};
 use crate::state::{Layout, State, Units};
 use crate::sweep::{Contacts, PointMotion, Sweep};
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use ocp_solver::Derivatives;
 use so3::Scalar;
 
-/// Motion at the middle of an interval.
+/// Motion at the middle of an interval, in the coordinates of the chain: on SO(3) the angles of the base turn from
+/// [`Self::rot_wc`] and are zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Midpoint<T: Scalar, const N: usize, const FEET: usize> {
     pub(crate) q: [T; N],
@@ -23,6 +26,7 @@ pub(crate) struct Midpoint<T: Scalar, const N: usize, const FEET: usize> {
     pub(crate) a: [T; N],
     /// Forces on the feet in contact, world axes, N.
     pub(crate) forces: [Vector3<T>; FEET],
+    pub(crate) rot_wc: Rotation3<T>,
     pub(crate) layout: Layout,
 }
 
@@ -53,6 +57,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             v: state.v,
             a: [T::ZERO; N],
             forces: [Vector3::zeros(); FEET],
+            rot_wc: state.rot_wc,
             layout,
         };
         for (i, a) in mid.a.iter_mut().enumerate() {
@@ -65,12 +70,59 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             *q += half * (*v + half * *a);
             *v += half * *a;
         }
+        if self.robot.turns_freely() {
+            // What moved the angles turns the rotation instead.
+            mid.rot_wc = state.rot_wc * so3::exp(&triple(&mid.q, TURN));
+            set_triple(&mut mid.q, TURN, &Vector3::zeros());
+            let joints = joint_acceleration(&triple(&mid.v, TURN), &triple(&mid.a, TURN));
+            set_triple(&mut mid.a, TURN, &joints);
+        }
         let (_, forces) = control.split_at(BASE.min(NU));
         let (triples, _) = forces.as_chunks::<3>();
         for (force, u) in mid.forces.iter_mut().zip(triples).take(layout.feet) {
             *force = Vector3::from(*u) * units.force;
         }
         mid
+    }
+
+    /// The middle of interval `k` as far as its base turns on SO(3).
+    pub(crate) fn turn(&self, k: usize, mid: &Midpoint<T, N, FEET>) -> Option<Turn<T>> {
+        let half = self.dt(k) * T::HALF;
+        let (omega, joints) = (triple(&mid.v, TURN), triple(&mid.a, TURN));
+        let turns = self.robot.turns_freely();
+        turns.then(|| Turn::new(half, &omega, &joints))
+    }
+
+    /// Where interval `k` leads, seen from the next node, in m, rad and their rates.
+    #[inline(always)]
+    pub(crate) fn gap(
+        &self,
+        k: usize,
+        state: &State<T, N>,
+        mid: &Midpoint<T, N, FEET>,
+        next: &State<T, N>,
+    ) -> [[T; N]; 2] {
+        let dt = self.dt(k);
+        let mut gap = [[T::ZERO; N]; 2];
+        let [of_q, of_v] = &mut gap;
+        let moving = state.q.iter().zip(&mid.v).zip(&next.q);
+        for (slot, ((q, v), to)) in of_q.iter_mut().zip(moving) {
+            *slot = *q + dt * *v - *to;
+        }
+        let speeding = state.v.iter().zip(&mid.a).zip(&next.v);
+        for (slot, ((v, a), to)) in of_v.iter_mut().zip(speeding) {
+            *slot = *v + dt * *a - *to;
+        }
+        if self.robot.turns_freely() {
+            let omega = triple(&mid.v, TURN);
+            let reached = state.rot_wc * so3::exp(&(omega * dt));
+            let turned = so3::log(&(next.rot_wc.inverse() * reached));
+            set_triple(of_q, TURN, &turned);
+            let alpha = angular_acceleration(&omega, &triple(&mid.a, TURN));
+            let speed = triple(&state.v, TURN) + alpha * dt - triple(&next.v, TURN);
+            set_triple(of_v, TURN, &speed);
+        }
+        gap
     }
 
     /// Motions of the feet in contact during interval `k`, in order, and the forces on them.
@@ -113,6 +165,12 @@ pub(crate) struct Gradient<T, const N: usize, const FEET: usize> {
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Gradient<T, N, FEET> {
+    /// In the coordinates that turn the base.
+    #[inline(always)]
+    pub(crate) fn turning(&self) -> [Vector3<T>; 3] {
+        [&self.q, &self.v, &self.a].map(|row| triple(row, TURN))
+    }
+
     pub(crate) const fn zero() -> Self {
         Self {
             q: [T::ZERO; N],
@@ -194,6 +252,28 @@ impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
     }
 }
 
+impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
+    /// Adds what a product of qm's entry `i` and a function with gradient `weight` g bends.
+    pub(crate) fn add_product(&mut self, i: usize, weight: T, g: &Gradient<T, N, FEET>) {
+        add_scaled(&mut self.qq[i], weight, &g.q);
+        let slots = self.qq.iter_mut().zip(&mut self.vq).zip(&mut self.aq);
+        let parts = g.q.iter().zip(&g.v).zip(&g.a);
+        for (((qq, vq), aq), ((q, v), a)) in slots.zip(parts) {
+            qq[i] += weight * *q;
+            vq[i] += weight * *v;
+            aq[i] += weight * *a;
+        }
+        for (row, force) in self
+            .force
+            .iter_mut()
+            .flatten()
+            .zip(g.force.iter().flatten())
+        {
+            row.q[i] += weight * *force;
+        }
+    }
+}
+
 #[inline(always)]
 pub(crate) fn add_scaled<T: Scalar, const K: usize>(y: &mut [T; K], factor: T, x: &[T; K]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -203,23 +283,30 @@ pub(crate) fn add_scaled<T: Scalar, const K: usize>(y: &mut [T; K], factor: T, x
 
 /// The map from midpoint to state and control.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Map<T> {
+pub(crate) struct Map<T: Scalar> {
     units: Units<T>,
     /// ½ dt and ¼ dt².
     first: T,
     second: T,
     layout: Layout,
+    /// Of a base on SO(3).
+    turn: Option<Turn<T>>,
 }
 
 impl<T: Scalar> Map<T> {
-    pub(crate) fn new(dt: T, layout: Layout) -> Self {
+    pub(crate) fn new(dt: T, layout: Layout, turn: Option<Turn<T>>) -> Self {
         let first = dt * T::HALF;
         Self {
             units: Units::new(),
             first,
             second: first * first,
             layout,
+            turn,
         }
+    }
+
+    pub(crate) fn turn(&self) -> Option<&Turn<T>> {
+        self.turn.as_ref()
     }
 
     /// Writes `scale` times a gradient as a gradient in the state and in the control.
@@ -245,7 +332,26 @@ impl<T: Scalar> Map<T> {
                 *slot = by_a * (self.second * g.q[i] + self.first * g.v[i] + g.a[i]);
             }
         }
+        self.turning(scale, g, x, u);
         self.forces(scale, g, u);
+    }
+
+    /// Writes the part of the coordinates that turn a base on SO(3).
+    #[inline(always)]
+    fn turning<const N: usize, const FEET: usize, const NX: usize, const NU: usize>(
+        &self,
+        scale: T,
+        g: &Gradient<T, N, FEET>,
+        x: &mut [T; NX],
+        u: &mut [T; NU],
+    ) {
+        if let Some(turn) = &self.turn {
+            let [theta, omega, alpha] = turn.gradient(&g.turning());
+            set_triple(x, TURN, &(theta * scale));
+            let speeds = N.saturating_add(TURN);
+            set_triple(x, speeds, &(omega * (scale * self.units.speed)));
+            set_triple(u, TURN, &(alpha * (scale * self.units.acceleration)));
+        }
     }
 
     /// As [`Self::gradient`], where the gradient is zero except at the coordinates `support`; other entries are
@@ -273,6 +379,7 @@ impl<T: Scalar> Map<T> {
                 *slot = by_a * (self.second * q + self.first * v + a);
             }
         }
+        self.turning(scale, g, x, u);
         self.forces(scale, g, u);
     }
 
@@ -312,28 +419,41 @@ impl<T: Scalar> Map<T> {
         let (qv, qa, va) = (transposed(&h.vq), transposed(&h.aq), transposed(&h.av));
         let by_v = self.units.speed;
         let by_a = self.units.acceleration;
+        // Rows of qm, vm and q̈ of coordinate i.
+        let rows = |i: usize| {
+            let row = |q: &[[T; N]; N], v: &[[T; N]; N], a: &[[T; N]; N]| Gradient::<T, N, 0> {
+                q: q[i],
+                v: v[i],
+                a: a[i],
+                force: [],
+            };
+            [
+                row(&h.qq, &qv, &qa),
+                row(&h.vq, &h.vv, &va),
+                row(&h.aq, &h.av, &h.aa),
+            ]
+        };
         for i in 0..N {
-            let row_q = Gradient::<T, N, 0> {
-                q: h.qq[i],
-                v: qv[i],
-                a: qa[i],
-                force: [],
+            let [row_q, row_v, row_a] = match &self.turn {
+                Some(turn) if (TURN..BASE).contains(&i) => {
+                    let mut node = [Gradient::zero(); 3];
+                    for k in TURN..BASE {
+                        for (r, row) in rows(k).iter().enumerate() {
+                            for (c, sum) in node.iter_mut().enumerate() {
+                                sum.add(turn.entry((r, k - TURN), (c, i - TURN)), row);
+                            }
+                        }
+                    }
+                    node
+                }
+                _ => {
+                    let [row_q, mut row_v, mut row_a] = rows(i);
+                    row_a.add(first, &row_v);
+                    row_a.add(second, &row_q);
+                    row_v.add(first, &row_q);
+                    [row_q, row_v, row_a]
+                }
             };
-            let mut row_v = Gradient::<T, N, 0> {
-                q: h.vq[i],
-                v: h.vv[i],
-                a: va[i],
-                force: [],
-            };
-            let mut row_a = Gradient::<T, N, 0> {
-                q: h.aq[i],
-                v: h.av[i],
-                a: h.aa[i],
-                force: [],
-            };
-            row_a.add(first, &row_v);
-            row_a.add(second, &row_q);
-            row_v.add(first, &row_q);
             let mut unused = [T::ZERO; NU];
             if let Some(x) = d.hessian_xx.get_mut(i) {
                 self.gradient(T::ONE, &row_q, x, &mut unused);

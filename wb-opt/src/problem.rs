@@ -1,8 +1,9 @@
 //! Whole-body dynamics, contacts and cost, paper A eq. (4), eq. (5) and eq. (6), as plain data: robot, contacts, reference, limits and weights.
 
 use crate::error::Error;
-use crate::robot::{BASE, Point, Robot};
-use nalgebra::Vector3;
+use crate::robot::{BASE, Point, Robot, TURN};
+use crate::state::Pose;
+use nalgebra::{Rotation3, Vector3};
 use so3::Scalar;
 use srb_opt::Edge;
 
@@ -52,7 +53,8 @@ pub struct Weights<T> {
 ///
 /// Midpoint transcription on intervals of length dt: acceleration and contact forces are constant over
 /// an interval, q⁺ = q + dt q̇ + ½ dt² q̈, q̇⁺ = q̇ + dt q̈, and all nonlinear rows hold at the midpoint
-/// qm = q + ½ dt q̇ + ¼ dt² q̈, vm = q̇ + ½ dt q̈. `N` coordinates, the base's six first.
+/// qm = q + ½ dt q̇ + ¼ dt² q̈, vm = q̇ + ½ dt q̈. `N` coordinates, the base's six first. A base on SO(3) turns by the same
+/// rule on the group: R⁺ = R Exp(dt ω_m), ω⁺ = ω + dt α, Rm = R Exp(½ dt ω_m), ω_m = ω + ½ dt α.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     /// Robot and its limits.
@@ -68,12 +70,13 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     /// Contact phases in order.
     pub phases: &'a [Phase<T, FEET>],
     /// Reference configuration at the midpoint of every interval.
-    pub reference: &'a [[T; N]],
+    pub reference: &'a [Pose<T, N>],
     /// Configuration at the start, at rest.
-    pub start: [T; N],
+    pub start: Pose<T, N>,
     /// Configuration wanted at the end.
-    pub goal: [T; N],
-    /// How far the base may end from the goal, per coordinate, m and rad.
+    pub goal: Pose<T, N>,
+    /// How far the base may end from the goal, per coordinate, m and rad; on SO(3) per axis of the base the sine of the
+    /// angle times its axis.
     pub goal_tolerance: [T; BASE],
     /// Over this many last intervals the joints rest at the goal: the pre-landing configuration.
     pub landing_intervals: usize,
@@ -194,15 +197,30 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             "least_force: must not be negative",
         )?;
         require(positive(self.drift), "drift: must be positive")?;
-        require(self.start.iter().all(finite), "start: must be finite")?;
-        require(self.goal.iter().all(finite), "goal: must be finite")?;
+        let pose = |pose: &Pose<T, N>| {
+            let defect = so3::orthogonality_defect(pose.rot_wc.matrix());
+            let idle = if self.robot.turns_freely() {
+                pose.q.iter().skip(TURN).take(3).all(|q| *q == T::ZERO)
+            } else {
+                pose.rot_wc == Rotation3::identity()
+            };
+            pose.q.iter().all(finite) && defect < T::of(1e-3) && idle
+        };
+        require(
+            pose(&self.start),
+            "start: must be finite, and a Pose of the robot's base coordinates",
+        )?;
+        require(
+            pose(&self.goal),
+            "goal: must be finite, and a Pose of the robot's base coordinates",
+        )?;
         require(
             self.goal_tolerance.iter().all(|x| positive(*x)),
             "goal_tolerance: must be positive",
         )?;
         require(
-            self.reference.iter().flatten().all(finite),
-            "reference: must be finite",
+            self.reference.iter().all(pose),
+            "reference: must be finite, and Poses of the robot's base coordinates",
         )?;
         require(
             self.phases.iter().all(|phase| phase.intervals > 0),

@@ -1,4 +1,4 @@
-//! A robot whose base is a chain of joints.
+//! A robot whose base is a chain of joints, for dynamics; how the base turns is [`BaseCoordinates`].
 
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::joint::Kind;
@@ -6,8 +6,38 @@ use rbd_core::model::{Body, Frame, JointLimits, Link};
 use rbd_core::{Model, Motor};
 use so3::Scalar;
 
-/// Coordinates of the base: three prismatic and three revolute joints.
+/// Coordinates of the base: its position and how it turns.
 pub const BASE: usize = 6;
+/// First of the base's coordinates that turn it.
+pub(crate) const TURN: usize = 3;
+
+/// How the base turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BaseCoordinates {
+    /// On SO(3), without singularity: steps are `R Exp(θ)`, rates the angular velocity, both in base axes.
+    Rotation,
+    /// By three angles, as in paper A: singular at ±90° of the middle one.
+    Angles(EulerOrder),
+}
+
+impl BaseCoordinates {
+    const fn kinds(self) -> [Kind; BASE] {
+        let turns = match self {
+            Self::Rotation => [Kind::RevoluteX, Kind::RevoluteY, Kind::RevoluteZ],
+            Self::Angles(EulerOrder::Zyx) => [Kind::RevoluteZ, Kind::RevoluteY, Kind::RevoluteX],
+            Self::Angles(EulerOrder::Zxy) => [Kind::RevoluteZ, Kind::RevoluteX, Kind::RevoluteY],
+        };
+        let [first, second, third] = turns;
+        [
+            Kind::PrismaticX,
+            Kind::PrismaticY,
+            Kind::PrismaticZ,
+            first,
+            second,
+            third,
+        ]
+    }
+}
 
 /// Which angle turns first, seen from the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,23 +58,7 @@ impl EulerOrder {
         }
     }
 
-    const fn kinds(self) -> [Kind; BASE] {
-        let (second, third) = match self {
-            Self::Zyx => (Kind::RevoluteY, Kind::RevoluteX),
-            Self::Zxy => (Kind::RevoluteX, Kind::RevoluteY),
-        };
-        [
-            Kind::PrismaticX,
-            Kind::PrismaticY,
-            Kind::PrismaticZ,
-            Kind::RevoluteZ,
-            second,
-            third,
-        ]
-    }
-
-    /// The two angles `[second, third]` and the first, `[yaw, second, third]`, of a rotation from base to
-    /// world, each within its principal range.
+    /// The angles `[yaw, second, third]` of a rotation from base to world, each within its principal range.
     #[must_use]
     pub fn angles<T: Scalar>(self, rot_wb: &Matrix3<T>) -> [T; 3] {
         let r = rot_wb;
@@ -64,10 +78,12 @@ impl EulerOrder {
     }
 }
 
-/// A robot of `N` coordinates as one chain of joints per limb: base first (x, y, z and three angles), then
+/// A robot of `N` coordinates as one chain of joints per limb: base first (x, y, z and its turn), then
 /// the joints of the model it was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot<T, const N: usize> {
+    /// How the base turns.
+    pub base: BaseCoordinates,
     /// Bodies in depth-first order; the sixth is the trunk, the five before it have no mass.
     pub bodies: [Body<T>; N],
     /// Limits and losses; none on the base.
@@ -77,20 +93,31 @@ pub struct Robot<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Robot<T, N> {
-    /// The robot of a floating-base model with `J` joints; `N` must be `J + 6`, other sizes do not compile.
+    /// The robot of a floating-base model with `J` joints, its base on SO(3); `N` must be `J + 6`, other sizes do
+    /// not compile.
+    #[must_use]
+    pub fn on_free_base<M: Model<T, J>, const J: usize>(model: &M) -> Self {
+        Self::on(BaseCoordinates::Rotation, model)
+    }
+
+    /// As [`Self::on_free_base`], with the base coordinates of paper A: three prismatic and three revolute joints.
     #[must_use]
     pub fn on_euler_base<M: Model<T, J>, const J: usize>(model: &M, order: EulerOrder) -> Self {
-        const { assert!(N == J + BASE, "an Euler base adds six coordinates") };
+        Self::on(BaseCoordinates::Angles(order), model)
+    }
+
+    fn on<M: Model<T, J>, const J: usize>(base: BaseCoordinates, model: &M) -> Self {
+        const { assert!(N == J + BASE, "a floating base adds six coordinates") };
         let mut bodies = [Body::EMPTY; N];
         let mut limits = [JointLimits::NONE; N];
-        for (i, (body, kind)) in bodies.iter_mut().zip(order.kinds()).enumerate() {
+        for (i, (body, kind)) in bodies.iter_mut().zip(base.kinds()).enumerate() {
             body.kind = kind;
             body.parent = i.checked_sub(1).map_or(Link::Base, Link::Joint);
             body.subtree_end = N;
         }
         if let Some(trunk) = bodies.get_mut(BASE - 1) {
-            let base = model.base();
-            (trunk.mass, trunk.first, trunk.second) = (base.mass, base.first, base.second);
+            let from = model.base();
+            (trunk.mass, trunk.first, trunk.second) = (from.mass, from.first, from.second);
         }
         let joints = model.bodies().iter().zip(model.limits());
         let slots = bodies.iter_mut().zip(&mut limits).skip(BASE);
@@ -106,10 +133,17 @@ impl<T: Scalar, const N: usize> Robot<T, N> {
             *slot = Some(*motor);
         }
         Self {
+            base,
             bodies,
             limits,
             motors,
         }
+    }
+
+    /// Whether the base is on SO(3).
+    #[inline(always)]
+    pub(crate) const fn turns_freely(&self) -> bool {
+        matches!(self.base, BaseCoordinates::Rotation)
     }
 
     /// Where a link of the model is in this robot.

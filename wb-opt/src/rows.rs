@@ -126,14 +126,14 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         };
         if k >= self.intervals() {
-            for (goal, tolerance) in self.goal.iter().zip(&self.goal_tolerance) {
+            for (goal, tolerance) in self.goal.q.iter().zip(&self.goal_tolerance) {
                 push(*goal - *tolerance, *goal + *tolerance, T::ONE);
             }
             return;
         }
         let groups = self.groups(k);
         if groups.landing > 0 {
-            for goal in self.goal.iter().skip(BASE) {
+            for goal in self.goal.q.iter().skip(BASE) {
                 push(*goal, *goal, T::ONE);
             }
             for _ in 0..groups.joints {

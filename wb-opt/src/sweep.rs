@@ -27,8 +27,9 @@ use rbd_core::model::{Body, Link};
 use rbd_core::{Force, GRAVITY, Motion};
 use so3::Scalar;
 
+use crate::midpoint::Midpoint;
 use crate::moments::{Moments, at_point, outer, turn};
-use crate::robot::Point;
+use crate::robot::{Point, TURN};
 
 /// A joint and its body.
 #[derive(Clone, Copy, Debug)]
@@ -124,9 +125,15 @@ pub(crate) struct Sweep<'a, T: Scalar, const N: usize> {
 }
 
 impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
-    /// Motion of all bodies, and the sums over their subtrees.
+    /// Motion of all bodies, and the sums over their subtrees; the base's angles turn from the chart of the middle.
     #[inline(never)]
-    pub(crate) fn new(bodies: &'a [Body<T>; N], q: &[T; N], qd: &[T; N], qdd: &[T; N]) -> Self {
+    pub(crate) fn new<const FEET: usize>(
+        bodies: &'a [Body<T>; N],
+        mid: &Midpoint<T, N, FEET>,
+    ) -> Self {
+        let Midpoint {
+            q, v, a, rot_wc, ..
+        } = mid;
         let ground = Joint::ground();
         // Filled in place: the tables are too large to be moved around.
         let mut sweep = Self {
@@ -142,7 +149,10 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
                 Link::Joint(p) => sweep.joints.get(p).unwrap_or(&ground),
                 Link::Base => &ground,
             };
-            let joint = parent.child(body, (sin[i], cos[i]), q[i], qd[i], qdd[i]);
+            let mut joint = parent.child(body, (sin[i], cos[i]), q[i], v[i], a[i]);
+            if i.saturating_add(1) == TURN {
+                joint.rot = *rot_wc.matrix();
+            }
             if body.mass > T::ZERO {
                 let (v, a) = (&joint.velocity, &joint.acceleration);
                 let own = Moments::of(body, &joint.rot, &joint.pos, v, a);

@@ -4,12 +4,13 @@ use crate::differentiate::Interval;
 use crate::drive::Line;
 use crate::midpoint::{Gradient, Map, Midpoint};
 use crate::problem::Problem;
-use crate::robot::{BASE, Point};
+use crate::robot::{BASE, Point, TURN};
+use crate::rotation::{Step, Turn, set_block, set_triple, triple, vee_skew};
 use crate::state::{State, Units};
 use crate::sweep::{Contacts, Sweep};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem as Ocp, Values};
-use so3::Scalar;
+use so3::{Scalar, hat};
 
 /// Sides of the friction pyramid and the normal force, over the force of a foot in its own unit.
 fn pyramid<T: Scalar>(friction: T) -> [[T; 3]; 5] {
@@ -27,12 +28,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
 
     /// Cost of interval `k` with given efforts.
     fn interval_cost(&self, k: usize, mid: &Midpoint<T, N, FEET>, effort: &[T; N]) -> T {
-        let reference = self.reference.get(k).unwrap_or(&mid.q);
-        let square = |sum: T, x: T| sum + x * x;
-        let distance = mid.q.iter().zip(reference).map(|(q, r)| *q - *r);
+        let distance = self.reference.get(k).map_or(T::ZERO, |reference| {
+            reference.distance_squared(&mid.q, &mid.rot_wc)
+        });
         let efforts = effort.iter().skip(BASE).copied();
-        self.weights.position * distance.fold(T::ZERO, square)
-            + self.weights.effort * efforts.fold(T::ZERO, square)
+        self.weights.position * distance
+            + self.weights.effort * efforts.fold(T::ZERO, |sum, x| sum + x * x)
     }
 
     /// Values of the mixed rows of interval `k`.
@@ -116,16 +117,7 @@ where
         step: &[T; NX],
         _: Option<(&State<T, N>, &[T; NU])>,
     ) -> State<T, N> {
-        let speed = Units::<T>::new().speed;
-        let mut out = *state;
-        let mut steps = step.iter();
-        for (q, step) in out.q.iter_mut().zip(steps.by_ref()) {
-            *q += *step;
-        }
-        for (v, step) in out.v.iter_mut().zip(steps) {
-            *v += speed * *step;
-        }
-        out
+        self.moved(state, step.iter().copied())
     }
 
     fn evaluate(
@@ -144,26 +136,22 @@ where
         };
         let units = Units::new();
         let Some(next) = next else {
-            let ends = state.q.iter().zip(&self.goal);
-            values.cost = self.weights.goal
-                * ends.fold(T::ZERO, |sum, (q, goal)| sum + (*q - *goal) * (*q - *goal));
-            state.q.iter().take(BASE).for_each(|q| push(*q));
+            let goal = &self.goal;
+            values.cost = self.weights.goal * goal.distance_squared(&state.q, &state.rot_wc);
+            self.end(state).iter().for_each(|row| push(*row));
             return;
         };
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = Sweep::new(&self.robot.bodies, &mid.q, &mid.v, &mid.a);
+        let sweep = Sweep::new(&self.robot.bodies, &mid);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
         self.add_friction(&mid.v, &mut effort);
         values.cost = self.interval_cost(k, &mid, &effort);
 
-        let dt = self.dt(k);
-        let of_q = state.q.iter().zip(&mid.v).zip(&next.q);
-        let of_q = of_q.map(|((q, v), to)| *q + dt * *v - *to);
-        let of_v = state.v.iter().zip(&mid.a).zip(&next.v);
-        let of_v = of_v.map(|((v, a), to)| (*v + dt * *a - *to) / units.speed);
-        for (gap, value) in values.gap.iter_mut().zip(of_q.chain(of_v)) {
+        let [of_q, of_v] = self.gap(k, state, &mid, next);
+        let of_v = of_v.iter().map(|x| *x / units.speed);
+        for (gap, value) in values.gap.iter_mut().zip(of_q.into_iter().chain(of_v)) {
             *gap = value;
         }
 
@@ -189,14 +177,14 @@ where
         at: Evaluated<'_, T, NX, NI>,
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
-        if next.is_none() {
-            self.differentiate_end(state, d);
+        let Some(next) = next else {
+            self.differentiate_end(state, at.row_multipliers, d);
             return;
-        }
+        };
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let map = Map::new(self.dt(k), mid.layout);
+        let map = Map::new(self.dt(k), mid.layout, self.turn(k, &mid));
         self.differentiate_linear(k, &mid, d);
-        let sweep = Sweep::new(&self.robot.bodies, &mid.q, &mid.v, &mid.a);
+        let sweep = Sweep::new(&self.robot.bodies, &mid);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut interval = Interval {
             problem: self,
@@ -206,20 +194,59 @@ where
             contacts: &contacts,
             map,
             row: self.groups(k).first_mixed(),
+            turning: [Vector3::zeros(); 3],
         };
         interval.differentiate(at.row_multipliers, d);
+        if let Some(turn) = interval.map.turn() {
+            let turning = interval.turning;
+            self.differentiate_turn((k, state, next), &turning, turn, at.dynamics_multiplier, d);
+        }
     }
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
+    /// A state moved by a step in the solver's units.
+    #[inline(always)]
+    pub(crate) fn moved(
+        &self,
+        state: &State<T, N>,
+        mut steps: impl Iterator<Item = T>,
+    ) -> State<T, N> {
+        let speed = Units::<T>::new().speed;
+        let mut out = *state;
+        for (q, step) in out.q.iter_mut().zip(steps.by_ref()) {
+            *q += step;
+        }
+        for (v, step) in out.v.iter_mut().zip(steps) {
+            *v += speed * step;
+        }
+        if self.robot.turns_freely() {
+            // The angles are zero but for the step.
+            out.rot_wc = state.rot_wc * so3::exp(&triple(&out.q, TURN));
+            set_triple(&mut out.q, TURN, &Vector3::zeros());
+        }
+        out
+    }
+
+    /// Rows of the last node: coordinates of the base; on SO(3) sine times axis of the angle from the goal.
+    fn end(&self, state: &State<T, N>) -> [T; BASE] {
+        let mut rows: [T; BASE] =
+            core::array::from_fn(|i| state.q.get(i).copied().unwrap_or(T::ZERO));
+        if self.robot.turns_freely() {
+            set_triple(&mut rows, TURN, &vee_skew(&self.goal.seen(&state.rot_wc)));
+        }
+        rows
+    }
+
     /// The last node: distance to the goal.
     fn differentiate_end<const NX: usize, const NU: usize, const NI: usize>(
         &self,
         state: &State<T, N>,
+        y: &[T; NI],
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
         let two = T::TWO * self.weights.goal;
-        let ends = state.q.iter().zip(&self.goal);
+        let ends = state.q.iter().zip(&self.goal.q);
         let slots = d.cost_x.iter_mut().zip(&mut d.hessian_xx);
         for (i, ((g, h), (q, goal))) in slots.zip(ends).enumerate() {
             *g = two * (*q - *goal);
@@ -232,6 +259,45 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 *slot = T::ONE;
             }
         }
+        if self.robot.turns_freely() {
+            // With E = Rgᵀ R: the cost is 3 − tr E, the rows vee((E − Eᵀ)/2); both linear in R Exp(θ).
+            let e = self.goal.seen(&state.rot_wc);
+            let bent = |m: &Matrix3<T>| {
+                Matrix3::from_diagonal_element(m.trace()) - (m + m.transpose()) * T::HALF
+            };
+            let multiplier = triple(y, TURN);
+            let hessian = bent(&e) * self.weights.goal + bent(&(hat(&multiplier) * e)) * T::HALF;
+            set_block(&mut d.hessian_xx, TURN, TURN, &hessian);
+            set_triple(&mut d.cost_x, TURN, &(vee_skew(&e) * two));
+            let by_turn = (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF;
+            // Rows are gradients: the transpose of a column-major block.
+            set_block(&mut d.rows_x, TURN, TURN, &by_turn.transpose());
+        }
+    }
+
+    /// The gap of a rotation, and what bends because rotations do.
+    fn differentiate_turn<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        (k, state, next): (usize, &State<T, N>, &State<T, N>),
+        turning: &[Vector3<T>; 3],
+        turn: &Turn<T>,
+        multiplier: &[T; NX],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let units = Units::<T>::new();
+        let dt = self.dt(k);
+        let step = Step::new(turn.omega() * dt);
+        let next_from_start = next.rot_wc.matrix().tr_mul(state.rot_wc.matrix());
+        let next_from_end = next_from_start * step.exp;
+        // Seen from the next node, where the gap is a step: exact up to the gap's square.
+        let by_speed = next_from_end * step.jacobian * dt;
+        let speeds = N.saturating_add(TURN);
+        set_block(&mut d.dynamics_x, TURN, TURN, &next_from_start);
+        set_block(&mut d.dynamics_x, TURN, speeds, &(by_speed * units.speed));
+        let by_control = by_speed * (dt * T::HALF * units.acceleration);
+        set_block(&mut d.dynamics_u, TURN, TURN, &by_control);
+        let reach = next_from_end.tr_mul(&triple(multiplier, TURN));
+        turn.add_curvature(turning, (&step, &reach), N, d);
     }
 
     /// What does not depend on the point: dynamics, landing rows, friction rows, joint positions and speeds.
@@ -270,7 +336,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 set(d.rows_x.get_mut(groups.joints.saturating_add(i)), v, T::ONE);
             }
         }
-        let map = Map::new(dt, mid.layout);
+        let map = Map::new(dt, mid.layout, None);
         let mut limit = |row: usize, unit: T, gradient: &Gradient<T, N, 0>, joint: usize| {
             if let (Some(x), Some(u)) = (d.rows_x.get_mut(row), d.rows_u.get_mut(row)) {
                 map.sparse(T::ONE / unit, gradient, core::iter::once(joint), x, u);

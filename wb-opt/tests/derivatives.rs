@@ -4,25 +4,24 @@
 mod common;
 
 use a1_model::A1Geared;
-use common::{FEET, N, NI, NU, NX, Noise, anywhere, data, jump};
+use common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump, robot};
+use nalgebra::Vector3;
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
 use proptest::prelude::*;
 use srb_opt::Edge;
-use wb_opt::{EulerOrder, Problem, Robot, State};
-
-const ORDERS: [EulerOrder; 2] = [EulerOrder::Zyx, EulerOrder::Zxy];
+use wb_opt::{BASE, BaseCoordinates, EulerOrder, Problem, State};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..34, order in 0usize..2) {
+    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
         let data = data();
-        let mut problem = jump(&data, ORDERS[order]);
+        let mut problem = jump(&data, BASES[base]);
         problem.edge = Some(Edge { drop: 0.3, axis: 1, sign: -1.0, distance: 0.18, width: 0.3 });
         let mut noise = Noise(seed);
-        let (state, control) = anywhere(&mut noise);
-        let (next, _) = anywhere(&mut noise);
+        let (state, control) = anywhere(&mut noise, BASES[base]);
+        let next = reached(&problem, k, (&state, &control), &mut noise);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
             &problem, k, &state, &control, Some(&next), 1e-6,
         );
@@ -30,23 +29,23 @@ proptest! {
     }
 
     #[test]
-    fn second_derivatives(seed in 0u32..1_000_000, k in 0usize..34, order in 0usize..2) {
+    fn second_derivatives(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
         let data = data();
-        let mut problem = jump(&data, ORDERS[order]);
+        let mut problem = jump(&data, BASES[base]);
         problem.edge = Some(Edge { drop: 0.3, axis: 0, sign: 1.0, distance: 0.1, width: 0.3 });
         let worst = hessian_error(&problem, seed, k);
         prop_assert!(worst < 2e-5, "{worst}");
     }
 
     #[test]
-    fn of_the_geared_robot_on_rolling_feet(seed in 0u32..1_000_000, k in 0usize..34, order in 0usize..2) {
+    fn of_the_geared_robot_on_rolling_feet(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
         let data = data();
-        let mut problem = jump(&data, ORDERS[order]);
-        problem.robot = Robot::on_euler_base(&A1Geared, ORDERS[order]);
+        let mut problem = jump(&data, BASES[base]);
+        problem.robot = robot(&A1Geared, BASES[base]);
         problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
         let mut noise = Noise(seed);
-        let (state, control) = anywhere(&mut noise);
-        let (next, _) = anywhere(&mut noise);
+        let (state, control) = anywhere(&mut noise, BASES[base]);
+        let next = reached(&problem, k, (&state, &control), &mut noise);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
             &problem, k, &state, &control, Some(&next), 1e-6,
         );
@@ -57,13 +56,138 @@ proptest! {
 }
 
 #[test]
-fn first_derivatives_of_the_last_node() {
+fn derivatives_of_the_last_node() {
     let data = data();
-    let problem = jump(&data, EulerOrder::Zyx);
-    let (state, control) = anywhere(&mut Noise(5));
-    let errors =
-        derivative_errors::<f64, _, NX, NU, NI>(&problem, 34, &state, &control, None, 1e-6);
-    assert!(errors.worst() < 1e-7, "{errors:?}");
+    for base in BASES {
+        let problem = jump(&data, base);
+        let (state, control) = anywhere(&mut Noise(5), base);
+        let errors =
+            derivative_errors::<f64, _, NX, NU, NI>(&problem, 34, &state, &control, None, 1e-6);
+        assert!(errors.worst() < 1e-7, "{errors:?}");
+        assert!(hessian_error(&problem, 5, 34) < 1e-6);
+    }
+}
+
+/// What the gap of a rotation adds to the Hessian, against second differences of its values.
+#[test]
+fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
+    let data = data();
+    let problem = jump(&data, BaseCoordinates::Rotation);
+    let mut noise = Noise(3);
+    for k in [3, 15, 22] {
+        let (state, control) = anywhere(&mut noise, problem.robot.base);
+        let next = reached(&problem, k, (&state, &control), &mut noise);
+        let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
+        let at = |lambda: &[f64; NX]| {
+            let values = Values::<f64, NX, NI>::new();
+            let mut d = Derivatives::<f64, NX, NU, NI>::new();
+            let at = Evaluated {
+                values: &values,
+                dynamics_multiplier: lambda,
+                row_multipliers: &[0.0; NI],
+            };
+            problem.differentiate(k, &state, &control, Some(&next), at, &mut d);
+            d
+        };
+        let (with, without) = (at(&lambda), at(&[0.0; NX]));
+        let gap = |steps: [(usize, f64); 2]| {
+            let (mut step, mut control) = ([0.0; NX], control);
+            for (j, h) in steps {
+                match j.checked_sub(NX) {
+                    None => step[j] += h,
+                    Some(u) => control[u] += h,
+                }
+            }
+            let moved = Ocp::<f64, NX, NU, NI>::retract(&problem, k, &state, &step, None);
+            let mut values = Values::<f64, NX, NI>::new();
+            problem.evaluate(k, &moved, &control, Some(&next), &mut values);
+            values
+                .gap
+                .iter()
+                .zip(&lambda)
+                .map(|(g, l)| g * l)
+                .sum::<f64>()
+        };
+        let h = 1e-3;
+        // Rotation, angular velocity, angular acceleration.
+        let turning = || (3..BASE).chain(N + 3..N + BASE).chain(NX + 3..NX + BASE);
+        for i in turning() {
+            for j in turning() {
+                let corner = |a: f64, b: f64| gap([(i, a * h), (j, b * h)]);
+                let found =
+                    corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0);
+                let of =
+                    |d: &Derivatives<f64, NX, NU, NI>| match (i.checked_sub(NX), j.checked_sub(NX))
+                    {
+                        (None, None) => d.hessian_xx[i][j],
+                        (None, Some(u)) => d.hessian_xu[u][i],
+                        (Some(u), None) => d.hessian_xu[u][j],
+                        (Some(u), Some(w)) => d.hessian_uu[u][w],
+                    };
+                let (found, wanted) = (found / (4.0 * h * h), of(&with) - of(&without));
+                assert!((found - wanted).abs() < 1e-6, "{i} {j}: {found} {wanted}");
+            }
+        }
+    }
+}
+
+/// One motion of a robot in two base coordinates takes the same efforts.
+#[test]
+fn the_same_motion_takes_the_same_efforts() {
+    let mut data = data();
+    // So short that the middle is the start.
+    data.phases.iter_mut().for_each(|phase| phase.dt = 1e-12);
+    let euler = jump(&data, BaseCoordinates::Angles(EulerOrder::Zyx));
+    let free = jump(&data, BaseCoordinates::Rotation);
+    let mut noise = Noise(17);
+    for k in [3, 15, 22] {
+        let (state, control) = anywhere(&mut noise, euler.robot.base);
+        let rpy = Vector3::new(state.q[5], state.q[4], state.q[3]);
+        let rates = Vector3::new(state.v[5], state.v[4], state.v[3]);
+        let order = so3::euler::RollPitchYaw::Zyx;
+        let rot_wb = order.rotation(&rpy);
+        let by_rates = order.omega_from_rates(&rpy);
+        let accelerations = Vector3::new(control[5], control[4], control[3]);
+        let (mut same, mut same_control) = (state, control);
+        same.rot_wc = rot_wb;
+        let omega = by_rates * rates;
+        // Control accelerations are in units of 100 rad/s².
+        let alpha = by_rates * accelerations + order.omega_bias(&rpy, &rates) / 100.0;
+        for i in 0..3 {
+            same.q[3 + i] = 0.0;
+            same.v[3 + i] = omega[i];
+            same_control[3 + i] = alpha[i];
+        }
+        let (one, other) = (
+            euler.sample(k, &state, &control),
+            free.sample(k, &same, &same_control),
+        );
+        // The base's moments differ by the axes they are about, so joints only.
+        for (a, b) in one.effort[BASE..].iter().zip(&other.effort[BASE..]) {
+            assert!((a - b).abs() < 1e-8 * (1.0 + a.abs()), "{a} {b}");
+        }
+        for i in 0..3 {
+            assert!((one.effort[i] - other.effort[i]).abs() < 1e-8 * (1.0 + one.effort[i].abs()));
+        }
+    }
+}
+
+/// Some next state, whose base is turned as the interval turns it: there the derivative of the gap is exact.
+fn reached(
+    problem: &Problem<'_, f64, N, FEET>,
+    k: usize,
+    (state, control): (&State<f64, N>, &[f64; NU]),
+    noise: &mut Noise,
+) -> State<f64, N> {
+    let (mut next, _) = anywhere(noise, problem.robot.base);
+    if problem.robot.base == BaseCoordinates::Rotation {
+        let dt = problem.dt(k);
+        // The unit of accelerations is 100 rad/s².
+        let omega = |i: usize| state.v[3 + i] + 50.0 * dt * control[3 + i];
+        let turn = Vector3::from_fn(|i, _| omega(i) * dt);
+        next.rot_wc = state.rot_wc * so3::exp(&turn);
+    }
+    next
 }
 
 /// Largest relative difference between the Hessian and differences of the Lagrangian's gradient, less the
@@ -71,8 +195,8 @@ fn first_derivatives_of_the_last_node() {
 /// Hessian is exact.
 fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f64 {
     let mut noise = Noise(seed);
-    let (state, control) = anywhere(&mut noise);
-    let (next, _) = anywhere(&mut noise);
+    let (state, control) = anywhere(&mut noise, problem.robot.base);
+    let next = reached(problem, k, (&state, &control), &mut noise);
     let y: [f64; NI] = core::array::from_fn(|_| noise.next());
     let rows = Ocp::<f64, NX, NU, NI>::dims(problem, k).rows();
     let controls = Ocp::<f64, NX, NU, NI>::dims(problem, k).controls;
@@ -84,7 +208,8 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
             dynamics_multiplier: &[0.0; NX],
             row_multipliers: &y,
         };
-        problem.differentiate(k, state, control, Some(&next), at, &mut d);
+        let next = (k < problem.intervals()).then_some(&next);
+        problem.differentiate(k, state, control, next, at, &mut d);
         d
     };
     let gradient = |d: &Derivatives<f64, NX, NU, NI>| {
@@ -107,15 +232,9 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
         .flatten()
         .chain(base.hessian_uu.iter().flatten())
         .fold(1.0_f64, |m, x| m.max(x.abs()));
-    let mut worst = 0.0_f64;
-    let mut compare = |plus: f64, minus: f64, exact: f64, what: (&str, usize, usize)| {
-        let error = ((plus - minus) / (2.0 * h) - exact).abs() / size;
-        if error > 2e-5 {
-            eprintln!("{what:?}: {} {exact}", (plus - minus) / (2.0 * h));
-        }
-        worst = worst.max(error);
-    };
-    for j in 0..NX + controls {
+    let all = NX + controls;
+    let mut found = vec![vec![0.0; all]; all];
+    for (j, column) in found.iter_mut().enumerate() {
         let moved = |h: f64| {
             let mut step = [0.0; NX];
             let mut control = control;
@@ -127,17 +246,27 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
             gradient(&at(&retract, &control))
         };
         let ((px, pu), (mx, mu)) = (moved(h), moved(-h));
-        for i in 0..NX {
-            match j.checked_sub(NX) {
-                None => compare(px[i], mx[i], base.hessian_xx[j][i], ("xx", j, i)),
-                Some(u) => compare(px[i], mx[i], base.hessian_xu[u][i], ("ux", u, i)),
-            }
+        let plus = px.iter().chain(&pu).zip(mx.iter().chain(&mu));
+        for (slot, (plus, minus)) in column.iter_mut().zip(plus) {
+            *slot = (plus - minus) / (2.0 * h);
         }
-        for i in 0..controls {
-            match j.checked_sub(NX) {
-                None => compare(pu[i], mu[i], base.hessian_xu[i][j], ("xu", j, i)),
-                Some(u) => compare(pu[i], mu[i], base.hessian_uu[u][i], ("uu", u, i)),
+    }
+    let exact = |i: usize, j: usize| match (i.checked_sub(NX), j.checked_sub(NX)) {
+        (None, None) => base.hessian_xx[i][j],
+        (None, Some(u)) => base.hessian_xu[u][i],
+        (Some(u), None) => base.hessian_xu[u][j],
+        (Some(u), Some(w)) => base.hessian_uu[u][w],
+    };
+    let mut worst = 0.0_f64;
+    for i in 0..all {
+        for j in 0..all {
+            // Gradients at different rotations are seen from different axes: the symmetric part is the Hessian.
+            let found = 0.5 * (found[i][j] + found[j][i]);
+            let error = (found - exact(i, j)).abs() / size;
+            if error > 2e-5 {
+                eprintln!("{i} {j}: {found} {}", exact(i, j));
             }
+            worst = worst.max(error);
         }
     }
     worst

@@ -4,19 +4,25 @@
 mod common;
 
 use a1_model::A1Geared;
-use common::{N, NU, NX, Noise, anywhere, data, jump};
+use common::{BASES, N, NU, NX, Noise, anywhere, data, jump, robot};
 use ocp_solver::Problem as Ocp;
-use wb_opt::{EulerOrder, Robot};
+use wb_opt::BaseCoordinates;
 
 #[test]
 fn efforts_and_forces_change_as_the_gains_say() {
+    for base in BASES {
+        efforts_and_forces_change(base);
+    }
+}
+
+fn efforts_and_forces_change(base: BaseCoordinates) {
     let data = data();
-    let mut problem = jump(&data, EulerOrder::Zyx);
-    problem.robot = Robot::on_euler_base(&A1Geared, EulerOrder::Zyx);
+    let mut problem = jump(&data, base);
+    problem.robot = robot(&A1Geared, base);
     problem.feet.iter_mut().for_each(|foot| foot.radius = 0.02);
     let mut noise = Noise(11);
     for k in [3, 15, 22, 31] {
-        let (state, control) = anywhere(&mut noise);
+        let (state, control) = anywhere(&mut noise, base);
         let gain: [[f64; NX]; NU] =
             core::array::from_fn(|_| core::array::from_fn(|_| noise.next()));
         let gains = problem.gains(k, &state, &control, &gain);
@@ -24,13 +30,12 @@ fn efforts_and_forces_change_as_the_gains_say() {
         let h = 1e-6;
         for j in 0..2 * N {
             let moved = |h: f64| {
-                let (mut x, mut u) = (state, control);
                 // The solver's tangent coordinate of a rate is in units of 5 rad/s.
                 let mut step = [0.0; NX];
-                match j.checked_sub(N) {
-                    None => (x.q[j], step[j]) = (x.q[j] + h, h),
-                    Some(i) => (x.v[i], step[j]) = (x.v[i] + h, h / 5.0),
-                }
+                step[j] = if j < N { h } else { h / 5.0 };
+                let x =
+                    Ocp::<f64, NX, NU, { common::NI }>::retract(&problem, k, &state, &step, None);
+                let mut u = control;
                 for (u, row) in u.iter_mut().zip(&gain).take(controls) {
                     *u += row.iter().zip(&step).map(|(k, d)| k * d).sum::<f64>();
                 }

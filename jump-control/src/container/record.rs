@@ -111,11 +111,11 @@ pub struct PlanNode<const N: usize, const F: usize> {
 /// rad), the joints, and the rates of both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NodeGains<const N: usize> {
-    /// Torques by base coordinates, N m per m or rad.
+    /// Torques by the base's position in the world and its rotation vector in base axes, N m per m or rad.
     pub by_base: Row<[f32; 6], N>,
     /// Torques by joint positions, N m/rad.
     pub by_joints: Row<Row<f32, N>, N>,
-    /// Torques by rates of the base coordinates.
+    /// Torques by the base's velocity in the world and its angular velocity in base axes.
     pub by_base_rates: Row<[f32; 6], N>,
     /// Torques by joint velocities, N m s/rad.
     pub by_joint_rates: Row<Row<f32, N>, N>,

@@ -5,10 +5,10 @@ use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
 use core::ops::ControlFlow;
-use nalgebra::{Unit, Vector3};
+use nalgebra::Vector3;
 use ocp_solver::Status;
 use rbd_core::{Motion, Transform};
-use wb_opt::{BASE, EulerOrder, Phase, State};
+use wb_opt::{BASE, Phase, State};
 
 /// How the legs are planned along the single rigid body's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -90,7 +90,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
     nodes.extend(
         plan.intervals
             .iter()
-            .map(|interval| node(plan.order, interval.start, &interval.state, Some(interval))),
+            .map(|interval| node(interval.start, &interval.state, Some(interval))),
     );
     let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
     Ok(Reference {
@@ -129,29 +129,17 @@ pub(crate) fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
 }
 
 /// A node of the plan: a state, and what is held over the interval that starts there; nothing after the last.
-pub(crate) fn node(
-    order: EulerOrder,
-    time: f64,
-    state: &State<f64, N>,
-    interval: Option<&Interval>,
-) -> Node {
+pub(crate) fn node(time: f64, state: &State<f64, N>, interval: Option<&Interval>) -> Node {
     let held = interval.map(|interval| &interval.sample);
-    let (q, v) = (&state.q, &state.v);
-    // Angles turn one after the other, each about an axis of the frame so far.
-    let [first, second, third] = match order {
-        EulerOrder::Zyx => [Vector3::z_axis(), Vector3::y_axis(), Vector3::x_axis()],
-        EulerOrder::Zxy => [Vector3::z_axis(), Vector3::x_axis(), Vector3::y_axis()],
-    };
-    let turn = |axis: &Unit<Vector3<f64>>, angle: f64| so3::rotation_about(axis, angle);
-    let last = turn(&third, q[5]);
-    let inner = turn(&second, q[4]) * last;
-    let rot_wb = turn(&first, q[3]) * inner;
-    let omega_b =
-        inner.inverse() * (*first * v[3]) + last.inverse() * (*second * v[4]) + *third * v[5];
+    let (q, v, rot_wb) = (&state.q, &state.v, &state.rot_wc);
+    let velocity_w = Vector3::new(v[0], v[1], v[2]);
     Node {
         time,
-        base: Transform::new(rot_wb, Vector3::new(q[0], q[1], q[2])),
-        base_velocity: Motion::new(rot_wb.inverse() * Vector3::new(v[0], v[1], v[2]), omega_b),
+        base: Transform::new(*rot_wb, Vector3::new(q[0], q[1], q[2])),
+        base_velocity: Motion::new(
+            rot_wb.inverse() * velocity_w,
+            Vector3::new(v[3], v[4], v[5]),
+        ),
         joints: core::array::from_fn(|i| q[BASE + i]),
         joint_velocities: core::array::from_fn(|i| v[BASE + i]),
         torques: held.map_or([0.0; JOINTS], |held| {

@@ -34,14 +34,14 @@ pub(crate) fn store(
     let contacts = plan.phases.iter().enumerate();
     let phase_of = contacts.flat_map(|(i, phase)| core::iter::repeat_n(i as u8, phase.intervals));
     for (interval, phase) in plan.intervals.iter().zip(phase_of) {
-        let at = node(plan.order, interval.start, &interval.state, Some(interval));
+        let at = node(interval.start, &interval.state, Some(interval));
         nodes.push(record(robot, phase, &at));
         gains.push(feedback(interval));
     }
     let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
     let touchdown: f64 = plan.phases.iter().map(duration).sum();
     let last = plan.phases.len().saturating_sub(1) as u8;
-    let end = node(plan.order, touchdown, &plan.end, None);
+    let end = node(touchdown, &plan.end, None);
     nodes.push(record(robot, last, &end));
     gains.push(NodeGains::default());
     let takeoff: f64 = plan

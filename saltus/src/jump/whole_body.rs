@@ -6,8 +6,9 @@ use crate::track::Track;
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Solution, Stage, Status, blocking_rows};
+use rbd_core::Transform;
 use wb_opt::{
-    BASE, Clearance, EulerOrder, Foot, Gains, Judgement, Phase, Point, Problem, Robot, Row, Sample,
+    BASE, Clearance, Foot, Gains, Judgement, Phase, Point, Pose, Problem, Robot, Row, Sample,
     State, Weights,
 };
 
@@ -44,8 +45,6 @@ pub(crate) struct WholeBodyPlan {
     pub(crate) judged: Judgement<f64>,
     /// Torque that the plan was allowed of the strongest joint, N m.
     pub(crate) torque_limit: f64,
-    /// Order of the base coordinates.
-    pub(crate) order: EulerOrder,
     pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
     pub(crate) intervals: Vec<Interval>,
     /// State at the planned touchdown.
@@ -82,23 +81,16 @@ pub(crate) fn plan(
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
     let rigid = &task.problem;
-    // The axis of the turn is the last of the chain, or the first: never the middle one.
-    let order = if rigid.axis.y.abs() > 0.5 {
-        EulerOrder::Zxy
-    } else {
-        EulerOrder::Zyx
-    };
     let landing_joints = task.robot.landing_joints(&task.start)?;
-    let coordinates = |pos: &Vector3<f64>, angles: [f64; 3], joints: &[f64; JOINTS]| {
-        core::array::from_fn(|i| match i {
-            0..3 => pos[i],
-            3..BASE => angles[i - 3],
+    let pose = |base: &Transform<f64>, joints: &[f64; JOINTS]| Pose {
+        q: core::array::from_fn(|i| match i {
+            0..3 => base.translation[i],
+            3..BASE => 0.0,
             _ => joints[i - BASE],
-        })
+        }),
+        rot_wc: base.rotation,
     };
-    let level = [0.0; 3];
-    let standing = &task.start.base.translation;
-    let start: [f64; N] = coordinates(standing, level, &task.start.joints);
+    let start = pose(&task.start.base, &task.start.joints);
 
     let mut phases = Vec::new();
     for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
@@ -114,7 +106,7 @@ pub(crate) fn plan(
             dt: duration / intervals,
         });
     }
-    let track = track(task, srb, order);
+    let track = track(task, srb);
     let mut times = vec![0.0];
     for phase in &phases {
         let begin = times[times.len() - 1];
@@ -122,27 +114,31 @@ pub(crate) fn plan(
     }
     let flight = phases.last().map_or(0, |phase| phase.intervals);
     let take_off = times.len() - 1 - flight;
-    let mut nodes: Vec<[f64; N]> = Vec::with_capacity(times.len());
+    let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
     for (k, time) in times.iter().enumerate() {
         let joints = if k <= take_off {
             &task.start.joints
         } else {
             &landing_joints
         };
-        let [x, y, z, angles @ ..] = track.at(*time);
-        nodes.push(coordinates(&Vector3::new(x, y, z), angles, joints));
+        nodes.push(pose(&track.at(*time), joints));
     }
-    let turn = rigid.axis * rigid.angle;
-    let columns = order.columns();
-    let goal_angles = core::array::from_fn(|i| turn[columns[3 + i] - 3]);
     let moved = rigid.goal_w - rigid.start_w;
-    let goal: [f64; N] = coordinates(&(standing + moved), goal_angles, &landing_joints);
-    let reference: Vec<[f64; N]> = nodes
-        .windows(2)
-        .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
-        .collect();
+    let goal = Transform::new(
+        so3::exp(&(rigid.axis * rigid.angle)),
+        task.start.base.translation + moved,
+    );
+    let goal = pose(&goal, &landing_joints);
+    let middle = |pair: &[Pose<f64, N>]| {
+        let turn = so3::Geodesic::shortest(&pair[0].rot_wc, &pair[1].rot_wc);
+        Pose {
+            q: core::array::from_fn(|i| 0.5 * (pair[0].q[i] + pair[1].q[i])),
+            rot_wc: turn.at(0.5),
+        }
+    };
+    let reference: Vec<_> = nodes.windows(2).map(middle).collect();
 
-    let com_b = task.robot.com(&task.start) - standing;
+    let com_b = task.robot.com(&task.start) - task.start.base.translation;
     let corner = |corner: &Vector3<f64>| Clearance {
         point: Point {
             link: BASE - 1,
@@ -169,7 +165,7 @@ pub(crate) fn plan(
         edge
     });
     let mut problem = Problem {
-        robot: Robot::on_euler_base(&task.robot, order),
+        robot: Robot::on_free_base(&task.robot),
         feet: core::array::from_fn(|i| Foot {
             point: Robot::<f64, N>::point(&task.robot.feet[i]),
             pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, task.robot.foot_radius),
@@ -263,7 +259,6 @@ pub(crate) fn plan(
         outcome,
         judged,
         torque_limit,
-        order,
         intervals: intervals.collect(),
         phases,
     })
@@ -275,7 +270,7 @@ fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
 }
 
 /// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
-fn track(task: &Task, srb: &SrbPlan, order: EulerOrder) -> Track {
+fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
     let com_b = task.robot.com(&task.start) - task.start.base.translation;
     let mut time = 0.0;
     let mut times = Vec::new();
@@ -287,5 +282,5 @@ fn track(task: &Task, srb: &SrbPlan, order: EulerOrder) -> Track {
     }
     let states = srb.stages.iter().map(|stage| &stage.state);
     let poses = states.map(|state| (state.pos_w - state.rot_wb * com_b, state.rot_wb));
-    Track::new(times, poses, order)
+    Track::new(times, poses)
 }

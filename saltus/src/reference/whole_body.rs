@@ -5,7 +5,7 @@ use crate::track::Track;
 use a1_model::{A1Reference, a1_reference::frame};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
-use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Problem, Robot, Weights};
+use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Pose, Problem, Robot, Weights};
 
 /// Coordinates of the reference robot.
 pub(crate) const N: usize = 18;
@@ -69,7 +69,7 @@ impl SrbMotion {
     }
 
     /// The motion of the base, for phases of this many intervals.
-    fn track(&self, intervals: &[usize], order: EulerOrder) -> Result<Track, String> {
+    fn track(&self, intervals: &[usize], order: EulerOrder) -> Result<Track<[f64; BASE]>, String> {
         let sol = &self.sol;
         let total: usize = intervals.iter().sum();
         let fits = sol.durations.len() == intervals.len()
@@ -94,7 +94,7 @@ impl SrbMotion {
         }
         let rotations = sol.rotations.iter().map(|r| Matrix3::from_column_slice(r));
         let poses = sol.p.iter().map(|p| Vector3::from(*p)).zip(rotations);
-        Ok(Track::new(times, poses, order))
+        Ok(Track::in_angles(times, poses, order))
     }
 }
 
@@ -105,14 +105,14 @@ pub(crate) struct Data {
     clearances: Vec<Clearance<f64>>,
     phases: Vec<Phase<f64, FEET>>,
     /// References of the intervals.
-    reference: Vec<[f64; N]>,
+    reference: Vec<Pose<f64, N>>,
     /// References of the nodes.
-    pub(crate) nodes: Vec<[f64; N]>,
+    pub(crate) nodes: Vec<Pose<f64, N>>,
     /// Forces of the SRB solution, per interval.
     pub(crate) forces: Vec<[f64; 3 * FEET]>,
     edge: Option<srb_opt::Edge<f64>>,
-    start: [f64; N],
-    goal: [f64; N],
+    start: Pose<f64, N>,
+    goal: Pose<f64, N>,
     friction: f64,
     /// Order of the base coordinates.
     pub(crate) order: EulerOrder,
@@ -149,11 +149,11 @@ impl Data {
 }
 
 /// A base in the order of the chain, with the legs at the landing configuration.
-fn with_landing_legs(base: [f64; BASE]) -> [f64; N] {
-    core::array::from_fn(|i| match i.checked_sub(BASE) {
+fn with_landing_legs(base: [f64; BASE]) -> Pose<f64, N> {
+    Pose::level(core::array::from_fn(|i| match i.checked_sub(BASE) {
         None => base[i],
         Some(joint) => LANDING[joint % 3],
-    })
+    }))
 }
 
 impl File {
@@ -196,7 +196,7 @@ impl File {
             times.extend((1..=phase.intervals).map(|i| begin + step * i as f64));
             begin += duration;
         }
-        let nodes: Vec<[f64; N]> = times
+        let nodes: Vec<Pose<f64, N>> = times
             .iter()
             .map(|time| with_landing_legs(track.at(*time)))
             .collect();
@@ -209,9 +209,12 @@ impl File {
         let turn = shared.axis * shared.angle;
         let filed = [p.x, p.y, p.z, turn.x, turn.y, turn.z];
         let goal = with_landing_legs(order.columns().map(|i| filed[i]));
-        let mut reference: Vec<[f64; N]> = nodes
+        let mut reference: Vec<Pose<f64, N>> = nodes
             .windows(2)
-            .map(|pair| core::array::from_fn(|i| 0.5 * (pair[0][i] + pair[1][i])))
+            .map(|pair| {
+                let middle = |i: usize| 0.5 * (pair[0].q[i] + pair[1].q[i]);
+                Pose::level(core::array::from_fn(middle))
+            })
             .collect();
         if let Some(last) = reference.last_mut() {
             *last = goal;

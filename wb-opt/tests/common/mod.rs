@@ -2,7 +2,10 @@
 
 use a1_model::{A1Reference, a1_reference::frame};
 use nalgebra::Vector3;
-use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Problem, Robot, State, Weights};
+use wb_opt::{
+    BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Phase, Point, Pose, Problem, Robot, State,
+    Weights,
+};
 
 pub(crate) const N: usize = 18;
 pub(crate) const FEET: usize = 4;
@@ -24,7 +27,7 @@ impl Noise {
 pub(crate) struct Data {
     pub(crate) clearances: [Clearance<f64>; 12],
     pub(crate) phases: [Phase<f64, FEET>; 3],
-    pub(crate) reference: Vec<[f64; N]>,
+    pub(crate) reference: Vec<Pose<f64, N>>,
 }
 
 pub(crate) fn crouch() -> [f64; N] {
@@ -66,11 +69,29 @@ pub(crate) fn data() -> Data {
             phase([false, false, true, true], 8, 0.012),
             phase([false; 4], 14, 0.005),
         ],
-        reference: vec![crouch(); 34],
+        reference: vec![Pose::level(crouch()); 34],
     }
 }
 
-pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> {
+/// All base coordinates.
+pub(crate) const BASES: [BaseCoordinates; 3] = [
+    BaseCoordinates::Angles(EulerOrder::Zyx),
+    BaseCoordinates::Angles(EulerOrder::Zxy),
+    BaseCoordinates::Rotation,
+];
+
+/// A model with base coordinates.
+pub(crate) fn robot<M: rbd_core::Model<f64, 12>>(
+    model: &M,
+    base: BaseCoordinates,
+) -> Robot<f64, N> {
+    match base {
+        BaseCoordinates::Rotation => Robot::on_free_base(model),
+        BaseCoordinates::Angles(order) => Robot::on_euler_base(model, order),
+    }
+}
+
+pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FEET> {
     let feet = [
         frame::FL_FOOT,
         frame::FR_FOOT,
@@ -80,7 +101,7 @@ pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> 
     let mut goal = crouch();
     goal[0] = 0.1;
     Problem {
-        robot: Robot::on_euler_base(&A1Reference, order),
+        robot: robot(&A1Reference, base),
         feet: core::array::from_fn(|i| Foot {
             point: Robot::<f64, N>::point(&feet[i]),
             pos_wf: Vector3::new(
@@ -95,8 +116,8 @@ pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> 
         edge: None,
         phases: &data.phases,
         reference: &data.reference,
-        start: crouch(),
-        goal,
+        start: Pose::level(crouch()),
+        goal: Pose::level(goal),
         goal_tolerance: [0.02, 0.02, 0.02, 0.05, 0.05, 0.05],
         least_force: 0.0,
         landing_intervals: 5,
@@ -112,9 +133,13 @@ pub(crate) fn jump(data: &Data, order: EulerOrder) -> Problem<'_, f64, N, FEET> 
 }
 
 /// A state and a control away from anything special.
-pub(crate) fn anywhere(noise: &mut Noise) -> (State<f64, N>, [f64; NU]) {
-    let mut state = State::at_rest(crouch());
+pub(crate) fn anywhere(noise: &mut Noise, base: BaseCoordinates) -> (State<f64, N>, [f64; NU]) {
+    let mut state = State::at_rest(Pose::level(crouch()));
     state.q.iter_mut().for_each(|q| *q += 0.7 * noise.next());
     state.v.iter_mut().for_each(|v| *v += 5.0 * noise.next());
+    if base == BaseCoordinates::Rotation {
+        state.q[3..BASE].fill(0.0);
+        state.rot_wc = so3::exp(&Vector3::from_fn(|_, _| 2.0 * noise.next()));
+    }
     (state, core::array::from_fn(|_| noise.next()))
 }

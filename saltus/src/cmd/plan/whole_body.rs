@@ -7,7 +7,7 @@ use crate::reference::{FEET, File};
 use nalgebra::Vector3;
 use ocp_solver::Stage;
 use serde_json::{Value, json};
-use wb_opt::{BASE, EulerOrder, Sample, State};
+use wb_opt::{BASE, EulerOrder, Pose, Sample, State};
 
 /// Controls and rows: 18 accelerations, 12 forces; 98 rows on four feet with 12 clearances.
 const NX: usize = 2 * N;
@@ -22,7 +22,8 @@ pub(super) fn solve(args: &Args, file: &File, name: &str, srb: &str) -> Result<P
     let problem = data.problem();
     let mut settings = wb_opt::settings();
     settings.barrier = args.barrier();
-    let mut stages: Vec<Node> = vec![Stage::new(State::at_rest([0.0; N])); problem.intervals() + 1];
+    let mut stages: Vec<Node> =
+        vec![Stage::new(State::at_rest(Pose::level([0.0; N]))); problem.intervals() + 1];
     let (outcome, wall_ms) = args.timed(|| {
         let mut noise = Noise::new(args.seed, args.guess_noise);
         let force = |k: usize, foot: usize| Vector3::from_fn(|i, _| data.forces[k][3 * foot + i]);
@@ -77,7 +78,7 @@ fn layout(samples: &[Sample<f64, N, FEET>], order: EulerOrder) -> Value {
 }
 
 /// From the order of the chain to x, y, z, roll, pitch, yaw.
-pub(super) fn filed(x: &[f64; N], order: EulerOrder) -> Vec<f64> {
+fn filed(x: &[f64; N], order: EulerOrder) -> Vec<f64> {
     let mut out = x.to_vec();
     for (value, column) in x.iter().zip(order.columns()) {
         out[column] = *value;
