@@ -4,11 +4,7 @@
 //! reference joints, so a plan need not carry them.
 
 use nalgebra::Vector3;
-use rbd_core::algo::motion::Axes;
-use rbd_core::{
-    Configuration, Force, Frame, FrameJacobian, Kinematics, Posture, Transform, Tree,
-    forward_kinematics, frame_jacobian,
-};
+use rbd_core::{Configuration, Frame, Limbs, Tree};
 use so3::Scalar;
 
 use crate::joint::JointGains;
@@ -64,31 +60,36 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
     ) -> JointCommand<T, N> {
         let seen = |joints: &[T; N]| {
             let q = Configuration {
-                base: Transform::IDENTITY,
                 joints: *joints,
+                ..Configuration::NEUTRAL
             };
-            let mut kinematics = Kinematics::IDENTITY;
-            forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
-            kinematics
+            Limbs::new(model, &q, &self.feet)
         };
         let (now, wanted) = (seen(&measured.joints), seen(&then.joints));
-        let (mut j, mut j_d) = (FrameJacobian::ZERO, FrameJacobian::ZERO);
+        self.command_at(&now, &wanted, &measured.joint_velocities, reference, then)
+    }
+
+    /// [`CartesianPd::command`] where the legs are known already: those of [`CartesianPd::feet`] as measured, and as `then` has
+    /// them.
+    #[must_use]
+    pub fn command_at(
+        &self,
+        now: &Limbs<T, N, F>,
+        wanted: &Limbs<T, N, F>,
+        joint_velocities: &[T; N],
+        reference: &Reference<T, N>,
+        then: &Reference<T, N>,
+    ) -> JointCommand<T, N> {
         let mut feed_forward = reference.torques;
         let (kp, kd) = (
             Vector3::from(self.gains.stiffness),
             Vector3::from(self.gains.damping),
         );
-        for foot in &self.feet {
-            frame_jacobian(model, &now, foot, Axes::LocalWorldAligned, &mut j);
-            frame_jacobian(model, &wanted, foot, Axes::LocalWorldAligned, &mut j_d);
-            let position = wanted.frame(foot).translation - now.frame(foot).translation;
-            let velocity =
-                speed(&j_d, &then.joint_velocities) - speed(&j, &measured.joint_velocities);
+        for (end, wanted) in now.ends.iter().zip(&wanted.ends) {
+            let position = wanted.position - end.position;
+            let velocity = wanted.mul(&then.joint_velocities) - end.mul(joint_velocities);
             let pull = kp.component_mul(&position) + kd.component_mul(&velocity);
-            let effort = j.tr_mul(&Force::new(pull, Vector3::zeros()));
-            for (tau, x) in feed_forward.iter_mut().zip(effort.joints) {
-                *tau += x;
-            }
+            end.add_tr_mul(&pull, &mut feed_forward);
         }
         JointCommand {
             position: reference.joints,
@@ -97,12 +98,4 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
             gains: self.joint_gains,
         }
     }
-}
-
-/// Velocity of the foot from joint velocities alone.
-fn speed<T: Scalar, const N: usize>(j: &FrameJacobian<T, N>, qd: &[T; N]) -> Vector3<T> {
-    j.joints
-        .iter()
-        .zip(qd)
-        .fold(Vector3::zeros(), |v, (column, x)| v + column.linear * *x)
 }

@@ -13,7 +13,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usize, c
     pub(crate) fn event(&mut self, t: T, measured: &Measurement<T, N, F>) -> Option<Event> {
         let (settings, velocity) = (&self.settings, &measured.base_velocity);
         let (linear, angular) = settings.rest;
-        let moving = velocity.linear.norm() > linear || velocity.angular.norm() > angular;
+        let moving = velocity.linear.norm_squared() > linear * linear
+            || velocity.angular.norm_squared() > angular * angular;
         self.calm = if moving || !matches!(self.phase, Phase::Landing | Phase::Stand) {
             T::ZERO
         } else {

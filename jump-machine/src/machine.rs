@@ -6,7 +6,7 @@ use jump_control::{
 };
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Workspace};
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Kinematics, Posture, Tangent, Tree, forward_kinematics};
+use rbd_core::{Configuration, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
 
 use crate::{Jump, Refusal, Settings};
@@ -61,6 +61,13 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize, const V: us
     landing: Landing<T, N, F, V, R>,
     workspace: &'a mut Workspace<T, V, R>,
     posture: PreLanding<T, N, F>,
+    /// Feet of the level landing posture, base axes.
+    level_feet: [Vector3<T>; F],
+    /// The landing posture as it follows the body.
+    legs: [T; N],
+    /// The legs as measured, and as they should be: kept so that a tick copies nothing.
+    limbs: Limbs<T, N, F>,
+    wanted: Limbs<T, N, F>,
     scales: Scales<T>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
@@ -95,6 +102,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
             model,
             landing: Landing::new(settings.pd.feet, settings.landing, torques),
             workspace,
+            level_feet: settings.posture.level_feet(model),
+            legs: settings.posture.joints,
+            limbs: Limbs::ZERO,
+            wanted: Limbs::ZERO,
             posture: settings.posture,
             scales: Scales::new(),
             start: T::ZERO,
@@ -125,6 +136,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
             return Err(Refusal::TooLate);
         }
         self.posture.joints = jump.landing_joints;
+        self.level_feet = self.posture.level_feet(self.model);
+        self.legs = jump.landing_joints;
         self.jump = Some(jump);
         (self.start, self.node, self.refusal) = (start, 0, None);
         self.scales = Scales::new();
@@ -190,6 +203,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
         self.fault
     }
 
+    /// The landing's memory: [`Workspace::problem`] is the quadratic program of the last landing tick.
+    #[must_use]
+    pub const fn workspace(&self) -> &Workspace<T, V, R> {
+        self.workspace
+    }
+
     /// Which feet are on the ground, and which foot sensors are not believed.
     #[must_use]
     pub const fn contacts(&self) -> (&[bool; F], &[bool; F]) {
@@ -243,10 +262,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
     fn act(&mut self, t: T, inputs: &Inputs<T, N, F>, dt: T) -> Work {
         let measured = &inputs.measured;
         let (q, v) = state(measured);
-        self.settings.detector.update(
+        self.limbs.update(self.model, &q, &self.settings.pd.feet);
+        self.settings.detector.update_at(
             self.model,
             &mut self.contact,
-            &q,
+            &self.limbs,
             &v,
             &inputs.felt,
             &measured.foot_forces,
@@ -259,7 +279,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
                 (self.follow(&jump, t, measured), Work::Cartesian)
             }
-            (Phase::Landing | Phase::Stand, _) => self.stand(&q, &v),
+            (Phase::Landing | Phase::Stand, _) => self.stand(&v),
             _ => (
                 JointCommand::damp(self.settings.safe_damping),
                 Work::Damping,
@@ -294,33 +314,48 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
             Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
                 let up_b = measured.base.rotation.inverse() * Vector3::z();
                 let velocity_b = &measured.base_velocity.linear;
-                then.joints = self.posture.joints(self.model, &up_b, velocity_b);
-                reference.joints = then.joints;
+                self.legs = self.posture.follow(
+                    self.model,
+                    &self.level_feet,
+                    (&up_b, velocity_b),
+                    &self.legs,
+                    &mut self.wanted,
+                );
+                (then.joints, reference.joints) = (self.legs, self.legs);
             }
             _ => {}
         }
-        s.pd.command(self.model, measured, &reference, &then)
+        let q = Configuration {
+            joints: then.joints,
+            ..Configuration::NEUTRAL
+        };
+        self.wanted.update(self.model, &q, &s.pd.feet);
+        s.pd.command_at(
+            &self.limbs,
+            &self.wanted,
+            &measured.joint_velocities,
+            &reference,
+            &then,
+        )
     }
 
     /// On the ground: forces on the feet in contact that bring the body to rest over them, leaning towards the goal.
-    fn stand(&mut self, q: &Configuration<T, N>, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
+    fn stand(&mut self, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
         let mut target = Target {
             height: self.settings.stand_height,
             ..Target::LEVEL
         };
         if let Some(jump) = &self.jump {
-            let mut kinematics = Kinematics::IDENTITY;
-            forward_kinematics(self.model, &Posture::new(self.model, q), &mut kinematics);
-            let feet = self.landing.feet.iter();
-            let sum: Vector3<T> = feet.map(|foot| kinematics.frame(foot).translation).sum();
+            let sum: Vector3<T> = self.limbs.ends.iter().map(|end| end.position).sum();
+            let middle_w = self.limbs.posture.base().point(&(sum / T::of(F as f64)));
             let most = self.settings.lean;
-            let lean = jump.goal_w - sum / T::of(F as f64);
+            let lean = jump.goal_w - middle_w;
             target.offset_w = [lean.x, lean.y].map(|x| math::clamp(x, -most, most));
             target.rot_wb = jump.rot_goal;
         }
-        let c = self.landing.step(
+        let c = self.landing.step_at(
             self.model,
-            q,
+            &self.limbs,
             v,
             &self.contact.contacts,
             &target,

@@ -3,11 +3,10 @@
 //! The body is a single rigid body under the foot forces: m c̈ = Σ f + m g and L̇ = Σ (p − c) × f. Wanted are
 //! c̈_d = K_p(c_d − c) − K_d ċ and L̇_d = I_w(K_p log(R_d Rᵀ) − K_d ω), with c_d over the middle of the feet.
 
-use dense_qp::Status;
+use dense_qp::{Problem, Status};
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::{
-    Axes, Configuration, Force, Frame, FrameJacobian, GRAVITY, Kinematics, Posture, Tangent, Tree,
-    centroidal_state, forward_kinematics, frame_jacobian, generalized_gravity,
+    Configuration, Frame, GRAVITY, Limbs, Tangent, Tree, centroidal_state, generalized_gravity,
 };
 use so3::Scalar;
 
@@ -40,6 +39,12 @@ impl<T: Scalar, const V: usize, const M: usize> Workspace<T, V, M> {
             data: Data::new(),
             qp: dense_qp::Workspace::new(),
         }
+    }
+
+    /// The quadratic program of the last tick that had one, for those who solve it by other means.
+    #[must_use]
+    pub const fn problem(&self) -> Problem<'_, T, V, M> {
+        self.data.problem()
     }
 }
 
@@ -108,6 +113,27 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         waiting: &[T; N],
         workspace: &mut Workspace<T, V, M>,
     ) -> Command<T, N, F> {
+        let limbs = Limbs::new(model, configuration, &self.feet);
+        self.step_at(
+            model, &limbs, velocity, contacts, target, waiting, workspace,
+        )
+    }
+
+    /// [`Landing::step`] where the legs are known already: `limbs` of [`Landing::feet`].
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "each is a separate thing the caller knows"
+    )]
+    pub fn step_at<R: Tree<T, N>>(
+        &self,
+        model: &R,
+        limbs: &Limbs<T, N, F>,
+        velocity: &Tangent<T, N>,
+        contacts: &[bool; F],
+        target: &Target<T>,
+        waiting: &[T; N],
+        workspace: &mut Workspace<T, V, M>,
+    ) -> Command<T, N, F> {
         let s = &self.settings;
         let mut command = Command {
             feed_forward: [T::ZERO; N],
@@ -117,9 +143,9 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
             forces_w: [Vector3::zeros(); F],
             outcome: Outcome::Airborne,
         };
-        let posture = Posture::new(model, configuration);
-        let body = centroidal_state(model, &posture, velocity);
-        let (feet, support) = self.look_at_feet(model, &posture, &body.com_w, contacts);
+        let posture = &limbs.posture;
+        let body = centroidal_state(model, posture, velocity);
+        let (feet, support) = look_at_feet(limbs, &body.com_w, contacts);
         let finite = body
             .com_w
             .iter()
@@ -134,7 +160,7 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
             return command;
         }
 
-        let rot_wb = &configuration.base.rotation;
+        let rot_wb = &posture.base().rotation;
         let rates = (body.com_velocity_w, rot_wb * velocity.base.angular);
         let wanted = self.wrench(
             target,
@@ -144,82 +170,30 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
             rot_wb.matrix(),
             body.mass,
         );
-        // Torques that the joint carries beside −Jᵀf: gravity of the legs and damping.
-        let mut other = generalized_gravity(model, &posture).joints;
-        let stance = self.stance_joints(&feet);
-        for ((tau, qd), stands) in other.iter_mut().zip(&velocity.joints).zip(&stance) {
-            *tau = if *stands {
-                *tau - s.stance_damping * *qd
-            } else {
-                T::ZERO
-            };
+        // Stance joints carry, beside −Jᵀf, the gravity of the legs, and damp.
+        let gravity = generalized_gravity(model, posture).joints;
+        let mut other = [T::ZERO; N];
+        let stance = feet.iter().filter(|foot| foot.in_contact);
+        for (j, _) in stance.flat_map(|foot| foot.end_w.columns()) {
+            let slots = command.feed_forward.get_mut(j).zip(other.get_mut(j));
+            let gains = command.stiffness.get_mut(j).zip(command.damping.get_mut(j));
+            let known = gravity.get(j).zip(velocity.joints.get(j));
+            if let (Some((tau, other)), Some((stiffness, damping)), Some((gravity, qd))) =
+                (slots, gains, known)
+            {
+                (*tau, *other) = (*gravity, *gravity - s.stance_damping * *qd);
+                (*stiffness, *damping) = (T::ZERO, s.stance_damping);
+            }
         }
         let limits = (&other, &self.max_torques);
         let Workspace { data, qp } = workspace;
         (command.forces_w, command.outcome) = data.solve(s, &feet, &wanted, limits, qp);
-
-        let gravity = generalized_gravity(model, &posture).joints;
-        for (j, stands) in stance.iter().enumerate() {
-            let reaction = feet
-                .iter()
-                .zip(&command.forces_w)
-                .fold(T::ZERO, |sum, (foot, f)| {
-                    sum + foot.columns.get(j).map_or(T::ZERO, |column| column.dot(f))
-                });
-            let slots = command.feed_forward.iter_mut().zip(&mut command.stiffness);
-            let slots = slots.zip(&mut command.damping).zip(&gravity);
-            if let (true, Some((((tau, stiffness), damping), gravity))) =
-                (*stands, { slots }.nth(j))
-            {
-                *tau = *gravity - reaction;
-                *stiffness = T::ZERO;
-                *damping = s.stance_damping;
+        for (foot, force) in feet.iter().zip(&command.forces_w) {
+            if foot.in_contact {
+                foot.end_w.add_tr_mul(&-force, &mut command.feed_forward);
             }
         }
         command
-    }
-
-    /// Arms and Jacobians of the feet, and the support: the middle of all feet horizontally, the mean of those in contact
-    /// vertically.
-    fn look_at_feet<R: Tree<T, N>>(
-        &self,
-        model: &R,
-        posture: &Posture<T, N>,
-        com_w: &Vector3<T>,
-        contacts: &[bool; F],
-    ) -> ([FootData<T, N>; F], Vector3<T>) {
-        let mut kinematics = Kinematics::IDENTITY;
-        forward_kinematics(model, posture, &mut kinematics);
-        let mut jacobian = FrameJacobian::ZERO;
-        let mut feet = [FootData {
-            in_contact: false,
-            arm_w: Vector3::zeros(),
-            columns: [Vector3::zeros(); N],
-        }; F];
-        let (mut sum, mut low, mut count) = (Vector3::zeros(), T::ZERO, T::ZERO);
-        for ((data, frame), on) in feet.iter_mut().zip(&self.feet).zip(contacts) {
-            let pos_w = kinematics.frame(frame).translation;
-            frame_jacobian(
-                model,
-                &kinematics,
-                frame,
-                Axes::LocalWorldAligned,
-                &mut jacobian,
-            );
-            data.in_contact = *on;
-            data.arm_w = pos_w - com_w;
-            data.columns = jacobian.joints.map(|column| column.linear);
-            sum += pos_w;
-            if *on {
-                low += pos_w.z;
-                count += T::ONE;
-            }
-        }
-        let mut support = sum / T::of(F.max(1) as f64);
-        if count > T::ZERO {
-            support.z = low / count;
-        }
-        (feet, support)
     }
 
     /// The wrench that moves the body towards its target.
@@ -254,17 +228,6 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         }
     }
 
-    /// Joints that move a foot in contact.
-    fn stance_joints(&self, feet: &[FootData<T, N>; F]) -> [bool; N] {
-        let mut stance = [false; N];
-        for foot in feet.iter().filter(|foot| foot.in_contact) {
-            for (stands, column) in stance.iter_mut().zip(&foot.columns) {
-                *stands |= column.norm_squared() > T::ZERO;
-            }
-        }
-        stance
-    }
-
     /// Forces as joint torques: −Σ Jᵀ f, for those who check.
     #[must_use]
     pub fn reaction_torques<R: Tree<T, N>>(
@@ -273,23 +236,42 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         configuration: &Configuration<T, N>,
         forces_w: &[Vector3<T>; F],
     ) -> [T; N] {
-        let mut kinematics = Kinematics::IDENTITY;
-        forward_kinematics(model, &Posture::new(model, configuration), &mut kinematics);
-        let mut jacobian = FrameJacobian::ZERO;
+        let limbs = Limbs::new(model, configuration, &self.feet);
         let mut torques = [T::ZERO; N];
-        for (frame, f) in self.feet.iter().zip(forces_w) {
-            frame_jacobian(
-                model,
-                &kinematics,
-                frame,
-                Axes::LocalWorldAligned,
-                &mut jacobian,
-            );
-            let effort = jacobian.tr_mul(&Force::new(*f, Vector3::zeros()));
-            for (tau, x) in torques.iter_mut().zip(effort.joints) {
-                *tau -= x;
-            }
+        for (end, f) in limbs.ends.iter().zip(forces_w) {
+            end.add_tr_mul(&-(configuration.base.rotation.inverse() * f), &mut torques);
         }
         torques
     }
+}
+
+/// Feet with their arms, and the support: the middle of all feet horizontally, the mean of those in contact vertically.
+fn look_at_feet<T: Scalar, const N: usize, const F: usize>(
+    limbs: &Limbs<T, N, F>,
+    com_w: &Vector3<T>,
+    contacts: &[bool; F],
+) -> ([FootData<T, N>; F], Vector3<T>) {
+    let base = limbs.posture.base();
+    let mut on = contacts.iter();
+    let feet = limbs.ends.each_ref().map(|end| {
+        let end_w = end.turned(&base.rotation);
+        FootData {
+            in_contact: on.next().copied().unwrap_or(false),
+            arm_w: end_w.position + (base.translation - com_w),
+            end_w,
+        }
+    });
+    let (mut sum, mut low, mut count) = (Vector3::zeros(), T::ZERO, T::ZERO);
+    for foot in &feet {
+        sum += foot.arm_w;
+        if foot.in_contact {
+            low += foot.arm_w.z;
+            count += T::ONE;
+        }
+    }
+    let mut support = sum / T::of(F.max(1) as f64);
+    if count > T::ZERO {
+        support.z = low / count;
+    }
+    (feet, support + com_w)
 }

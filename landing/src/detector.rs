@@ -4,7 +4,7 @@
 //! the leg feels nothing (stuck), or unloaded where the leg carries (dead), or both in turn (chattering). From then on the joints
 //! decide for that foot, and the foot is reported. A sensor that agrees again for long enough is believed again.
 
-use rbd_core::{Configuration, Frame, Tangent, Tree};
+use rbd_core::{Configuration, Frame, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
 
 use crate::{ContactFilter, ForceObserver, ObserverState, TouchdownState};
@@ -98,15 +98,30 @@ impl<T: Scalar, const N: usize, const F: usize> Detector<T, N, F> {
         sensors: &[T; F],
         dt: T,
     ) {
+        let limbs = Limbs::new(model, configuration, &self.observer.feet);
+        self.update_at(model, state, &limbs, velocity, torques, sensors, dt);
+    }
+
+    /// [`Detector::update`] where the legs are known already: `limbs` of the observer's feet.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "each is a separate thing the caller knows"
+    )]
+    pub fn update_at<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        state: &mut DetectorState<T, N, F>,
+        limbs: &Limbs<T, N, F>,
+        velocity: &Tangent<T, N>,
+        torques: &[T; N],
+        sensors: &[T; F],
+        dt: T,
+    ) {
         self.filter.update(&mut state.sensors, sensors, dt);
-        let Some(forces) = self.observer.update(
-            model,
-            &mut state.observer,
-            configuration,
-            velocity,
-            torques,
-            dt,
-        ) else {
+        let Some(forces) =
+            self.observer
+                .update_at(model, &mut state.observer, limbs, velocity, torques, dt)
+        else {
             state.contacts = state.sensors.contacts;
             return;
         };

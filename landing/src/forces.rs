@@ -6,7 +6,8 @@
 
 use dense_qp::{Problem, Status, solve_warm};
 use nalgebra::{Matrix3, Vector3};
-use so3::{Scalar, hat};
+use rbd_core::LimbEnd;
+use so3::Scalar;
 
 use crate::{Outcome, Settings};
 
@@ -16,8 +17,8 @@ pub(crate) struct FootData<T: Scalar, const N: usize> {
     pub(crate) in_contact: bool,
     /// From the centre of mass to the foot, world axes.
     pub(crate) arm_w: Vector3<T>,
-    /// Linear Jacobian columns of the joints, world axes.
-    pub(crate) columns: [Vector3<T>; N],
+    /// Position relative to the base, and Jacobian, world axes.
+    pub(crate) end_w: LimbEnd<T, N>,
 }
 
 /// Wrench about the centre of mass that the forces are to make.
@@ -59,18 +60,27 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
         feet: &[FootData<T, N>; F],
         wanted: &Wrench<T>,
     ) {
-        for (i, (columns, foot)) in self.hessian.chunks_mut(3).zip(feet).enumerate() {
-            let turn = hat(&foot.arm_w).transpose() * settings.moment_weight;
-            for (j, other) in feet.iter().enumerate() {
-                let mut block = Matrix3::from_diagonal_element(settings.force_weight)
-                    + turn * hat(&other.arm_w);
-                if i == j {
-                    block += Matrix3::from_diagonal_element(settings.effort_weight);
-                }
-                for (row, values) in columns.iter_mut().zip(block.row_iter()) {
-                    for (slot, x) in row.iter_mut().skip(3 * j).zip(values.iter()) {
-                        *slot = *x;
+        let (force, moment) = (settings.force_weight, settings.moment_weight);
+        for (i, foot) in feet.iter().enumerate() {
+            for (j, other) in feet.iter().enumerate().skip(i) {
+                // w_f + w_m [r_i]×ᵀ[r_j]×, and [a]×ᵀ[b]× = (a·b) − b aᵀ.
+                let (a, b) = (&foot.arm_w, &other.arm_w);
+                let turn = *a * -moment;
+                let mut block = b * turn.transpose();
+                let diagonal = force + moment * a.dot(b);
+                let effort = if i == j {
+                    settings.effort_weight
+                } else {
+                    T::ZERO
+                };
+                for k in 0..3 {
+                    if let Some(x) = block.get_mut((k, k)) {
+                        *x += diagonal + effort;
                     }
+                }
+                self.put_block(i, j, &block);
+                if i != j {
+                    self.put_block(j, i, &block.transpose());
                 }
             }
         }
@@ -78,7 +88,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
         for ((gradient, (lower, upper)), foot) in self.gradient.chunks_mut(3).zip(limits).zip(feet)
         {
             let pull = wanted.force_w * settings.force_weight
-                + hat(&foot.arm_w).transpose() * wanted.moment_w * settings.moment_weight;
+                + wanted.moment_w.cross(&foot.arm_w) * settings.moment_weight;
             let top = settings.max_normal_force;
             let (low, high) = if foot.in_contact {
                 let side = settings.friction * top;
@@ -90,6 +100,27 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             lower.copy_from_slice(&low);
             upper.copy_from_slice(&high);
         }
+    }
+
+    /// Writes one 3 × 3 block of H.
+    fn put_block(&mut self, i: usize, j: usize, block: &Matrix3<T>) {
+        for (row, values) in self.hessian.iter_mut().skip(3 * i).zip(block.row_iter()) {
+            for (slot, x) in row.iter_mut().skip(3 * j).zip(values.iter()) {
+                *slot = *x;
+            }
+        }
+    }
+
+    /// The program as it stands.
+    pub(crate) const fn problem(&self) -> Problem<'_, T, V, M> {
+        Problem::new(
+            &self.hessian,
+            &self.gradient,
+            &self.rows,
+            &self.row_lower,
+            &self.row_upper,
+        )
+        .with_bounds(&self.lower, &self.upper)
     }
 
     /// Writes the rows: four of friction per foot, then one per joint.
@@ -119,17 +150,22 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
                 (*low, *high) = (-T::INFINITY, T::ZERO);
             }
         }
-        for (j, (other, most)) in other_torques.iter().zip(max_torques).enumerate() {
+        for (other, most) in other_torques.iter().zip(max_torques) {
             let Some((row, (low, high))) = rows.next() else {
                 return;
             };
-            for (triple, foot) in row.chunks_mut(3).zip(feet) {
-                let column = foot.columns.get(j).copied().unwrap_or_else(Vector3::zeros);
-                triple.copy_from_slice((-column).as_slice());
-            }
+            *row = [T::ZERO; V];
             // Where the other torques alone use up the joint, zero force must remain possible.
             *low = so3::math::min(-*most - *other, T::ZERO);
             *high = so3::math::max(*most - *other, T::ZERO);
+        }
+        for (i, foot) in feet.iter().enumerate() {
+            for (j, column) in foot.end_w.columns() {
+                let row = self.rows.get_mut(4 * F + j);
+                if let Some(triple) = row.and_then(|row| row.get_mut(3 * i..3 * i + 3)) {
+                    triple.copy_from_slice((-column).as_slice());
+                }
+            }
         }
     }
 
@@ -144,14 +180,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
     ) -> ([Vector3<T>; F], Outcome) {
         self.write_cost(settings, feet, wanted);
         self.write_rows(settings, feet, torques.0, torques.1);
-        let problem = Problem::new(
-            &self.hessian,
-            &self.gradient,
-            &self.rows,
-            &self.row_lower,
-            &self.row_upper,
-        )
-        .with_bounds(&self.lower, &self.upper);
+        let problem = self.problem();
         let mut forces = [Vector3::zeros(); F];
         let options = dense_qp::Settings {
             max_iterations: 200,

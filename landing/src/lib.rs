@@ -4,6 +4,7 @@
 mod controller;
 mod detector;
 mod forces;
+mod least_squares;
 mod observer;
 mod posture;
 mod settings;

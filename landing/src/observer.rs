@@ -4,13 +4,11 @@
 //! A first-order low pass makes the differences usable: that is the generalised-momentum observer to first order in the
 //! period. The force of a leg is the least-squares solution of Jᵀ f = r over the joints that move its foot.
 
-use nalgebra::{Matrix3, Vector3};
-use rbd_core::{
-    Axes, Configuration, Frame, FrameJacobian, Kinematics, Posture, Tangent, Tree,
-    forward_kinematics, frame_jacobian, rnea,
-};
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Frame, Limbs, Tangent, Tree, rnea};
 use so3::{Scalar, math};
 
+use crate::least_squares::solve_damped;
 use crate::touchdown::is_step;
 
 /// The observer of a robot with `N` joints and `F` feet.
@@ -74,14 +72,27 @@ impl<T: Scalar, const N: usize, const F: usize> ForceObserver<T, N, F> {
         torques: &[T; N],
         dt: T,
     ) -> Option<[Vector3<T>; F]> {
+        let limbs = Limbs::new(model, configuration, &self.feet);
+        self.update_at(model, state, &limbs, velocity, torques, dt)
+    }
+
+    /// [`ForceObserver::update`] where the legs are known already: `limbs` of [`ForceObserver::feet`].
+    pub fn update_at<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        state: &mut ObserverState<T, N>,
+        limbs: &Limbs<T, N, F>,
+        velocity: &Tangent<T, N>,
+        torques: &[T; N],
+        dt: T,
+    ) -> Option<[Vector3<T>; F]> {
         if !is_step(dt) {
             *state = ObserverState::new();
             return None;
         }
         let last = state.last.replace(*velocity);
         let acceleration = (*velocity + last? * -T::ONE) * (T::ONE / dt);
-        let posture = Posture::new(model, configuration);
-        let needed = rnea(model, &posture, velocity, &acceleration).joints;
+        let needed = rnea(model, &limbs.posture, velocity, &acceleration).joints;
         let mut residual = state.residual;
         let share = dt / (self.time_constant + dt);
         let mut sane = true;
@@ -96,20 +107,12 @@ impl<T: Scalar, const N: usize, const F: usize> ForceObserver<T, N, F> {
             return None;
         }
         state.residual = residual;
-        let mut kinematics = Kinematics::IDENTITY;
-        forward_kinematics(model, &posture, &mut kinematics);
-        let mut jacobian = FrameJacobian::ZERO;
+        let rot_wb = &limbs.posture.base().rotation;
         let mut forces = [Vector3::zeros(); F];
-        for (force, frame) in forces.iter_mut().zip(&self.feet) {
-            let axes = Axes::LocalWorldAligned;
-            frame_jacobian(model, &kinematics, frame, axes, &mut jacobian);
-            let mut square = Matrix3::from_diagonal_element(self.damping);
-            let mut right = Vector3::zeros();
-            for (column, r) in jacobian.joints.iter().zip(&residual) {
-                square += column.linear * column.linear.transpose();
-                right += column.linear * *r;
-            }
-            *force = square.try_inverse()? * right;
+        for (force, end) in forces.iter_mut().zip(&limbs.ends) {
+            // J r: the right-hand side of the normal equations.
+            let right = end.mul(&residual);
+            *force = rot_wb * solve_damped(end, self.damping, &right);
         }
         let finite = forces.iter().flat_map(|f| f.iter());
         { finite }.all(|x| x.is_finite_number()).then_some(forces)

@@ -5,12 +5,14 @@
 //! momentum turns a light trunk the other way, so only a share of the tilt is right. Feet that lead the horizontal motion
 //! step towards the capture point.
 
-use nalgebra::{Matrix3, Vector3};
-use rbd_core::{
-    Axes, Configuration, Frame, FrameJacobian, Kinematics, Posture, Transform, Tree,
-    forward_kinematics, frame_jacobian,
-};
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Frame, Limbs, Tree};
 use so3::{Scalar, math};
+
+use crate::least_squares::solve_damped;
+
+/// Gauss-Newton steps from the level posture that find a turned one to a fraction of a millimetre.
+const STEPS: usize = 3;
 
 /// How far legs follow the tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,9 +57,68 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         up_b: &Vector3<T>,
         velocity_b: &Vector3<T>,
     ) -> [T; N] {
+        let mut limbs = self.limbs(model, &self.joints);
+        let level = limbs.ends.each_ref().map(|end| end.position);
+        let Some(wanted) = self.feet(&level, up_b, velocity_b) else {
+            return self.joints;
+        };
+        let mut joints = self.step(&limbs, &wanted, &self.joints);
+        for _ in 1..STEPS {
+            limbs = self.limbs(model, &joints);
+            joints = self.step(&limbs, &wanted, &joints);
+        }
+        joints
+    }
+
+    /// The feet of the level posture, base axes: what [`PreLanding::follow`] turns.
+    #[must_use]
+    pub fn level_feet<M: Tree<T, N>>(&self, model: &M) -> [Vector3<T>; F] {
+        self.limbs(model, &self.joints)
+            .ends
+            .each_ref()
+            .map(|end| end.position)
+    }
+
+    /// [`PreLanding::joints`] for every tick of a controller: one Gauss-Newton step from the `last` answer, so that a tick costs
+    /// a third and the answer is exact after two or three. Begin with the level posture. `limbs` is storage.
+    #[must_use]
+    pub fn follow<M: Tree<T, N>>(
+        &self,
+        model: &M,
+        level_feet: &[Vector3<T>; F],
+        (up_b, velocity_b): (&Vector3<T>, &Vector3<T>),
+        last: &[T; N],
+        limbs: &mut Limbs<T, N, F>,
+    ) -> [T; N] {
+        let Some(wanted) = self.feet(level_feet, up_b, velocity_b) else {
+            return self.joints;
+        };
+        let q = Configuration {
+            joints: *last,
+            ..Configuration::NEUTRAL
+        };
+        limbs.update(model, &q, &self.feet);
+        self.step(limbs, &wanted, last)
+    }
+
+    fn limbs<M: Tree<T, N>>(&self, model: &M, joints: &[T; N]) -> Limbs<T, N, F> {
+        let q = Configuration {
+            joints: *joints,
+            ..Configuration::NEUTRAL
+        };
+        Limbs::new(model, &q, &self.feet)
+    }
+
+    /// Where the feet are to be, base axes; `None` where a number is not finite.
+    fn feet(
+        &self,
+        level: &[Vector3<T>; F],
+        up_b: &Vector3<T>,
+        velocity_b: &Vector3<T>,
+    ) -> Option<[Vector3<T>; F]> {
         let mut numbers = up_b.iter().chain(velocity_b.iter());
         if !numbers.all(|x| x.is_finite_number()) {
-            return self.joints;
+            return None;
         }
         let across = (velocity_b - up_b * velocity_b.dot(up_b)) * self.lead;
         let size = math::sqrt(across.norm_squared());
@@ -75,40 +136,21 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         } else {
             nalgebra::Rotation3::identity()
         };
-        let mut q = Configuration {
-            base: Transform::IDENTITY,
-            joints: self.joints,
-        };
-        let mut kinematics = Kinematics::IDENTITY;
-        let mut jacobian = FrameJacobian::ZERO;
-        forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
-        let wanted = self
-            .feet
-            .each_ref()
-            .map(|foot| turn * kinematics.frame(foot).translation + lead);
-        for _ in 0..3 {
-            for (foot, wanted) in self.feet.iter().zip(&wanted) {
-                let missing = wanted - kinematics.frame(foot).translation;
-                let axes = Axes::LocalWorldAligned;
-                frame_jacobian(model, &kinematics, foot, axes, &mut jacobian);
-                let columns = jacobian.joints.map(|column| column.linear);
-                let mut square = Matrix3::from_diagonal_element(T::of(1e-4));
-                for c in &columns {
-                    square += c * c.transpose();
-                }
-                let Some(inverse) = square.try_inverse() else {
-                    continue;
-                };
-                let step = inverse * missing;
-                let joints = q.joints.iter_mut().zip(&columns).zip(&self.joints);
-                for ((q, c), level) in joints {
-                    *q = math::clamp(*q + c.dot(&step), *level - self.reach, *level + self.reach);
-                }
-            }
-            forward_kinematics(model, &Posture::new(model, &q), &mut kinematics);
+        Some(level.each_ref().map(|foot| turn * foot + lead))
+    }
+
+    /// One Gauss-Newton step of the legs towards feet at `wanted`, from `joints`, whose `limbs` these are.
+    fn step(&self, limbs: &Limbs<T, N, F>, wanted: &[Vector3<T>; F], joints: &[T; N]) -> [T; N] {
+        let mut next = *joints;
+        for (end, wanted) in limbs.ends.iter().zip(wanted) {
+            let missing = wanted - end.position;
+            end.add_tr_mul(&solve_damped(end, T::of(1e-4), &missing), &mut next);
         }
-        if q.joints.iter().all(|x| x.is_finite_number()) {
-            q.joints
+        for (q, level) in next.iter_mut().zip(&self.joints) {
+            *q = math::clamp(*q, *level - self.reach, *level + self.reach);
+        }
+        if next.iter().all(|q| q.is_finite_number()) {
+            next
         } else {
             self.joints
         }
@@ -120,7 +162,7 @@ mod tests {
     use super::PreLanding;
     use a1_model::{A1Geared, FEET};
     use nalgebra::Vector3;
-    use rbd_core::{Configuration, Kinematics, Posture, forward_kinematics};
+    use rbd_core::{Configuration, Kinematics, Limbs, Posture, forward_kinematics};
 
     const LEVEL: [f64; 12] = [
         0.14, 0.77, -1.54, -0.14, 0.77, -1.54, 0.14, 0.77, -1.54, -0.14, 0.77, -1.54,
@@ -148,6 +190,25 @@ mod tests {
             let expected = turn * level + velocity * 0.12;
             assert!((foot - expected).norm() < 2e-3, "{foot} {expected}");
         }
+    }
+
+    #[test]
+    fn following_finds_what_starting_anew_finds() {
+        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let level = posture.level_feet(&A1Geared);
+        let up_b = Vector3::new(0.1, 0.2, 0.97);
+        let velocity = Vector3::new(0.3, -0.1, -1.0);
+        let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
+        for _ in 0..super::STEPS {
+            joints = posture.follow(&A1Geared, &level, (&up_b, &velocity), &joints, &mut limbs);
+        }
+        assert_eq!(joints, posture.joints(&A1Geared, &up_b, &velocity));
+        let mut follow = |velocity: Vector3<f64>, last| {
+            posture.follow(&A1Geared, &level, (&up_b, &velocity), last, &mut limbs)
+        };
+        assert_eq!(follow(velocity * f64::NAN, &joints), LEVEL);
+        let lost = follow(velocity, &[f64::NAN; 12]);
+        assert!(lost.iter().zip(LEVEL).all(|(q, l)| (q - l).abs() <= 0.5));
     }
 
     #[test]

@@ -36,6 +36,7 @@ pub use algo::friction::joint_friction;
 pub use algo::gravity::generalized_gravity;
 pub use algo::jacobian::{FrameJacobian, frame_jacobian, joint_jacobians};
 pub use algo::kinematics::{Kinematics, forward_kinematics};
+pub use algo::limbs::{LimbEnd, Limbs};
 pub use algo::minv::{MassFactors, mass_matrix_inverse};
 pub use algo::motion::{
     Axes, BodyMotions, bias_accelerations, forward_accelerations, forward_velocities,

@@ -12,8 +12,8 @@ use common::{CAP, Model, close, masked, model, rotation, size, state, vector};
 use proptest::prelude::*;
 use rbd_core::{
     AbaWorkspace, Axes, BaseBody, BaseKind, Body, BodyMotions, CentroidalMap, ComJacobian,
-    Configuration, Effort, Force, Frame, FrameJacobian, Kinematics, Link, MassMatrix, Motion,
-    Posture, Tangent, aba, bias_accelerations, centroidal_bias, centroidal_map,
+    Configuration, Effort, Force, Frame, FrameJacobian, Kinematics, Limbs, Link, MassMatrix,
+    Motion, Posture, Tangent, aba, bias_accelerations, centroidal_bias, centroidal_map,
     centroidal_momentum_rate, centroidal_state, com_jacobian, com_motion, crba,
     forward_accelerations, forward_kinematics, frame_jacobian, rnea,
 };
@@ -89,6 +89,32 @@ proptest! {
         let sum = jac.mul(&masked(&model, a)) + bias.frame_acceleration(&frame);
         for (x, y) in motions.frame_acceleration(&frame).to_array().into_iter().zip(sum.to_array()) {
             prop_assert!(close(x, y, 1e3), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn ends_of_limbs_are_frames_seen_from_the_base(
+        model in model(), (q, [v, _]) in state(), link in 0..2 * CAP, arm in vector(0.3),
+    ) {
+        use rbd_core::Tree;
+        let v = masked(&model, v);
+        let link = if link < model.joint_count() { Link::Joint(link) } else { Link::Base };
+        let frame = Frame { link, offset: arm.into(), ..Frame::IDENTITY };
+        let limbs = Limbs::new(&model, &q, &[frame]);
+        let end_w = limbs.ends[0].turned(&q.base.rotation);
+        let mut kinematics = Kinematics::IDENTITY;
+        forward_kinematics(&model, &Posture::new(&model, &q), &mut kinematics);
+        let mut jac = FrameJacobian::ZERO;
+        frame_jacobian(&model, &kinematics, &frame, Axes::LocalWorldAligned, &mut jac);
+        let pos_w = q.base.translation + end_w.position;
+        prop_assert!((pos_w - kinematics.frame(&frame).translation).norm() < 1e-12);
+        let still = Tangent { base: Motion::ZERO, ..v };
+        prop_assert!((end_w.mul(&v.joints) - jac.mul(&still).linear).norm() < 1e-10);
+        let mut torques = v.joints;
+        end_w.add_tr_mul(&arm, &mut torques);
+        let through = jac.tr_mul(&Force::new(arm, nalgebra::Vector3::zeros()));
+        for ((x, before), y) in torques.iter().zip(v.joints).zip(through.joints) {
+            prop_assert!(close(*x, before + y, 10.0), "{x} {before} {y}");
         }
     }
 

@@ -80,11 +80,16 @@ pub fn forward_kinematics<T: Scalar, M: Tree<T, N>, const N: usize>(
 ) {
     out.base = posture.base;
     let base = (*posture.base.rotation.matrix(), posture.base.translation);
-    model.fold(
-        &mut Fk {
-            posture,
-            out: &mut out.bodies,
-        },
-        &base,
-    );
+    chain(model, posture, &base, &mut out.bodies);
+}
+
+/// Pose of every body where the base has this pose, whatever the posture's own.
+#[inline(always)]
+pub(crate) fn chain<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    base: &(Matrix3<T>, Vector3<T>),
+    out: &mut [Transform<T>; N],
+) {
+    model.fold(&mut Fk { posture, out }, base);
 }

@@ -14,6 +14,7 @@ pub mod gravity;
 pub mod jacobian;
 mod joint_factors;
 pub mod kinematics;
+pub mod limbs;
 pub mod minv;
 pub mod motion;
 pub mod rnea;

@@ -92,8 +92,21 @@ pub(super) fn run_tampered(
     reference: &Reference,
     sim: Sim,
     seed: u64,
+    tamper: impl FnMut(u64, &mut Told),
+    progress: impl FnMut(f64, Phase),
+) -> Result<Run, String> {
+    run_watched(task, reference, sim, seed, tamper, progress, |_| {})
+}
+
+/// As [`run_tampered`]; `watch` sees the landing's memory after every tick that solved a program.
+pub(crate) fn run_watched(
+    task: &Task,
+    reference: &Reference,
+    sim: Sim,
+    seed: u64,
     mut tamper: impl FnMut(u64, &mut Told),
     mut progress: impl FnMut(f64, Phase),
+    mut watch: impl FnMut(&landing::Workspace<f64, 12, 28>),
 ) -> Result<Run, String> {
     let disturbance = Disturbance::draw(seed);
     let mut sensors = Sensors::new(&disturbance, seed, &task.start);
@@ -146,7 +159,11 @@ pub(super) fn run_tampered(
         }
         let mut told = sensors.measure(&plant, &felt);
         tamper(k, &mut told);
-        run.count(&machine.tick(t, Some(&told)));
+        let tick = machine.tick(t, Some(&told));
+        run.count(&tick);
+        if let Work::Landing(Outcome::Solved(_) | Outcome::Failed(_)) = tick.work {
+            watch(machine.workspace());
+        }
         felt = [0.0; JOINTS];
         let planned = sample(&plan, t, node);
         node = planned.node;

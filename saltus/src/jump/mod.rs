@@ -11,6 +11,7 @@ pub(crate) mod kinematics;
 pub(crate) mod log;
 pub(crate) mod planned;
 pub(crate) mod plant;
+pub(crate) mod programs;
 pub(crate) mod reference;
 pub(crate) mod report;
 mod sensors;

@@ -4,8 +4,8 @@ use rbd_core::{
     AbaDerivatives, ArticulatedInertia, BlockMatrix, BodyMotions, CenterOfMass,
     CentroidalDerivatives, CentroidalMap, CentroidalState, ComJacobian, ComMotion, Configuration,
     ContactRow, ContactSolution, Effort, Force, ForceColumns, FrameDerivatives, FrameJacobian,
-    Inertia, Kinematics, MassMatrix, Motion, Posture, RneaDerivatives, Symmetric3, TableError,
-    TableModel, Tangent, Transform, Tree,
+    Inertia, Kinematics, Limbs, MassMatrix, Motion, Posture, RneaDerivatives, Symmetric3,
+    TableError, TableModel, Tangent, Transform, Tree,
 };
 use so3::Scalar;
 
@@ -51,6 +51,17 @@ fields! {
     ComJacobian const N { base_linear, base_angular, joints }
     CentroidalMap const N { mass, com_w, locked_inertia_w, base, joints }
     CentroidalState { mass, com_w, com_velocity_w, momentum_w, kinetic_energy, potential_energy }
+}
+
+impl<T: Scalar + Numbers, const N: usize, const K: usize> Numbers for Limbs<T, N, K> {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        for end in &self.ends {
+            end.position.visit(take);
+            for (_, column) in end.columns() {
+                column.visit(take);
+            }
+        }
+    }
 }
 
 impl<T: Scalar + Numbers, const N: usize, const K: usize> Numbers for ContactSolution<T, N, K> {

@@ -1,8 +1,9 @@
 //! Poses, velocities, accelerations and Jacobians.
 
 use rbd_core::{
-    Axes, BodyMotions, Frame, FrameJacobian, Kinematics, Motion, Posture, Tree, bias_accelerations,
-    forward_accelerations, forward_kinematics, forward_velocities, frame_jacobian, joint_jacobians,
+    Axes, BodyMotions, Frame, FrameJacobian, Kinematics, Limbs, Motion, Posture, Tree,
+    bias_accelerations, forward_accelerations, forward_kinematics, forward_velocities,
+    frame_jacobian, joint_jacobians,
 };
 
 use super::state::State;
@@ -141,5 +142,30 @@ fn jacobians<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usize
             &*out
         },
     );
+    limbs(on, model, state, frame);
     jacobian
+}
+
+fn limbs<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
+    on: &mut Subject<'_, T, R>,
+    model: &M,
+    state: &State<T, N>,
+    frame: &Frame<T>,
+) {
+    let (q, joints) = (&state.configuration, &state.velocity.joints);
+    let at = (model, q, [*frame]);
+    let limbs = on.call("Limbs::new", at, |(m, q, frames)| Limbs::new(m, q, &frames));
+    let Some(end) = limbs.ends.first() else {
+        return;
+    };
+    on.call("LimbEnd::turned", (end, &q.base.rotation), |(end, rot)| {
+        end.turned(rot).position
+    });
+    let speed = on.call("LimbEnd::mul", (end, joints), |(end, qd)| end.mul(qd));
+    on.call("LimbEnd::add_tr_mul", (end, speed), |(end, f)| {
+        let mut torques = [T::ZERO; N];
+        end.add_tr_mul(&f, &mut torques);
+        torques
+    });
+    on.call("LimbEnd::columns", end, |end| end.columns().count() > 0);
 }

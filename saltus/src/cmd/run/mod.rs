@@ -47,6 +47,9 @@ pub(crate) struct Args {
     plant: Option<Disturbance>,
     #[command(flatten)]
     pub(crate) output: Output,
+    /// File for the landing's quadratic programs, as numbers for other solvers.
+    #[arg(long, hide = true)]
+    programs: Option<PathBuf>,
     /// New folder for report, log and result; by default out/TASK, or out/TASK-2 and so on if that exists.
     #[arg(long)]
     out: Option<PathBuf>,

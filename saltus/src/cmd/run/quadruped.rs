@@ -7,6 +7,7 @@ use crate::jump::bounds::impossible;
 use crate::jump::judge::Verdict;
 use crate::jump::planned::Origin;
 use crate::jump::plant::Sim;
+use crate::jump::programs::Programs;
 use crate::jump::reference::Reference;
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, report, stored, strip};
@@ -48,10 +49,28 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     let (task, reference) = (&made.task, &made.reference);
     let clock = Instant::now();
     let end = execute::HOLD + reference.touchdown + execute::SETTLE;
-    let run = execute::run(task, reference, args.sim, args.seed, |t, phase| {
+    let progress = |t, phase| {
         bar.set_message(format!("simulating: {phase:?}"));
         bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
-    })?;
+    };
+    let run = match args.programs.as_deref() {
+        None => execute::run(task, reference, args.sim, args.seed, progress)?,
+        Some(path) => {
+            let mut programs = Programs::default();
+            let watch = |memory: &_| programs.add(memory);
+            let run = execute::run_watched(
+                task,
+                reference,
+                args.sim,
+                args.seed,
+                |_, _| {},
+                progress,
+                watch,
+            )?;
+            std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
+            run
+        }
+    };
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let verdict = Verdict::of(task, &run);
