@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Prepares what stands beside Saltus: a Python with pinned Pinocchio and CasADi, and the peer benches.
 #   setup.sh venv    the Python environment in .venv (about 300 MB)
+#   setup.sh ratios  the environment, with what the tables of QPs and planners need (another 150 MB)
 #   setup.sh bench   the environment, and the C++ benches (6 minutes of clang; needs Debian's clang and libeigen3-dev)
 # Results go to target/peers (SALTUS_PEERS_DIR to place them elsewhere); what is up to date is not built again.
 set -euo pipefail
@@ -13,10 +14,14 @@ eigen=${EIGEN:-/usr/include/eigen3}
 
 make_venv() {
   [ -x "$python" ] || python3 -m venv "$venv"
-  local stamp=$venv/.saltus-requirements
-  if ! cmp -s "$here/requirements.txt" "$stamp"; then
-    "$python" -m pip install --quiet --requirement "$here/requirements.txt"
-    cp "$here/requirements.txt" "$stamp"
+  install requirements.txt .saltus-requirements
+}
+
+# install FILE STAMP: what FILE lists, unless STAMP says that it is there
+install() {
+  if ! cmp -s "$here/$1" "$venv/$2"; then
+    "$python" -m pip install --quiet --requirement "$here/$1"
+    cp "$here/$1" "$venv/$2"
   fi
 }
 
@@ -61,6 +66,7 @@ make_bench() {
 
 case "${1:-bench}" in
   venv) make_venv ;;
+  ratios) make_venv; install requirements-bench.txt .saltus-requirements-bench ;;
   bench) make_venv; make_bench ;;
-  *) echo "usage: setup.sh [venv|bench]" >&2; exit 2 ;;
+  *) echo "usage: setup.sh [venv|ratios|bench]" >&2; exit 2 ;;
 esac

@@ -1,6 +1,6 @@
 """Times `saltus plan --stage srb` against CasADi + IPOPT on the same problems, in one run.
 
-usage: python srb_ratio.py --saltus target/release/saltus --peer DIR [--problem FILE ...] [--repeat 20]
+usage: python srb_ratio.py --saltus target/release/saltus --peer tests/peers/a1_ipopt [--problem FILE ...] [--repeat 20]
 
 DIR holds the peer (`srb.py`, `tasks.py`); needs casadi and numpy. Per task: the median cold solve of both in
 one process each (ours counts the whole portfolio), their costs, and the ratio. Ours is also solved from

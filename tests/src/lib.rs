@@ -6,3 +6,5 @@ pub mod agree;
 pub mod bench;
 pub mod drops;
 pub mod golden;
+#[cfg(doctest)]
+pub mod guide;

@@ -42,6 +42,7 @@ const STEPS: &[Step] = &[
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
     ("the report in a browser", &["xtask", "report"]),
     ("both papers", &["xtask", "reproduce"]),
+    ("examples", &["xtask", "examples"]),
     ("publishable crates", &["xtask", "package"]),
     ("the first hour", &["xtask", "first-hour"]),
     (

@@ -1,4 +1,4 @@
-//! `cargo xtask first-hour`: what the README tells a newcomer to type, typed.
+//! `cargo xtask first-hour`: what the README and the guide tell a newcomer to type, typed.
 
 use std::fs;
 use std::process::Command;
@@ -21,54 +21,82 @@ const RESULTS: [&str; 5] = [
     "lander/Cargo.toml",
 ];
 
+/// Chapters of the guide with commands, in their order; they share a folder, as they do for a reader.
+const CHAPTERS: [&str; 3] = ["1-first-jump", "2-my-quadruped", "3-my-task"];
+const GUIDE_FOLDER: &str = "out/guide";
+const GUIDE_RESULTS: [&str; 6] = [
+    "plan/plan.bin",
+    "jump/report.html",
+    "disturbed/report.html",
+    "anymal-model/Cargo.toml",
+    "anymal-jump/plan.bin",
+    "my-jump/report.html",
+];
+
 /// Arguments of `cargo xtask first-hour`.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
     let root = run::root();
-    let readme = fs::read_to_string(root.join("README.md"))?;
-    let script = script(&readme)?;
-    let folder = root.join(FOLDER);
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
     Bare::find("thumbv7em-none-eabihf", Choice::Auto)?;
-    run::succeed(
-        Command::new("bash")
-            .args(["-euxo", "pipefail", "-c", &script])
-            .current_dir(&root),
-    )?;
-    for result in RESULTS {
-        ensure!(folder.join(result).exists(), "{FOLDER}/{result} is missing");
+    let readme = fs::read_to_string(root.join("README.md"))?;
+    follow(&section(&readme)?, FOLDER, &RESULTS).context("README.md")?;
+    let mut commands = String::new();
+    for chapter in CHAPTERS {
+        let text = fs::read_to_string(root.join(format!("docs/guide/{chapter}.md")))?;
+        commands += &script(&text).with_context(|| format!("docs/guide/{chapter}.md"))?;
     }
-    println!("first hour: every line of the README works");
+    follow(&commands, GUIDE_FOLDER, &GUIDE_RESULTS).context("docs/guide")?;
+    println!("first hour: every line of the README and of the guide works");
     Ok(())
 }
 
-/// The shell lines of the section.
-fn script(readme: &str) -> Result<String> {
+/// Types the lines as a newcomer would, in a folder that is not there yet, and looks for what they promise.
+fn follow(script: &str, folder: &str, results: &[&str]) -> Result<()> {
+    let root = run::root();
+    let path = root.join(folder);
+    if path.exists() {
+        fs::remove_dir_all(&path)?;
+    }
+    run::succeed(
+        Command::new("bash")
+            .args(["-euxo", "pipefail", "-c", script])
+            .current_dir(&root),
+    )?;
+    for result in results {
+        ensure!(path.join(result).exists(), "{folder}/{result} is missing");
+    }
+    Ok(())
+}
+
+/// The shell lines of the README's section.
+fn section(readme: &str) -> Result<String> {
     let (_, section) = readme
         .split_once(HEADING)
         .context("the README has no first hour")?;
-    let section = section.split("\n## ").next().unwrap_or_default();
-    let blocks: Vec<&str> = section
+    script(section.split("\n## ").next().unwrap_or_default())
+}
+
+/// The shell lines of a text.
+fn script(text: &str) -> Result<String> {
+    let blocks: Vec<&str> = text
         .split("```sh\n")
         .skip(1)
         .filter_map(|rest| Some(rest.split_once("```")?.0))
         .collect();
-    ensure!(!blocks.is_empty(), "the first hour has no commands");
+    ensure!(!blocks.is_empty(), "there are no commands");
     Ok(blocks.concat())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::script;
+    use super::{script, section};
 
     #[test]
     fn only_the_commands_of_the_section_are_typed() {
         let readme = "```sh\nno\n```\n## Your first hour\ntext\n```sh\none\n```\n```rust\nno\n```\n```sh\ntwo\n```\n\n## Next\n```sh\nno\n```\n";
-        assert_eq!(script(readme).ok().as_deref(), Some("one\ntwo\n"));
-        assert!(script("nothing").is_err());
+        assert_eq!(section(readme).ok().as_deref(), Some("one\ntwo\n"));
+        assert!(section("nothing").is_err() && script("nothing").is_err());
     }
 }

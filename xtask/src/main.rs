@@ -6,6 +6,7 @@ mod board;
 mod c_abi;
 mod ci;
 mod cross;
+mod examples;
 mod firmware;
 mod first_hour;
 mod gen_model;
@@ -52,7 +53,7 @@ enum Command {
     CAbi(c_abi::Args),
     /// Fly whole jumps on the boards and hold the costs of their control ticks against budgets.
     Firmware(firmware::Args),
-    /// Time our code beside its peers and print the table of ratios.
+    /// Time our code beside its pinned peers and print tables of ratios.
     Bench(bench::Args),
     /// Count the instructions of every algorithm and compare with the golden file.
     Icount(icount::Args),
@@ -66,6 +67,8 @@ enum Command {
     FirstHour(first_hour::Args),
     /// Build every crate from its own archive, with the oldest compiler that it promises.
     Package(package::Args),
+    /// Run the examples of all crates.
+    Examples(examples::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Command::Reproduce(args) => reproduce::run(&args),
         Command::FirstHour(args) => first_hour::run(&args),
         Command::Package(args) => package::run(&args),
+        Command::Examples(args) => examples::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

@@ -12,26 +12,18 @@ use anyhow::{Context, Result, bail};
 
 use crate::run;
 
+/// Arguments of `cargo xtask bench dynamics`.
 #[derive(clap::Args)]
-pub(crate) struct Args {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(clap::Subcommand)]
-enum What {
-    /// Rigid-body dynamics beside Pinocchio and CasADi-generated C.
-    Dynamics {
-        /// Rounds over all programs.
-        #[arg(long, default_value_t = 9)]
-        rounds: usize,
-        /// Milliseconds of CPU time per algorithm, program and round.
-        #[arg(long, default_value_t = 10)]
-        milliseconds: u32,
-        /// Fail if a ratio is above its limit.
-        #[arg(long)]
-        check: bool,
-    },
+pub(super) struct Args {
+    /// Rounds over all programs.
+    #[arg(long, default_value_t = 9)]
+    pub(super) rounds: usize,
+    /// Milliseconds of CPU time per algorithm, program and round.
+    #[arg(long, default_value_t = 10)]
+    pub(super) milliseconds: u32,
+    /// Fail if a ratio is above its limit.
+    #[arg(long)]
+    pub(super) check: bool,
 }
 
 /// Compiler flags of our native build.
@@ -56,12 +48,12 @@ fn limit(robot: &str, model: &str, algorithm: &str) -> f64 {
     }
 }
 
-pub(crate) fn run(args: &Args) -> Result<()> {
-    let What::Dynamics {
+pub(super) fn run(args: &Args) -> Result<()> {
+    let Args {
         rounds,
         milliseconds,
         check,
-    } = args.what;
+    } = *args;
     if !cfg!(target_os = "linux") {
         bail!("the peers are built on Linux only");
     }
