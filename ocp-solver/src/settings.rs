@@ -78,7 +78,7 @@ impl<T: Scalar> Settings<T> {
             dual_tolerance: at_least(1e-6, 30.0),
             complementarity_tolerance: at_least(1e-6, 0.3),
             barrier: Barrier::default(),
-            initial_mu: T::of(0.02),
+            initial_mu: T::of(0.01),
             warm_start: false,
             mu_factor: T::of(0.2),
             mu_power: T::of(1.5),

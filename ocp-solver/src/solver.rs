@@ -151,20 +151,20 @@ impl<T: Scalar> Solver<T> {
         }
         run.adaptive = false;
         run.attempt = run.attempt.saturating_add(1);
+        let settings = &self.settings;
+        let far = T::of(100.0) * settings.primal_tolerance;
         let mut before = T::INFINITY;
-        let mut violation = T::INFINITY;
-        for elastic in [1e-2, 1e-3, 1e-4, 1e-5] {
-            let mu = self.settings.initial_mu;
+        for elastic in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(T::of) {
             if run.elastic > T::ZERO {
                 // Multipliers grow as the give shrinks.
-                let growth = run.elastic / T::of(elastic);
+                let growth = run.elastic / elastic;
                 stages
                     .iter_mut()
                     .for_each(|stage| stage.node.scale_multipliers(growth));
                 run.warm = true;
             }
-            run.elastic = T::of(elastic);
-            let outcome = self.attempt(problem, stages, run, mu, observer);
+            run.elastic = elastic;
+            let outcome = self.attempt(problem, stages, run, settings.initial_mu, observer);
             run.warm = false;
             if outcome != Status::Solved {
                 run.elastic = T::ZERO;
@@ -174,26 +174,34 @@ impl<T: Scalar> Solver<T> {
                     status
                 };
             }
-            (before, violation) = (violation, largest_violation(stages));
+            let violation = largest_violation(stages);
+            if violation <= far {
+                break;
+            }
+            if elastic < T::of(2e-5) && violation > before * T::HALF {
+                run.elastic = T::ZERO;
+                run.best = Residual {
+                    primal: violation,
+                    ..run.best
+                };
+                run.best_cost = iterate::merit(stages).cost;
+                return Status::LocallyInfeasible;
+            }
+            before = violation;
         }
+        // The point is nearly feasible, and its multipliers are nearly those of a solution.
+        let mu = settings.smallest_mu(run.elastic);
         run.elastic = T::ZERO;
-        let far = T::of(100.0) * self.settings.primal_tolerance;
-        if violation > far && violation > before * T::of(0.3) {
-            run.best = Residual {
-                primal: violation,
-                ..run.best
-            };
-            run.best_cost = iterate::merit(stages).cost;
-            return Status::LocallyInfeasible;
+        for (warm, mu) in [(true, mu), (false, settings.initial_mu)] {
+            run.attempt = run.attempt.saturating_add(1);
+            run.warm = warm;
+            let outcome = self.attempt(problem, stages, run, mu, observer);
+            run.warm = false;
+            if matches!(outcome, Status::Solved | Status::Cancelled) {
+                return outcome;
+            }
         }
-        run.attempt = run.attempt.saturating_add(1);
-        let mu = self.settings.initial_mu;
-        let outcome = self.attempt(problem, stages, run, mu, observer);
-        if matches!(outcome, Status::Solved | Status::Cancelled) {
-            outcome
-        } else {
-            status
-        }
+        status
     }
 
     /// One descent under one barrier rule, from evaluated values.
@@ -332,7 +340,13 @@ impl<T: Scalar> Solver<T> {
                     break;
                 }
                 let power = so3::math::exp(settings.mu_power * so3::math::log(run.mu));
-                run.mu = max(min(settings.mu_factor * run.mu, power), smallest);
+                let lower = min(settings.mu_factor * run.mu, power);
+                // The last step is not worth a stage of its own.
+                run.mu = if run.elastic == T::ZERO && lower < smallest * T::of(10.0) {
+                    smallest
+                } else {
+                    max(lower, smallest)
+                };
             }
         }
     }
@@ -430,7 +444,7 @@ impl<T: Scalar> Settings<T> {
     /// Factor on multipliers, which grow with the inverse of the give of the rows.
     fn relief(elastic: T) -> T {
         if elastic > T::ZERO {
-            min(T::of(1e3) * elastic, T::ONE)
+            max(min(T::of(1e3) * elastic, T::ONE), T::of(1e-3))
         } else {
             T::ONE
         }

@@ -221,6 +221,15 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         (self.state, self.control) = self.guess;
     }
 
+    /// Whether state and control are those that the last solve started from.
+    #[must_use]
+    pub fn is_at_guess(&self) -> bool
+    where
+        X: PartialEq,
+    {
+        (&self.state, &self.control) == (&self.guess.0, &self.guess.1)
+    }
+
     /// Keeps state and control beside, for a caller that tries another guess; solves leave them alone.
     pub const fn keep(&mut self) {
         self.spare = (self.state, self.control);

@@ -1,10 +1,17 @@
 //! Time per iteration against the number of nodes, and its parts, on the reference problems.
 //!
-//! `cargo run --release -p srb-opt --example nodes -- [task, default lateral]`
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a program for the host")]
+//! `cargo run --release -p srb-opt --example nodes -- [task, default lateral] [noisy guesses each]`
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a program for the host"
+)]
 
 #[path = "../tests/reference/mod.rs"]
 mod reference;
+#[path = "../tests/variants/mod.rs"]
+mod variants;
 
 use core::cell::Cell;
 use core::ops::ControlFlow;
@@ -15,6 +22,7 @@ use reference::TASKS;
 use srb_opt::State;
 use srb_opt::onboard::{Jump, PHASES};
 use std::time::Instant;
+use variants::Draw;
 
 type Stages = Vec<Stage<f64, State<f64, PHASES>, 16, 12, 40>>;
 
@@ -94,6 +102,7 @@ fn main() {
     let Some(task) = TASKS.iter().find(|task| task.name == wanted) else {
         panic!("no task `{wanted}`");
     };
+    let noisy = (std::env::args().nth(2)).map_or(0, |text| text.parse().unwrap());
     println!("{wanted}: least of 15 runs, microseconds per iteration and node");
     println!(
         "intervals | iterations | total | derivatives | line search | factorisation and the rest"
@@ -133,19 +142,32 @@ fn main() {
             parts.1
         );
     }
-    println!("All nine, as stated: iterations, cost, share of IPOPT's");
+    println!(
+        "All nine, as stated: iterations, cost, share of IPOPT's, noisy guesses that reach it"
+    );
     for task in &TASKS {
         let jump = task.problem(1.0);
         let mut stages: Stages = vec![Stage::new(State::new()); jump.intervals() + 1];
-        jump.write_guess(&mut stages, || 0.0);
-        let go = |_: &_| ControlFlow::Continue(());
-        let found = jump.plan(&Settings::new(), &mut stages, go).unwrap();
-        let judged = jump.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
+        let mut solve = |noise: f64, seed: u64| {
+            let mut draw = Draw(seed);
+            jump.write_guess(&mut stages, || noise * draw.normal());
+            let go = |_: &_| ControlFlow::Continue(());
+            let found = jump.plan(&Settings::new(), &mut stages, go).unwrap();
+            let nodes = stages.iter().map(|stage| (&stage.state, &stage.control));
+            (found, jump.judge(nodes))
+        };
+        let (found, judged) = solve(0.0, 0);
+        let reached = (1..=noisy).filter(|seed| {
+            let (found, judged) = solve(0.1, *seed);
+            found.status == Status::Solved && judged.cost <= 1.001 * task.cost
+        });
+        let reached = reached.count();
         println!(
-            "{} | {:?} | {} | {:.4} | {:.6} | violation {:.0e}",
+            "{} | {:?} | {} ({} factorisations) | {:.4} | {:.6} | violation {:.0e} | {reached} of {noisy}",
             task.name,
             found.status,
             found.iterations,
+            found.factorisations,
             judged.cost,
             judged.cost / task.cost,
             judged.max_violation

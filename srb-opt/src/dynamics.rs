@@ -175,6 +175,7 @@ impl<T: Scalar> Interval<T> {
         let q = inverse_inertia * l_w;
         let z = rot * q;
         let h = &mut d.hessian_xx;
+        put_column(h, POSITION, POSITION, &Matrix3::zeros());
         let mixed = hat(&q) * force_b * dt;
         put_column(h, ROTATION, POSITION, &mixed);
         put_column(h, POSITION, ROTATION, &mixed.transpose());

@@ -5,14 +5,15 @@ use crate::problem::Problem;
 use crate::rows::row_capacity;
 use crate::state::{State, TIMES};
 use core::ops::ControlFlow;
-use ocp_solver::{Barrier, Keep, Progress, Settings, Solution, Solver, Stage, Status};
+use ocp_solver::{Keep, Progress, Settings, Solution, Solver, Stage, Status};
 use so3::Scalar;
+use so3::math::max;
 
 impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
     /// Plans from the guess in the stages ([`Problem::write_guess`]) and leaves the plan there.
     ///
     /// Problem (2) has poor local optima in which a contact phase shrinks to its shortest duration.
-    /// Where a solve ends in one, the plain guess is solved from a four times smaller barrier parameter, and
+    /// Where a solve ends in one, or in no solution, and did not start from the plain guess, that is solved too and
     /// the better plan is kept; `iterations` and `factorisations` count everything.
     ///
     /// # Errors
@@ -32,18 +33,28 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
             return Err(Error::Capacity);
         }
         let first = Solver::new(*settings).solve(self, stages, &mut observer)?;
-        if first.status != Status::Solved || !self.has_collapsed_phase(stages) {
+        let is_good = match first.status {
+            Status::Solved => !self.has_collapsed_phase(stages),
+            status => status == Status::Cancelled,
+        };
+        if is_good {
             return Ok(first);
         }
-        let mut smaller = *settings;
-        smaller.barrier = Barrier::Monotone;
-        smaller.initial_mu = settings.initial_mu * T::of(0.25);
         stages.iter_mut().for_each(Stage::keep);
         self.write_guess(stages, || T::ZERO);
-        let mut last = Solver::new(smaller).solve(self, stages, &mut observer)?;
+        if stages.iter().all(Stage::is_at_guess) {
+            stages.iter_mut().for_each(Stage::recall);
+            return Ok(first);
+        }
+        let mut cold = *settings;
+        cold.warm_start = false;
+        cold.initial_mu = max(settings.initial_mu, Settings::new().initial_mu);
+        let mut last = Solver::new(cold).solve(self, stages, &mut observer)?;
         let iterations = first.iterations.saturating_add(last.iterations);
         let factorisations = first.factorisations.saturating_add(last.factorisations);
-        if last.status != Status::Solved || last.cost >= first.cost {
+        let is_better = last.status == Status::Solved
+            && (first.status != last.status || last.cost < first.cost);
+        if !is_better {
             stages.iter_mut().for_each(Stage::recall);
             last = first;
         }

@@ -110,6 +110,56 @@ impl<T: Scalar> LogError<T> {
         let dh = (s.transpose() * ds) * (by_r / r) - s.transpose() * by_c;
         ds * (angle / r) + s * dh
     }
+
+    /// Second derivative of the squared error of `E Exp(θ)` at θ = 0.
+    ///
+    /// The square is `F = h(q) atan2(r, c)²` with `q = s·s` and `h = q/(q + ε)`, so with `D = r² + c²`
+    ///
+    /// ```text
+    /// F'' = F_qq q' q'ᵀ + F_qc (q' c'ᵀ + c' q'ᵀ) + F_cc c' c'ᵀ + F_q q'' + F_c c''
+    /// q' = 2 dsᵀ s,   q'' = 2 dsᵀ ds + sym(hat(s)ᵀ E) − 2 q I
+    /// c' = −s,        c'' = ½ (sym(E) − tr(E) I)
+    /// ```
+    ///
+    /// Without it (Gauss–Newton) Newton's method diverges slowly at solutions that leave the reference far.
+    #[inline(always)]
+    pub(crate) fn curvature(&self, e: &Matrix3<T>, epsilon: T) -> Matrix3<T> {
+        let Self { s, c, r, angle, .. } = *self;
+        let two = T::TWO;
+        let (q, rho) = (s.norm_squared(), r * r);
+        let d = rho + c * c;
+        // The angle and its derivatives in q and c.
+        let a_q = c / (two * r * d);
+        let a_c = -r / d;
+        let a_qq = -c * (d + two * rho) / (T::of(4.0) * r * rho * d * d);
+        let a_qc = (rho - c * c) / (two * r * d * d);
+        let a_cc = two * r * c / (d * d);
+        let (h, h_q, h_qq) = (
+            q / rho,
+            epsilon / (rho * rho),
+            -two * epsilon / (rho * rho * rho),
+        );
+        let f_q = h_q * angle * angle + two * h * angle * a_q;
+        let f_c = two * h * angle * a_c;
+        let f_qq = h_qq * angle * angle
+            + T::of(4.0) * h_q * angle * a_q
+            + two * h * (a_q * a_q + angle * a_qq);
+        let f_qc = two * h_q * angle * a_c + two * h * (a_q * a_c + angle * a_qc);
+        let f_cc = two * h * (a_c * a_c + angle * a_cc);
+        let ds = vee_skew_derivative(e);
+        let (in_q, in_c) = (ds.transpose() * s * two, -s);
+        let symmetric = |m: Matrix3<T>| (m + m.transpose()) * T::HALF;
+        let identity = Matrix3::identity();
+        let by_q =
+            ds.transpose() * ds * two + symmetric(hat(&s).transpose() * e) - identity * (two * q);
+        let by_c = (symmetric(*e) - identity * e.trace()) * T::HALF;
+        let mixed = in_q * in_c.transpose();
+        in_q * in_q.transpose() * f_qq
+            + (mixed + mixed.transpose()) * f_qc
+            + in_c * in_c.transpose() * f_cc
+            + by_q * f_q
+            + by_c * f_c
+    }
 }
 
 #[cfg(test)]
@@ -128,6 +178,36 @@ mod tests {
             let minus = LogError::new(&(e * exp(&-w)), 1e-6).error;
             let column = (plus - minus) / (2.0 * h);
             assert!((column - exact.column(j)).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_curvature_of_the_squared_error_matches_differences() {
+        for turn in [
+            Vector3::new(0.4f64, -0.9, 1.3),
+            Vector3::new(1.9, 1.7, 1.2),
+            Vector3::new(1e-3, 2e-3, -1e-3),
+            Vector3::zeros(),
+        ] {
+            let e = exp(&turn);
+            let h = 1e-5;
+            let exact = LogError::new(&e, 1e-6).curvature(&e, 1e-6);
+            let square = |w: Vector3<f64>| LogError::new(&(e * exp(&w)), 1e-6).error.norm_squared();
+            for i in 0..3 {
+                for j in 0..3 {
+                    let at = |a: f64, b: f64| {
+                        let mut w = Vector3::zeros();
+                        w[i] += a;
+                        w[j] += b;
+                        square(w)
+                    };
+                    let numeric = (at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / (4.0 * h * h);
+                    assert!(
+                        (numeric - exact[(i, j)]).abs() < 2e-4,
+                        "{turn:?} {i} {j}: {numeric} {exact}"
+                    );
+                }
+            }
         }
     }
 

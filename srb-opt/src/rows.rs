@@ -210,7 +210,12 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
                     if edge.drop != T::ZERO {
                         let t = -T::TWO * height / edge.drop - T::ONE;
                         let slope = edge.drop * T::HALF * (T::ONE - t * t) * edge.sign / edge.width;
-                        normal[edge.axis.min(1)] = slope;
+                        let axis = edge.axis.min(1);
+                        normal[axis] = slope;
+                        // The ground's curvature over the edge, along the way that the corner takes across it.
+                        let bent = T::TWO * t * slope * edge.sign / edge.width;
+                        let turned = corner.cross(&body_from_world.column(axis).into_owned());
+                        add_curvature(&mut d.hessian_xx, axis, &turned, -bent * *y);
                     }
                 }
                 let normal_b = body_from_world * normal;
@@ -265,6 +270,28 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
                 }
                 at += 1;
             }
+        }
+    }
+}
+
+/// Adds `weight w wᵀ` for the direction `w` of a world axis and a rotation.
+#[inline(always)]
+fn add_curvature<T: Scalar, const NX: usize>(
+    h: &mut [[T; NX]; NX],
+    axis: usize,
+    turned: &Vector3<T>,
+    weight: T,
+) {
+    if weight == T::ZERO {
+        return;
+    }
+    h[POSITION + axis][POSITION + axis] += weight;
+    for i in 0..3 {
+        let mixed = weight * turned[i];
+        h[POSITION + axis][ROTATION + i] += mixed;
+        h[ROTATION + i][POSITION + axis] += mixed;
+        for j in 0..3 {
+            h[ROTATION + j][ROTATION + i] += mixed * turned[j];
         }
     }
 }

@@ -123,9 +123,8 @@ where
                     ROTATION,
                     &(by_rotation.transpose() * log.error * two),
                 );
-                // Gauss–Newton in the rotation error: its curvature was measured not to matter.
-                let gauss_newton = by_rotation.transpose() * by_rotation * two;
-                add_block(&mut d.hessian_xx, ROTATION, ROTATION, &gauss_newton);
+                let curvature = log.curvature(&error, self.log_epsilon) * weights.rotation;
+                add_block(&mut d.hessian_xx, ROTATION, ROTATION, &curvature);
                 let two = T::TWO * weights.omega;
                 put(&mut d.cost_x, OMEGA, &(state.omega_b * two));
                 add_block(
