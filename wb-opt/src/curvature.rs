@@ -33,7 +33,7 @@ use rbd_core::model::Link;
 use rbd_core::{Force, Motion};
 use so3::Scalar;
 
-use crate::midpoint::Hessian;
+use crate::map::Hessian;
 use crate::moments::{at_point, hat, moment_of, outer, turn};
 use crate::sweep::{Contacts, PointMotion, Sweep};
 

@@ -2,7 +2,8 @@
 
 use crate::curvature::{Multipliers, PositionTerms};
 use crate::drive::Line;
-use crate::midpoint::{Gradient, Hessian, Map, Midpoint};
+use crate::map::{Gradient, Hessian, Map};
+use crate::midpoint::Midpoint;
 use crate::moments::{at_point, moment_of};
 use crate::problem::Problem;
 use crate::robot::{BASE, TURN};

@@ -1,6 +1,7 @@
 //! Feedback gains of efforts and contact forces from those of the solver's controls.
 
-use crate::midpoint::{Map, Midpoint};
+use crate::map::{Map, add_scaled};
+use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::BASE;
 use crate::state::{Layout, State, Units};
@@ -64,7 +65,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             let (mut x, mut u) = ([T::ZERO; NX], [T::ZERO; NU]);
             map.gradient(T::ONE, &jacobian.row(i), &mut x, &mut u);
             for (weight, row) in u.iter().zip(gain).take(mid.layout.controls()) {
-                crate::midpoint::add_scaled(&mut x, *weight, row);
+                add_scaled(&mut x, *weight, row);
             }
             split(&x, T::ONE, &mut out.effort_by_q[i], &mut out.effort_by_v[i]);
         }

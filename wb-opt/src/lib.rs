@@ -8,6 +8,7 @@ mod error;
 mod gain;
 mod guess;
 mod judge;
+mod map;
 mod midpoint;
 mod moments;
 mod plan;

@@ -21,7 +21,7 @@ use rbd_core::Motion;
 use rbd_core::model::Link;
 use so3::Scalar;
 
-use crate::midpoint::Hessian;
+use crate::map::Hessian;
 use crate::sweep::{EffortJacobian, PointMotion, Sweep};
 
 /// ∂α/∂q_k, ∂α/∂q̇_k, ∂α/∂q̈_k of the body of a point.

@@ -2,7 +2,8 @@
 
 use crate::differentiate::Interval;
 use crate::drive::Line;
-use crate::midpoint::{Gradient, Map, Midpoint};
+use crate::map::{Gradient, Map};
+use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::{BASE, Point, TURN};
 use crate::rotation::{Step, Turn, set_block, set_triple, triple, vee_skew};

@@ -66,9 +66,8 @@ impl Planner {
         if self == Self::Kinematics {
             return reference::build(task, srb);
         }
-        let clock = std::time::Instant::now();
-        let plan = whole_body::plan(task, srb, |_| ControlFlow::Continue(()))?;
-        let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
+        let whole = whole_body::audited(task, srb, false, |_| ControlFlow::Continue(()))?;
+        let plan = whole.plan;
         if plan.outcome.status != Status::Solved {
             return Err(format!(
                 "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
@@ -76,7 +75,14 @@ impl Planner {
                 task.name, plan.outcome.status, plan.outcome.iterations, plan.judged.max_violation
             ));
         }
-        follow(task, &plan, wall_ms)
+        if let Some(audit) = whole.audit.filter(|audit| !audit.passes()) {
+            return Err(format!(
+                "task {}: the plan failed its audit: {}",
+                task.name,
+                audit.complaint()
+            ));
+        }
+        follow(task, &plan, whole.wall_ms)
     }
 }
 

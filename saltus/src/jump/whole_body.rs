@@ -1,12 +1,16 @@
 //! The whole-body plan of a task as it is to be executed: the geared A1 on rolling ball feet, with margins.
 
+use super::pace::Pace;
+use super::stored::{open, store};
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
+use crate::audit::Audit;
 use crate::track::Track;
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Solution, Stage, Status, blocking_rows};
 use rbd_core::Transform;
+use std::time::Instant;
 use wb_opt::{
     BASE, Clearance, Foot, Gains, Judgement, Phase, Point, Pose, Problem, Robot, Row, Sample,
     State, Weights,
@@ -26,8 +30,8 @@ const CONTACT_DT: f64 = 0.005;
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub(crate) const POSED: f64 = 0.05;
-/// Iterations after which more torque is tried; a task that is solved takes a third of it.
-const PATIENCE: usize = 100;
+/// Most iterations; tasks that are solved take 15 to 130.
+const PATIENCE: usize = 150;
 /// How much farther than it is a box edge is taken to be, m.
 const EDGE_MARGIN: f64 = 0.12;
 /// How far a ball may roll from where it stood, per axis, m.
@@ -74,10 +78,68 @@ pub(crate) struct Interval {
     pub(crate) gains: Gains<f64, N, FOOT_COUNT>,
 }
 
+/// A plan and what its audit found.
+pub(crate) struct Audited {
+    pub(crate) plan: WholeBodyPlan,
+    /// The plan as it is stored; nothing of a plan that was not solved.
+    pub(crate) bytes: Vec<u8>,
+    /// None of a plan that was not solved.
+    pub(crate) audit: Option<Audit>,
+    /// Time of planning, without the audit, ms.
+    pub(crate) wall_ms: f64,
+}
+
+/// Plans the whole body and audits the plan. Where the audit finds limits exceeded between nodes or a flight that is not
+/// true to the dynamics, the intervals were too long for this robot: they are halved, once.
+pub(crate) fn audited(
+    task: &Task,
+    srb: &SrbPlan,
+    with_gains: bool,
+    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<Audited, String> {
+    let mut wall_ms = 0.0;
+    let mut on_intervals = |share: f64| {
+        let clock = Instant::now();
+        let plan = plan_on(task, srb, share, &mut observer)?;
+        wall_ms += clock.elapsed().as_secs_f64() * 1e3;
+        let (mut bytes, mut audit) = (Vec::new(), None);
+        if plan.outcome.status == Status::Solved {
+            bytes = store(task, &plan, with_gains)?;
+            let stored = open(&bytes, &task.robot).map_err(|error| error.to_string())?;
+            audit = Some(Audit::of(&task.robot, &stored)?);
+        }
+        Ok::<_, String>(Audited {
+            plan,
+            bytes,
+            audit,
+            wall_ms,
+        })
+    };
+    let coarse = on_intervals(1.0)?;
+    if coarse.audit.as_ref().is_none_or(Audit::passes) {
+        return Ok(coarse);
+    }
+    let fine = on_intervals(0.5)?;
+    // A plan that fails its audit says more than none.
+    let wall_ms = fine.wall_ms;
+    let told = if fine.audit.is_some() { fine } else { coarse };
+    Ok(Audited { wall_ms, ..told })
+}
+
 /// Plans the whole body along a single-rigid-body plan.
 pub(crate) fn plan(
     task: &Task,
     srb: &SrbPlan,
+    observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<WholeBodyPlan, String> {
+    plan_on(task, srb, 1.0, observer)
+}
+
+/// Plans on intervals of a share of their usual length.
+fn plan_on(
+    task: &Task,
+    srb: &SrbPlan,
+    share: f64,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
     let rigid = &task.problem;
@@ -99,7 +161,7 @@ pub(crate) fn plan(
         } else {
             FLIGHT_DT
         };
-        let intervals = (duration / longest).ceil().max(1.0);
+        let intervals = (duration / (share * longest)).ceil().max(1.0);
         phases.push(Phase {
             contacts: phase.contacts,
             intervals: intervals as usize,
@@ -181,7 +243,7 @@ pub(crate) fn plan(
         goal,
         goal_tolerance: GOAL_TOLERANCE,
         least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
-        landing_intervals: (POSED / FLIGHT_DT) as usize,
+        landing_intervals: (POSED / (share * FLIGHT_DT)) as usize,
         friction_smoothing: FRICTION_SMOOTHING,
         friction: rigid.friction,
         drift: ROLL,
@@ -211,7 +273,8 @@ pub(crate) fn plan(
     (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
     let mut solved = None;
     let given = problem.robot.limits;
-    for share in task.limits.torque_shares {
+    let shares = task.limits.torque_shares;
+    for (i, share) in shares.into_iter().enumerate() {
         for (limit, given) in problem.robot.limits.iter_mut().zip(&given).skip(BASE) {
             limit.effort = share * given.effort;
         }
@@ -221,11 +284,23 @@ pub(crate) fn plan(
             rigid.sample(k, &stage.state, &stage.control).forces_w[foot]
         };
         problem.write_guess(&mut stages, &nodes, force, || 0.0);
+        let (mut pace, mut cancelled) = (Pace::default(), false);
+        let watch = |progress: &Progress<f64>| {
+            cancelled = observer(progress).is_break();
+            // With the most torque there is nothing to save time for.
+            let last = i + 1 == shares.len();
+            let violation = progress.residual.primal;
+            if !cancelled && (last || pace.keeps_up(progress.attempt, violation, PATIENCE)) {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
         let outcome = problem
-            .plan(&settings, &mut stages, &mut observer)
+            .plan(&settings, &mut stages, watch)
             .map_err(|error| format!("task {}: {error}", task.name))?;
         solved = Some((outcome, share));
-        if matches!(outcome.status, Status::Solved | Status::Cancelled) {
+        if cancelled || outcome.status == Status::Solved {
             break;
         }
     }

@@ -8,14 +8,12 @@ use crate::audit::Audit;
 use crate::cmd::folder::{describe, must_be_new, publish};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
-use crate::jump::stored::{open, store};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::whole_body::{self, WholeBodyPlan};
 use indicatif::ProgressBar;
 use ocp_solver::{Progress, Settings, Status};
 use serde_json::{Value, json};
 use std::process::ExitCode;
-use std::time::Instant;
 
 /// How far planning came.
 #[derive(Default)]
@@ -76,19 +74,16 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         report.answer = Some(Answer::no_body_plan(task, srb));
         return Ok(());
     }
-    let clock = Instant::now();
-    let plan = whole_body::plan(task, srb, |progress| observe("whole body", progress))?;
-    let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
-    let (plan, _) = report.whole_body.insert((plan, wall_ms));
-    if plan.outcome.status != Status::Solved {
+    let gains = !args.no_gains;
+    let whole = whole_body::audited(task, srb, gains, |p| observe("whole body", p))?;
+    report.bytes = whole.bytes;
+    let (plan, _) = report.whole_body.insert((whole.plan, whole.wall_ms));
+    let Some(audit) = whole.audit else {
         bar.set_message("looking for what would have to change");
         report.answer = Some(Answer::no_whole_body_plan(task, srb, plan));
         return Ok(());
-    }
-    bar.set_message("audit");
-    report.bytes = store(task, plan, !args.no_gains)?;
-    let stored = open(&report.bytes, &task.robot).map_err(|error| error.to_string())?;
-    let audit = report.audit.insert(Audit::of(&task.robot, &stored)?);
+    };
+    let audit = report.audit.insert(audit);
     if !audit.passes() {
         report.answer = Some(Answer {
             status: "AuditFailed",
