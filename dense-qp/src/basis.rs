@@ -1,55 +1,62 @@
-//! The active rows, orthogonalised without square roots.
+//! The active rows, and what they leave free, in coordinates in which H is the identity.
 //!
-//! With H = UᵀDU every active row a becomes m = U⁻ᵀ a_y, and ⟨m, n⟩ = mᵀD⁻¹n is the product aᵀH⁻¹b.
-//! The rows are kept as M = L Q: L unit lower triangular, the rows of Q orthogonal with squared
-//! lengths d. This is the LDLᵀ factor of A_W H⁻¹ A_Wᵀ with the orthogonal part kept, so that a new
-//! row's distance from the span of the others is computed without squaring the condition number.
+//! With H = UᵀDU and J = U⁻¹D^-½, J Jᵀ = H⁻¹, and d = Jᵀa are the coordinates of a row a. J is kept turned by orthogonal
+//! transformations so that the coordinates of the active rows are upper triangular, Jᵀ A_Wᵀ = [R; 0]. Of a new row
+//! d = [d₁; d₂] then
+//!
+//! - r = R⁻¹d₁ is how the active multipliers answer to its own,
+//! - z = J₂d₂ is the step that it causes, and aᵀz = |d₂|² (zero for a row that depends on the active ones)
+//!
+//! (Goldfarb and Idnani 1983). Rows enter by a Householder reflection of J₂ and leave by plane rotations. Neither loses
+//! digits, however different the curvatures of H are.
 
-use crate::kernels::{at, ceil4, copy, dot_in, head, put, row, span_mut};
-use crate::kernels::{sub_scaled_in, weighted_dot};
+use crate::elimination::Elimination;
+use crate::factor::Factor;
+use crate::kernels::{at, dot, head, head_mut, put, span, span_mut, sub_scaled};
 use crate::settings::dependence_tolerance;
-use so3::Scalar;
+use so3::{Scalar, math};
 
-/// A row relative to the basis: m = Σ lⱼ qⱼ + q with q orthogonal to the basis, d = ⟨q, q⟩.
+/// A row in the coordinates of the basis.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate<T, const N: usize> {
-    pub(crate) l: [T; N],
-    pub(crate) q: [T; N],
-    /// 0 for a row that depends on the basis.
-    pub(crate) d: T,
-    /// ⟨m, m⟩.
-    norm: T,
+    pub(crate) d: [T; N],
+    /// |d₂|², 0 for a row that depends on the active ones.
+    pub(crate) free: T,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Basis<T, const N: usize> {
-    q: [[T; N]; N],
-    l: [[T; N]; N],
-    d: [T; N],
-    d_inverse: [T; N],
+    /// J, a row per free variable.
+    j: [[T; N]; N],
+    /// R by columns.
+    r: [[T; N]; N],
+    /// 1 / R_kk.
+    r_inverse: [T; N],
     pub(crate) len: usize,
-    /// Dimension of the rows.
+    /// Number of free variables; 0 until J is there.
     dim: usize,
     // Rotations of a removal.
-    rot_l: [T; N],
-    rot_carry: [T; N],
-    rot_row: [T; N],
-    work: [T; N],
+    cos: [T; N],
+    sin: [T; N],
 }
 
 impl<T: Scalar, const N: usize> Candidate<T, N> {
     pub(crate) const fn new() -> Self {
         Self {
-            l: [T::ZERO; N],
-            q: [T::ZERO; N],
-            d: T::ZERO,
-            norm: T::ZERO,
+            d: [T::ZERO; N],
+            free: T::ZERO,
         }
     }
 
-    fn settle(&mut self, full: bool) {
-        if full || self.d <= dependence_tolerance::<T>() * self.norm {
-            self.d = T::ZERO;
+    /// |d₂|², given how many rows are active.
+    fn measure(&mut self, len: usize, dim: usize) {
+        let d = head(&self.d, dim);
+        let square = |d: &[T]| d.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
+        self.free = square(span(d, len, dim));
+        let whole = self.free + square(head(d, len));
+        // False for NaN.
+        if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
+            self.free = T::ZERO;
         }
     }
 }
@@ -57,163 +64,193 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
 impl<T: Scalar, const N: usize> Basis<T, N> {
     pub(crate) const fn new() -> Self {
         Self {
-            q: [[T::ZERO; N]; N],
-            l: [[T::ZERO; N]; N],
-            d: [T::ZERO; N],
-            d_inverse: [T::ZERO; N],
+            j: [[T::ZERO; N]; N],
+            r: [[T::ZERO; N]; N],
+            r_inverse: [T::ZERO; N],
             len: 0,
             dim: 0,
-            rot_l: [T::ZERO; N],
-            rot_carry: [T::ZERO; N],
-            rot_row: [T::ZERO; N],
-            work: [T::ZERO; N],
+            cos: [T::ZERO; N],
+            sin: [T::ZERO; N],
         }
     }
 
-    pub(crate) fn clear(&mut self, dim: usize) {
+    /// No active rows, and no J.
+    pub(crate) fn clear(&mut self) {
         self.len = 0;
-        self.dim = dim;
+        self.dim = 0;
     }
 
-    /// Splits `c.q` (holding m on entry) into its part in the basis and the rest.
-    pub(crate) fn project(&mut self, weight: &[T; N], c: &mut Candidate<T, N>) {
-        let (n, len) = (self.dim, self.len);
-        let end = ceil4(n, N);
-        c.norm = weighted_dot(head(weight, n), &c.q, &c.q);
-        c.d = c.norm;
-        // Twice is enough: after a second pass what is left is orthogonal or is round-off.
-        for pass in 0..2 {
-            if len == 0 || (pass == 1 && c.d > T::of(0.04) * c.norm) {
-                break;
-            }
-            for ((s, q), w) in self.work.iter_mut().zip(&c.q).zip(weight).take(end) {
-                *s = *q * *w;
-            }
-            for (j, (q, di)) in self.q.iter().zip(&self.d_inverse).take(len).enumerate() {
-                let f = dot_in(q, &self.work, 0, end) * *di;
-                let before = if pass == 0 { T::ZERO } else { at(&c.l, j) };
-                put(&mut c.l, j, before + f);
-                put(&mut self.rot_row, j, f);
-            }
-            for (q, f) in self.q.iter().zip(&self.rot_row).take(len) {
-                sub_scaled_in(&mut c.q, *f, q, 0, end);
-            }
-            c.d = weighted_dot(head(weight, n), &c.q, &c.q);
+    /// J of a factor, unless it is there already: a problem without a violated row never needs it.
+    pub(crate) fn prepare(&mut self, factor: &Factor<T, N>) {
+        if self.dim == factor.dim {
+            return;
         }
-        c.settle(len >= n);
+        let n = factor.dim;
+        self.dim = n;
+        for (i, u) in factor.u.iter().enumerate().take(n).rev() {
+            let Some((upper, lower)) = self.j.split_at_mut_checked(i + 1) else {
+                break;
+            };
+            let Some(row) = upper.last_mut() else { break };
+            row.fill(T::ZERO);
+            put(row, i, T::ONE);
+            for (k, below) in lower.iter().take(n - i - 1).enumerate() {
+                let f = at(u, i + 1 + k);
+                if f != T::ZERO {
+                    sub_scaled(span_mut(row, i + 1 + k, n), f, span(below, i + 1 + k, n));
+                }
+            }
+        }
+        for (k, w) in factor.weight.iter().take(n).enumerate() {
+            put(&mut self.cos, k, math::sqrt(*w));
+        }
+        for (i, row) in self.j.iter_mut().take(n).enumerate() {
+            for (x, s) in span_mut(row, i, n).iter_mut().zip(span(&self.cos, i, n)) {
+                *x *= *s;
+            }
+        }
     }
 
-    /// Appends an independent candidate.
-    pub(crate) fn append(&mut self, c: &Candidate<T, N>) {
-        let k = self.len;
-        if let (Some(q), Some(l)) = (self.q.get_mut(k), self.l.get_mut(k)) {
-            copy(q, &c.q);
-            copy(l, head(&c.l, k));
-            span_mut(l, k, ceil4(k, N)).fill(T::ZERO);
-            put(&mut self.d, k, c.d);
-            put(&mut self.d_inverse, k, T::ONE / c.d);
+    /// d ← d + f·Jᵀeᵢ for free variable i.
+    #[inline(always)]
+    pub(crate) fn add_coordinates(&self, i: usize, f: T, d: &mut [T; N]) {
+        if let Some(row) = self.j.get(i) {
+            sub_scaled(head_mut(d, self.dim), -f, row);
+        }
+    }
+
+    /// Measures a candidate whose `d` is set.
+    pub(crate) fn project(&self, c: &mut Candidate<T, N>) {
+        c.measure(self.len, self.dim);
+    }
+
+    /// z = J₂d₂, or J d with `from` = 0, into the free variables of `step`.
+    #[inline]
+    pub(crate) fn direction(
+        &self,
+        from: usize,
+        d: &[T; N],
+        free_variables: &[usize],
+        step: &mut [T; N],
+    ) {
+        let d = span(d, from, self.dim);
+        for (row, v) in self.j.iter().zip(free_variables) {
+            put(step, *v, dot(span(row, from, self.dim), d));
+        }
+    }
+
+    /// Appends an independent candidate whose z is in `step`.
+    pub(crate) fn append(
+        &mut self,
+        c: &mut Candidate<T, N>,
+        elimination: &Elimination<T, N>,
+        step: &[T; N],
+    ) {
+        let (k, n) = (self.len, self.dim);
+        let first = at(&c.d, k);
+        let length = math::sqrt(c.free);
+        let signed = if first < T::ZERO { -length } else { length };
+        // u = d₂ + signed·e, and I − u uᵀ/(uᵀd₂) turns d₂ into −signed·e.
+        put(&mut c.d, k, first + signed);
+        let share = T::ONE / (c.free + math::abs(first) * length);
+        let u = span(&c.d, k, n);
+        for (row, v) in self.j.iter_mut().zip(elimination.free_variables()) {
+            let f = (at(step, *v) + signed * at(row.as_slice(), k)) * share;
+            sub_scaled(span_mut(row, k, n), f, u);
+        }
+        if let Some(column) = self.r.get_mut(k) {
+            for (r, d) in column.iter_mut().zip(&c.d).take(k) {
+                *r = *d;
+            }
+            put(column, k, -signed);
+            put(&mut self.r_inverse, k, -T::ONE / signed);
             self.len += 1;
         }
     }
 
     /// Removes row `k` and carries `c` over to the smaller basis.
-    ///
-    /// The freed direction is passed through the later rows by rotations of two orthogonal vectors,
-    /// q' = qᵢ + l·carry and carry' = (dᵢ carry − l d_carry qᵢ)/d', d' = dᵢ + l² d_carry.
     pub(crate) fn remove(&mut self, k: usize, c: &mut Candidate<T, N>) {
-        let (n, len) = (self.dim, self.len);
-        let end = ceil4(n, N);
-        if k >= len {
+        if k >= self.len {
             return;
         }
-        let mut carry_d = at(&self.d, k);
-        copy(&mut self.work, head(row(&self.q, k), end));
-        for i in k + 1..len {
-            let Ok([to, from]) = self.l.get_disjoint_mut([i - 1, i]) else {
+        let last = self.len - 1;
+        for i in k..last {
+            let Some((before, after)) = self.r.split_at_mut_checked(i + 1) else {
                 break;
             };
-            // Row i of L through the earlier rotations; what is left belongs to the carry.
-            let mut a = at(from.as_slice(), k);
-            copy(to, head(from, k));
-            for j in k + 1..i {
-                let (l, fc, fr) = (
-                    at(&self.rot_l, j),
-                    at(&self.rot_carry, j),
-                    at(&self.rot_row, j),
-                );
-                let b = at(from.as_slice(), j);
-                put(to, j - 1, a * fc + b * fr);
-                a -= l * b;
-            }
-            span_mut(to, i - 1, ceil4(i - 1, N)).fill(T::ZERO);
-            let di = at(&self.d, i);
-            let d = di + a * a * carry_d;
-            let inverse = T::ONE / d;
-            let (fc, fr) = (a * carry_d * inverse, di * inverse);
-            put(&mut self.rot_l, i, a);
-            put(&mut self.rot_carry, i, fc);
-            put(&mut self.rot_row, i, fr);
-            let Ok([to, from]) = self.q.get_disjoint_mut([i - 1, i]) else {
+            // Column i + 1 becomes column i; what it has below the diagonal is turned away.
+            let (Some(to), Some(from)) = (before.last_mut(), after.first()) else {
                 break;
             };
-            for ((to, q), carry) in to.iter_mut().zip(from.iter()).zip(&mut self.work).take(end) {
-                let (v, w) = (*q, *carry);
-                *to = v + a * w;
-                *carry = fr * w - fc * v;
+            let (x, y) = (at(from, i), at(from, i + 1));
+            let length = math::sqrt(x * x + y * y);
+            let inverse = T::ONE / length;
+            let (cos, sin) = (x * inverse, y * inverse);
+            for (to, from) in to.iter_mut().zip(from).take(i) {
+                *to = *from;
             }
-            put(&mut self.d, i - 1, d);
-            put(&mut self.d_inverse, i - 1, inverse);
-            carry_d *= fr;
+            put(to, i, length);
+            put(&mut self.r_inverse, i, inverse);
+            put(&mut self.cos, i, cos);
+            put(&mut self.sin, i, sin);
+            for column in after.iter_mut().take(last - i).skip(1) {
+                let (x, y) = (at(column.as_slice(), i), at(column.as_slice(), i + 1));
+                put(column, i, cos * x + sin * y);
+                put(column, i + 1, cos * y - sin * x);
+            }
         }
-        let mut a = at(&c.l, k);
-        for j in k + 1..len {
-            let (l, fc, fr) = (
-                at(&self.rot_l, j),
-                at(&self.rot_carry, j),
-                at(&self.rot_row, j),
-            );
-            let b = at(&c.l, j);
-            put(&mut c.l, j - 1, a * fc + b * fr);
-            a -= l * b;
+        let turns = || {
+            let cos = span(&self.cos, k, last);
+            cos.iter().zip(span(&self.sin, k, last))
+        };
+        let turn = |row: &mut [T; N]| {
+            let row = span_mut(row, k, last + 1);
+            let mut carried = at(row, 0);
+            for (i, (cos, sin)) in turns().enumerate() {
+                let next = at(row, i + 1);
+                put(row, i, *cos * carried + *sin * next);
+                carried = *cos * next - *sin * carried;
+            }
+            put(row, last - k, carried);
+        };
+        for row in self.j.iter_mut().take(self.dim) {
+            turn(row);
         }
-        if c.d == T::ZERO {
-            c.q.fill(T::ZERO);
-        }
-        sub_scaled_in(&mut c.q, -a, &self.work, 0, end);
-        c.d += a * a * carry_d;
-        self.len -= 1;
-        c.settle(self.len >= n);
+        turn(&mut c.d);
+        self.len = last;
+        c.measure(last, self.dim);
     }
 
-    /// v ← L⁻ᵀ v.
+    /// v ← R⁻¹v.
+    #[inline]
+    pub(crate) fn solve(&self, v: &mut [T; N]) {
+        for (k, (column, inverse)) in self
+            .r
+            .iter()
+            .zip(&self.r_inverse)
+            .enumerate()
+            .take(self.len)
+            .rev()
+        {
+            let Some((before, rest)) = v.split_at_mut_checked(k) else {
+                break;
+            };
+            if let Some(e) = rest.first_mut() {
+                *e *= *inverse;
+                sub_scaled(before, *e, column);
+            }
+        }
+    }
+
+    /// v ← R⁻ᵀv.
+    #[inline]
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        for (i, l) in self.l.iter().take(self.len).enumerate().rev() {
-            let f = at(v.as_slice(), i);
-            let end = ceil4(i, N);
-            sub_scaled_in(v, f, l, 0, end);
-        }
-    }
-
-    /// v ← D⁻¹L⁻¹ v.
-    pub(crate) fn solve_scaled(&self, v: &mut [T; N]) {
-        for (i, l) in self.l.iter().take(self.len).enumerate() {
-            let end = ceil4(i, N);
-            let s = dot_in(l, v, 0, end);
-            if let Some(e) = v.get_mut(i) {
-                *e -= s;
+        let columns = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (column, inverse)) in columns.take(self.len) {
+            let s = dot(head(column, k), head(v, k));
+            if let Some(e) = v.get_mut(k) {
+                *e = (*e - s) * *inverse;
             }
-        }
-        for (v, d) in v.iter_mut().zip(&self.d_inverse).take(self.len) {
-            *v *= *d;
-        }
-    }
-
-    /// out ← Σ cⱼ qⱼ.
-    pub(crate) fn combine(&self, c: &[T; N], out: &mut [T; N]) {
-        let end = ceil4(self.dim, N);
-        out.fill(T::ZERO);
-        for (q, c) in self.q.iter().zip(c).take(self.len) {
-            sub_scaled_in(out, -*c, q, 0, end);
         }
     }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Elimination<T, const N: usize> {
     rhs: [T; N],
     /// Variable of each permuted column.
     perm: [usize; N],
+    /// Permuted column of each variable, where `rank` is not 0.
+    place: [usize; N],
     /// Constraint (row i, or M + variable) behind each row of `lu`.
     pub(crate) id: [usize; N],
     /// Number of fixed variables.
@@ -47,6 +49,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             inverse: [T::ZERO; N],
             rhs: [T::ZERO; N],
             perm: [0; N],
+            place: [0; N],
             id: [0; N],
             fixed: 0,
             rank: 0,
@@ -59,8 +62,24 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     }
 
     /// Variables of the free columns.
-    fn free_vars(&self) -> &[usize] {
+    #[inline(always)]
+    pub(crate) fn free_variables(&self) -> &[usize] {
         span(&self.perm, self.rank, N)
+    }
+
+    /// Whether a free variable moves others: a row that is not merely fixed was eliminated.
+    #[inline(always)]
+    pub(crate) fn has_basic(&self) -> bool {
+        self.rank > self.fixed
+    }
+
+    /// Index of `variable` among the free ones.
+    #[inline(always)]
+    pub(crate) fn free_index(&self, variable: usize) -> Option<usize> {
+        if self.rank == 0 {
+            return Some(variable);
+        }
+        at(&self.place, variable).checked_sub(self.rank)
     }
 
     /// Factorises the equalities of `problem` (rows and bounds with equal limits). `feasibility` is
@@ -90,6 +109,11 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         self.finish();
+        if self.rank > 0 {
+            for (column, variable) in self.perm.iter().enumerate() {
+                put(&mut self.place, *variable, column);
+            }
+        }
         Ok(())
     }
 
@@ -216,7 +240,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
             return;
         }
-        for (y, v) in y.iter_mut().zip(self.free_vars()) {
+        for (y, v) in y.iter_mut().zip(self.free_variables()) {
             *y = at(a, *v);
         }
         let free = self.free();
@@ -238,11 +262,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// [`Elimination::reduce`] of the unit row of `variable`.
     pub(crate) fn reduce_unit(&self, variable: usize, y: &mut [T; N]) {
         y.fill(T::ZERO);
-        if self.rank == 0 {
-            put(y, variable, T::ONE);
-            return;
-        }
-        let column = self.perm.iter().position(|v| *v == variable).unwrap_or(N);
+        let column = at(&self.place, variable);
         if column >= self.rank {
             put(y, column - self.rank, T::ONE);
         } else if column >= self.fixed {
@@ -250,34 +270,33 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
-    /// z ← Z y: the displacement of x that belongs to a displacement y of the free variables.
+    /// Completes a displacement whose free part is set: z_B ← −W z_F. `y` is scratch.
     #[inline]
-    pub(crate) fn expand(&self, y: &[T; N], z: &mut [T; N]) {
+    pub(crate) fn complete(&self, z: &mut [T; N], y: &mut [T; N]) {
         if self.rank == 0 {
-            *z = *y;
             return;
         }
-        let free = self.free();
-        for (v, y) in self.free_vars().iter().zip(y) {
-            put(z, *v, *y);
+        for v in self.perm.iter().take(self.fixed) {
+            put(z, *v, T::ZERO);
         }
-        let y = head(y, free);
-        for (k, (w, v)) in self.lu.iter().zip(&self.perm).take(self.rank).enumerate() {
-            let s = if k < self.fixed {
-                T::ZERO
-            } else {
-                -dot(span(w, self.rank, N), y)
-            };
-            put(z, *v, s);
+        if self.has_basic() {
+            for (y, v) in y.iter_mut().zip(self.free_variables()) {
+                *y = at(z.as_slice(), *v);
+            }
+            let y = head(y, self.free());
+            let basic = self.lu.iter().zip(&self.perm).take(self.rank);
+            for (w, v) in basic.skip(self.fixed) {
+                put(z, *v, -dot(span(w, self.rank, N), y));
+            }
         }
     }
 
     /// x_B ← p − W x_F.
     pub(crate) fn restore(&self, x: &mut [T; N], y: &mut [T; N]) {
-        if self.rank == 0 {
+        if !self.has_basic() {
             return;
         }
-        for (y, v) in y.iter_mut().zip(self.free_vars()) {
+        for (y, v) in y.iter_mut().zip(self.free_variables()) {
             *y = at(x.as_slice(), *v);
         }
         let y = head(y, self.free());
@@ -308,21 +327,21 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
             return;
         }
-        for (i, (o, v)) in out.iter_mut().zip(self.free_vars()).enumerate() {
+        for (i, (o, v)) in out.iter_mut().zip(self.free_variables()).enumerate() {
             let hv = row(h, *v);
-            for (o, w) in o.iter_mut().zip(self.free_vars()).skip(i) {
+            for (o, w) in o.iter_mut().zip(self.free_variables()).skip(i) {
                 *o = at(hv, *w);
             }
             span_mut(o, free, ceil4(free, N)).fill(T::ZERO);
         }
-        for (m, v) in magnitude.iter_mut().zip(self.free_vars()) {
+        for (m, v) in magnitude.iter_mut().zip(self.free_variables()) {
             *m = at(row(h, *v), *v);
         }
         // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W, one row of C and W at a time.
         let rows = self.lu.iter().zip(&self.perm).take(rank).skip(self.fixed);
         for (w, v) in rows {
             let hv = row(h, *v);
-            for (c, f) in scratch.iter_mut().zip(self.free_vars()) {
+            for (c, f) in scratch.iter_mut().zip(self.free_variables()) {
                 *c = at(hv, *f);
             }
             let others = self.lu.iter().zip(&self.perm).take(rank).skip(self.fixed);

@@ -142,16 +142,6 @@ pub(crate) fn sub_scaled_pair<T: Scalar>(y: &mut [T], f: T, a: &[T], g: T, b: &[
     }
 }
 
-/// Σ wᵢ aᵢ bᵢ.
-#[inline(always)]
-pub(crate) fn weighted_dot<T: Scalar>(w: &[T], a: &[T], b: &[T]) -> T {
-    let mut s = T::ZERO;
-    for ((w, a), b) in w.iter().zip(a).zip(b) {
-        s += *w * *a * *b;
-    }
-    s
-}
-
 /// max |aᵢ| (NaN entries are skipped).
 #[inline(always)]
 pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {

@@ -1,7 +1,7 @@
 //! The quadratic program as the caller states it.
 
 use crate::Error;
-use crate::kernels::{all_finite, at, max_abs, row};
+use crate::kernels::{all_finite, at, dot, max_abs, row, span, span_mut};
 use so3::{Scalar, math};
 
 /// A convex quadratic program with N variables and M two-sided rows:
@@ -26,6 +26,8 @@ pub struct Problem<'a, T, const N: usize, const M: usize> {
     pub lower: Option<&'a [T; N]>,
     /// ub, +∞ for none; `None` when no variable has an upper bound.
     pub upper: Option<&'a [T; N]>,
+    /// Per row the columns `from..to` outside of which it is zero; `None` when rows are full.
+    pub spans: Option<&'a [[usize; 2]; M]>,
 }
 
 impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
@@ -45,7 +47,16 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
             row_upper,
             lower: None,
             upper: None,
+            spans: None,
         }
+    }
+
+    /// The same problem with rows that are zero outside of columns `from..to`, which saves looking there: the numbers outside are
+    /// not read during the search.
+    #[must_use]
+    pub const fn with_spans(mut self, spans: &'a [[usize; 2]; M]) -> Self {
+        self.spans = Some(spans);
+        self
     }
 
     /// The same problem with lb ≤ x ≤ ub.
@@ -79,11 +90,22 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         }
     }
 
+    /// First column and entries of row `i` < M that may not be zero.
+    #[inline(always)]
+    pub(crate) fn entries(&self, i: usize) -> (usize, &'a [T]) {
+        let row = row(self.rows, i);
+        match self.spans.and_then(|spans| spans.get(i)) {
+            None => (0, row),
+            Some([from, to]) => (*from, span(row, *from, *to)),
+        }
+    }
+
     /// aᵢᵀx of row `i` (i < M) or x of variable `i − M`.
     #[inline(always)]
     pub(crate) fn value(&self, i: usize, x: &[T; N]) -> T {
         if i < M {
-            crate::kernels::dot(row(self.rows, i), x)
+            let (from, a) = self.entries(i);
+            dot(a, span(x, from, N))
         } else {
             at(x, i - M)
         }
@@ -93,7 +115,8 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
     #[inline(always)]
     pub(crate) fn add_row(&self, i: usize, f: T, y: &mut [T; N]) {
         if i < M {
-            crate::kernels::sub_scaled(y, -f, row(self.rows, i));
+            let (from, a) = self.entries(i);
+            crate::kernels::sub_scaled(span_mut(y, from, N), -f, a);
         } else if let Some(e) = y.get_mut(i - M) {
             *e += f;
         }

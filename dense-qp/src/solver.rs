@@ -7,7 +7,7 @@
 //! falls, the rows contradict each other. Each full step raises the dual cost, so no active set
 //! repeats (Goldfarb and Idnani 1983; the LDLᵀ form of the same idea is in Arnström et al. 2022).
 
-use crate::kernels::{at, dot, max_abs, put, row};
+use crate::kernels::{at, dot, head, head_mut, max_abs, put};
 use crate::residual::{infeasibility, kkt_residual, worse};
 use crate::settings::row_tolerance;
 use crate::workspace::POOL;
@@ -92,13 +92,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         self.s.validate()?;
         let w = &mut *self.w;
         let seeds = w.basis.len.min(N);
-        w.basis.clear(0);
-        // A workspace left by bad data may hold NaN, which zero coefficients would not silence.
-        w.vec_a.fill(T::ZERO);
-        w.vec_b.fill(T::ZERO);
-        w.lambda.fill(T::ZERO);
-        w.candidate.l.fill(T::ZERO);
-        w.candidate.q.fill(T::ZERO);
+        w.basis.clear();
         w.row_scale_inverse.fill(T::ZERO);
         w.row_state.fill(0);
         w.bound_state.fill(0);
@@ -131,10 +125,14 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             &mut w.vec_a,
         );
         w.factor.factorise(max_abs(self.p.gradient))?;
-        w.basis.clear(w.factor.dim);
         w.elimination.particular(&mut w.x);
+        if w.elimination.rank == 0 {
+            // x is zero.
+            w.gradient = *self.p.gradient;
+        } else {
+            self.evaluate_gradient();
+        }
         self.seed(seeds);
-        self.evaluate_gradient();
         self.outer()
     }
 
@@ -148,7 +146,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
                 continue;
             }
             self.prepare(id, side);
-            if self.w.candidate.d > T::ZERO {
+            if self.w.candidate.free > T::ZERO {
+                self.turn();
                 self.enter(id, side, T::ZERO);
             }
         }
@@ -252,37 +251,49 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     fn correct(&mut self) {
         let w = &mut *self.w;
         w.elimination.reduce(&w.gradient, &mut w.vec_a);
-        w.factor.solve_transposed(&mut w.vec_a);
-        w.factor.weigh(&mut w.vec_a);
-        w.factor.solve(&mut w.vec_a);
-        self.move_along(T::ONE);
-        if self.w.basis.len > 0 {
+        if w.basis.len == 0 {
+            w.factor.solve_transposed(&mut w.vec_a);
+            w.factor.weigh(&mut w.vec_a);
+            w.factor.solve(&mut w.vec_a);
+            for (v, y) in w.elimination.free_variables().iter().zip(&w.vec_a) {
+                put(&mut w.step, *v, *y);
+            }
+            self.move_along_step();
+        } else {
+            // In coordinates y of J: y₁ meets the active rows, y₂ is the gradient's own, and the multipliers take the rest.
+            w.candidate.d.fill(T::ZERO);
+            for (i, g) in w.vec_a.iter().enumerate().take(w.factor.dim) {
+                w.basis.add_coordinates(i, *g, &mut w.candidate.d);
+            }
             for k in 0..self.w.basis.len {
                 let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
                 let e = self.excess(id, side);
                 put(&mut self.w.vec_b, k, e);
             }
             let w = &mut *self.w;
-            w.basis.solve_scaled(&mut w.vec_b);
-            w.basis.combine(&w.vec_b, &mut w.vec_a);
             w.basis.solve_transposed(&mut w.vec_b);
-            for (l, d) in w.lambda.iter_mut().zip(&w.vec_b).take(w.basis.len) {
-                *l += *d;
+            let rows = w.candidate.d.iter_mut().zip(&mut w.vec_b);
+            for (d, y) in rows.take(w.basis.len) {
+                (*d, *y) = (*y, *y - *d);
             }
-            w.factor.weigh(&mut w.vec_a);
-            w.factor.solve(&mut w.vec_a);
-            self.move_along(T::ONE);
+            w.basis.solve(&mut w.vec_b);
+            for (l, change) in w.lambda.iter_mut().zip(&w.vec_b).take(w.basis.len) {
+                *l += *change;
+            }
+            let free = w.elimination.free_variables();
+            w.basis.direction(0, &w.candidate.d, free, &mut w.step);
+            self.move_along_step();
             self.drop_negative();
         }
         // Far excursions (large proximal steps) leave round-off in the equalities.
         self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
     }
 
-    /// x ← x − t·Z·vec_a.
-    fn move_along(&mut self, t: T) {
+    /// x ← x − step, whose free part is set.
+    fn move_along_step(&mut self) {
         let w = &mut *self.w;
-        w.elimination.expand(&w.vec_a, &mut w.step);
-        crate::kernels::sub_scaled(&mut w.x, t, &w.step);
+        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        crate::kernels::sub_scaled(&mut w.x, T::ONE, &w.step);
     }
 
     fn drop_negative(&mut self) {
@@ -299,45 +310,76 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             self.leave(k);
             // The multiplier returns to zero along the direction that leaves the other rows met.
             self.prepare(id, side);
-            self.directions();
+            self.answer();
+            self.turn();
             self.advance(-value);
         }
     }
 
-    /// Transforms a row and splits it into its part along the active rows and the rest.
+    /// Coordinates of a row in the basis.
     fn prepare(&mut self, id: usize, side: i8) {
         let w = &mut *self.w;
-        let scale = scale_inverse::<T, N, M>(self.p, w, id);
-        let q = &mut w.candidate.q;
-        if id < M {
-            w.elimination
-                .reduce(crate::kernels::row(self.p.rows, id), q);
-        } else {
-            w.elimination.reduce_unit(id - M, q);
-        }
+        w.basis.prepare(&w.factor);
+        head_mut(&mut w.candidate.d, w.factor.dim).fill(T::ZERO);
         // What is left of a row that depends on the equalities is round-off, not a row.
-        if w.elimination.rank > 0 && max_abs(q) * scale <= row_tolerance::<T>() {
-            q.fill(T::ZERO);
-        }
-        if side < 0 {
-            for v in q.iter_mut() {
-                *v = -*v;
+        let least = if w.elimination.rank == 0 {
+            T::ZERO
+        } else {
+            row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
+        };
+        let sign = signed(side, T::ONE);
+        let (basis, d) = (&w.basis, &mut w.candidate.d);
+        if w.elimination.has_basic() {
+            if id < M {
+                w.elimination
+                    .reduce(crate::kernels::row(self.p.rows, id), &mut w.vec_a);
+            } else {
+                w.elimination.reduce_unit(id - M, &mut w.vec_a);
             }
+            let reduced = head(&w.vec_a, w.factor.dim);
+            if max_abs(reduced) > least {
+                for (i, a) in reduced.iter().enumerate() {
+                    if *a != T::ZERO {
+                        basis.add_coordinates(i, sign * *a, d);
+                    }
+                }
+            }
+        } else if id < M {
+            let (from, row) = self.p.entries(id);
+            let entries = || {
+                let entries = row.iter().enumerate();
+                entries.filter_map(|(k, a)| Some((w.elimination.free_index(from + k)?, *a)))
+            };
+            let seen = least == T::ZERO || entries().any(|(_, a)| math::abs(a) > least);
+            for (i, a) in entries() {
+                if seen && a != T::ZERO {
+                    basis.add_coordinates(i, sign * a, d);
+                }
+            }
+        } else if let Some(i) = w.elimination.free_index(id - M) {
+            basis.add_coordinates(i, sign, d);
         }
-        w.factor.solve_transposed(q);
-        w.basis.project(&w.factor.weight, &mut w.candidate);
+        let w = &mut *self.w;
+        w.basis.project(&mut w.candidate);
     }
 
-    /// r (in `vec_b`) and z (in `step`) of the candidate.
-    fn directions(&mut self) {
+    /// r (in `vec_b`) of the candidate.
+    fn answer(&mut self) {
         let w = &mut *self.w;
-        w.vec_b = w.candidate.l;
-        w.basis.solve_transposed(&mut w.vec_b);
-        if w.candidate.d > T::ZERO {
-            w.vec_a = w.candidate.q;
-            w.factor.weigh(&mut w.vec_a);
-            w.factor.solve(&mut w.vec_a);
-            w.elimination.expand(&w.vec_a, &mut w.step);
+        for (r, d) in w.vec_b.iter_mut().zip(&w.candidate.d).take(w.basis.len) {
+            *r = *d;
+        }
+        w.basis.solve(&mut w.vec_b);
+    }
+
+    /// z (in `step`) of the candidate.
+    fn turn(&mut self) {
+        let w = &mut *self.w;
+        if w.candidate.free > T::ZERO {
+            let free = w.elimination.free_variables();
+            w.basis
+                .direction(w.basis.len, &w.candidate.d, free, &mut w.step);
+            w.elimination.complete(&mut w.step, &mut w.vec_a);
         } else {
             w.step.fill(T::ZERO);
         }
@@ -357,7 +399,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     fn enter(&mut self, id: usize, side: i8, lambda: T) {
         let w = &mut *self.w;
         let k = w.basis.len;
-        w.basis.append(&w.candidate);
+        w.basis.append(&mut w.candidate, &w.elimination, &w.step);
         put(&mut w.id, k, id);
         put(&mut w.side, k, side);
         put(&mut w.lambda, k, lambda);
@@ -398,11 +440,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         // An infinite entry may satisfy a row that has no limit on that side.
         let mut sum = T::ZERO;
         let limits = self.p.row_lower.iter().zip(self.p.row_upper);
-        for (i, (a, (l, u))) in self.p.rows.iter().zip(limits).enumerate() {
+        for (i, (l, u)) in limits.enumerate() {
             if at(&self.w.row_state, i) != 0 {
                 continue;
             }
-            let v = dot(a, &self.w.x);
+            let v = self.p.value(i, &self.w.x);
             sum += v;
             // False for a NaN anywhere.
             if v <= *u && v >= *l {
@@ -516,7 +558,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
                     return Pass::Stop(Status::Limit);
                 }
                 self.iterations += 1;
-                self.directions();
+                self.answer();
+                self.turn();
                 // The first multiplier to reach zero.
                 let mut blocking = None;
                 let mut t = T::INFINITY;
@@ -531,7 +574,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
                         }
                     }
                 }
-                let d = w.candidate.d;
+                let d = w.candidate.free;
                 let full = if d > T::ZERO {
                     self.excess(id, side) / d
                 } else {
@@ -576,6 +619,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         w.bound_multipliers.fill(T::ZERO);
         w.x.fill(T::ZERO);
         w.factor.dim = 0;
+        w.basis.clear();
         set_multiplier(w, id, if positive { T::ONE } else { -T::ONE });
         self.prove()
     }
@@ -777,7 +821,7 @@ fn scale_inverse<T: Scalar, const N: usize, const M: usize>(
         return T::ONE;
     };
     if *known == T::ZERO {
-        let size = max_abs(row(problem.rows, id));
+        let size = max_abs(problem.entries(id).1);
         *known = if size > T::ZERO {
             T::ONE / size
         } else {
