@@ -34,6 +34,7 @@ pub(crate) struct Data<T, const V: usize, const M: usize> {
     hessian: [[T; V]; V],
     gradient: [T; V],
     rows: [[T; V]; M],
+    spans: [[usize; 2]; M],
     row_lower: [T; M],
     row_upper: [T; M],
     lower: [T; V],
@@ -46,6 +47,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             hessian: [[T::ZERO; V]; V],
             gradient: [T::ZERO; V],
             rows: [[T::ZERO; V]; M],
+            spans: [[0; 2]; M],
             row_lower: [T::ZERO; M],
             row_upper: [T::ZERO; M],
             lower: [T::ZERO; V],
@@ -121,6 +123,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             &self.row_upper,
         )
         .with_bounds(&self.lower, &self.upper)
+        .with_spans(&self.spans)
     }
 
     /// Writes the rows: four of friction per foot, then one per joint.
@@ -132,38 +135,51 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
         max_torques: &[T; N],
     ) {
         let limits = self.row_lower.iter_mut().zip(self.row_upper.iter_mut());
-        let mut rows = self.rows.iter_mut().zip(limits);
-        for foot in 0..F {
-            for (axis, sign) in [(0, T::ONE), (0, -T::ONE), (1, T::ONE), (1, -T::ONE)] {
-                // sign f_axis − μ f_z ≤ 0
-                let Some((row, (low, high))) = rows.next() else {
+        let shapes = self.rows.iter_mut().zip(&mut self.spans);
+        let mut rows = shapes.zip(limits);
+        for (i, foot) in feet.iter().enumerate() {
+            let (one, zero, mu) = (T::ONE, T::ZERO, settings.friction);
+            // ± f_x − μ f_z ≤ 0 and ± f_y − μ f_z ≤ 0; nothing to say of a foot in the air.
+            for values in [
+                [one, zero, -mu],
+                [-one, zero, -mu],
+                [zero, one, -mu],
+                [zero, -one, -mu],
+            ] {
+                let Some(((row, span), (low, high))) = rows.next() else {
                     return;
                 };
+                (*low, *high) = (-T::INFINITY, T::ZERO);
                 *row = [T::ZERO; V];
-                for (i, x) in row.iter_mut().skip(3 * foot).take(3).enumerate() {
-                    if i == axis {
-                        *x = sign;
-                    } else if i == 2 {
-                        *x = -settings.friction;
+                *span = [0; 2];
+                if foot.in_contact {
+                    *span = [3 * i, 3 * i + 3];
+                    for (slot, value) in row.iter_mut().skip(3 * i).zip(values) {
+                        *slot = value;
                     }
                 }
-                (*low, *high) = (-T::INFINITY, T::ZERO);
             }
         }
         for (other, most) in other_torques.iter().zip(max_torques) {
-            let Some((row, (low, high))) = rows.next() else {
+            let Some(((row, span), (low, high))) = rows.next() else {
                 return;
             };
             *row = [T::ZERO; V];
+            *span = [0; 2];
             // Where the other torques alone use up the joint, zero force must remain possible.
             *low = so3::math::min(-*most - *other, T::ZERO);
             *high = so3::math::max(*most - *other, T::ZERO);
         }
-        for (i, foot) in feet.iter().enumerate() {
+        for (i, foot) in feet.iter().enumerate().filter(|(_, foot)| foot.in_contact) {
             for (j, column) in foot.end_w.columns() {
                 let row = self.rows.get_mut(4 * F + j);
-                if let Some(triple) = row.and_then(|row| row.get_mut(3 * i..3 * i + 3)) {
+                let triple = row.and_then(|row| row.get_mut(3 * i..3 * i + 3));
+                if let (Some(triple), Some(span)) = (triple, self.spans.get_mut(4 * F + j)) {
                     triple.copy_from_slice((-column).as_slice());
+                    *span = match *span {
+                        [0, 0] => [3 * i, 3 * i + 3],
+                        [from, _] => [from, 3 * i + 3],
+                    };
                 }
             }
         }
