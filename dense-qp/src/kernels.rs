@@ -29,6 +29,16 @@ pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     ((s[0] + s[2]) + (s[1] + s[3])) + rest
 }
 
+/// Σ aᵢxᵢ over columns `from..to`, few of them: one after the other.
+#[inline(always)]
+pub(crate) fn dot_few<T: Scalar>(a: &[T], x: &[T], from: usize, to: usize) -> T {
+    let mut sum = T::ZERO;
+    for (a, x) in span(a, from, to).iter().zip(span(x, from, to)) {
+        sum += *a * *x;
+    }
+    sum
+}
+
 /// y ← y − f·x.
 #[inline(never)]
 pub(crate) fn sub_scaled<T: Scalar>(y: &mut [T], f: T, x: &[T]) {

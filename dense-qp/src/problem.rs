@@ -1,7 +1,7 @@
 //! The quadratic program as the caller states it.
 
 use crate::Error;
-use crate::kernels::{all_finite, at, dot, max_abs, row, span, span_mut};
+use crate::kernels::{all_finite, at, dot, dot_few, max_abs, row, span, span_mut};
 use so3::{Scalar, math};
 
 /// A convex quadratic program with N variables and M two-sided rows:
@@ -104,10 +104,21 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
     #[inline(always)]
     pub(crate) fn value(&self, i: usize, x: &[T; N]) -> T {
         if i < M {
-            let (from, a) = self.entries(i);
-            dot(a, span(x, from, N))
+            self.row_value(i, row(self.rows, i), x)
         } else {
             at(x, i - M)
+        }
+    }
+
+    /// aᵀx of row `i`, whose entries `a` are.
+    #[inline(always)]
+    pub(crate) fn row_value(&self, i: usize, a: &[T], x: &[T; N]) -> T {
+        match self.spans {
+            None => dot(a, x),
+            Some(spans) => {
+                let [from, to] = at(spans, i);
+                dot_few(a, x, from, to)
+            }
         }
     }
 

@@ -133,6 +133,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             self.evaluate_gradient();
         }
         self.seed(seeds);
+        self.drop_unfit();
         self.outer()
     }
 
@@ -260,23 +261,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             }
             self.move_along_step();
         } else {
-            // In coordinates y of J: y₁ meets the active rows, y₂ is the gradient's own, and the multipliers take the rest.
-            w.candidate.d.fill(T::ZERO);
-            for (i, g) in w.vec_a.iter().enumerate().take(w.factor.dim) {
-                w.basis.add_coordinates(i, *g, &mut w.candidate.d);
-            }
-            for k in 0..self.w.basis.len {
-                let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-                let e = self.excess(id, side);
-                put(&mut self.w.vec_b, k, e);
-            }
+            self.newton();
             let w = &mut *self.w;
-            w.basis.solve_transposed(&mut w.vec_b);
-            let rows = w.candidate.d.iter_mut().zip(&mut w.vec_b);
-            for (d, y) in rows.take(w.basis.len) {
-                (*d, *y) = (*y, *y - *d);
-            }
-            w.basis.solve(&mut w.vec_b);
             for (l, change) in w.lambda.iter_mut().zip(&w.vec_b).take(w.basis.len) {
                 *l += *change;
             }
@@ -287,6 +273,50 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
         // Far excursions (large proximal steps) leave round-off in the equalities.
         self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
+    }
+
+    /// The step towards the stationary point with all active rows met, as coordinates y of J in the candidate, and the change of the
+    /// multipliers in `vec_b`; from `gradient`, reduced in `vec_a`. y₁ meets the active rows, y₂ is the gradient's own, and the
+    /// multipliers take the rest.
+    fn newton(&mut self) {
+        let w = &mut *self.w;
+        w.candidate.d.fill(T::ZERO);
+        for (i, g) in w.vec_a.iter().enumerate().take(w.factor.dim) {
+            w.basis.add_coordinates(i, *g, &mut w.candidate.d);
+        }
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let e = self.excess(id, side);
+            put(&mut self.w.vec_b, k, e);
+        }
+        let w = &mut *self.w;
+        w.basis.solve_transposed(&mut w.vec_b);
+        let rows = w.candidate.d.iter_mut().zip(&mut w.vec_b);
+        for (d, y) in rows.take(w.basis.len) {
+            (*d, *y) = (*y, *y - *d);
+        }
+        w.basis.solve(&mut w.vec_b);
+    }
+
+    /// Remembered rows that would pull instead of push leave before the search, all at once: one by one, each would cost a step.
+    fn drop_unfit(&mut self) {
+        for _ in 0..3 {
+            if self.w.basis.len == 0 {
+                return;
+            }
+            let w = &mut *self.w;
+            w.elimination.reduce(&w.gradient, &mut w.vec_a);
+            self.newton();
+            let before = self.w.basis.len;
+            for k in (0..before).rev() {
+                if at(&self.w.vec_b, k) < T::ZERO {
+                    self.leave(k);
+                }
+            }
+            if self.w.basis.len == before {
+                return;
+            }
+        }
     }
 
     /// x ← x − step, whose free part is set.
@@ -346,14 +376,13 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             }
         } else if id < M {
             let (from, row) = self.p.entries(id);
-            let entries = || {
-                let entries = row.iter().enumerate();
-                entries.filter_map(|(k, a)| Some((w.elimination.free_index(from + k)?, *a)))
-            };
-            let seen = least == T::ZERO || entries().any(|(_, a)| math::abs(a) > least);
-            for (i, a) in entries() {
-                if seen && a != T::ZERO {
-                    basis.add_coordinates(i, sign * a, d);
+            let free = |k: usize| w.elimination.free_index(from + k);
+            let large = |(k, a): (usize, &T)| math::abs(*a) > least && free(k).is_some();
+            if least == T::ZERO || row.iter().enumerate().any(large) {
+                for (k, a) in row.iter().enumerate() {
+                    if let (true, Some(i)) = (*a != T::ZERO, free(k)) {
+                        basis.add_coordinates(i, sign * *a, d);
+                    }
                 }
             }
         } else if let Some(i) = w.elimination.free_index(id - M) {
@@ -440,11 +469,11 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         // An infinite entry may satisfy a row that has no limit on that side.
         let mut sum = T::ZERO;
         let limits = self.p.row_lower.iter().zip(self.p.row_upper);
-        for (i, (l, u)) in limits.enumerate() {
+        for (i, (a, (l, u))) in self.p.rows.iter().zip(limits).enumerate() {
             if at(&self.w.row_state, i) != 0 {
                 continue;
             }
-            let v = self.p.value(i, &self.w.x);
+            let v = self.p.row_value(i, a, &self.w.x);
             sum += v;
             // False for a NaN anywhere.
             if v <= *u && v >= *l {
@@ -454,11 +483,8 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
         }
         if self.p.lower.is_some() || self.p.upper.is_some() {
             for i in 0..N {
-                if at(&self.w.bound_state, i) != 0 {
-                    continue;
-                }
                 let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
-                if v <= u && v >= l {
+                if (v <= u && v >= l) || at(&self.w.bound_state, i) != 0 {
                     continue;
                 }
                 sound &= self.judge(M + i, v, l, u, &mut excess);

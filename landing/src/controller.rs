@@ -173,8 +173,11 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         // Stance joints carry, beside −Jᵀf, the gravity of the legs, and damp.
         let gravity = generalized_gravity(model, posture).joints;
         let mut other = [T::ZERO; N];
-        let stance = feet.iter().filter(|foot| foot.in_contact);
-        for (j, _) in stance.flat_map(|foot| foot.end_w.columns()) {
+        let stance = || {
+            let feet = limbs.ends.iter().zip(contacts);
+            feet.filter(|(_, on)| **on).map(|(end, _)| end)
+        };
+        for (j, _) in stance().flat_map(rbd_core::LimbEnd::columns) {
             let slots = command.feed_forward.get_mut(j).zip(other.get_mut(j));
             let gains = command.stiffness.get_mut(j).zip(command.damping.get_mut(j));
             let known = gravity.get(j).zip(velocity.joints.get(j));
@@ -187,11 +190,10 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         }
         let limits = (&other, &self.max_torques);
         let Workspace { data, qp } = workspace;
-        (command.forces_w, command.outcome) = data.solve(s, &feet, &wanted, limits, qp);
-        for (foot, force) in feet.iter().zip(&command.forces_w) {
-            if foot.in_contact {
-                foot.end_w.add_tr_mul(&-force, &mut command.feed_forward);
-            }
+        (command.forces_w, command.outcome) = data.solve(s, &feet, limbs, &wanted, limits, qp);
+        let forces_w = command.forces_w.iter().zip(contacts);
+        for (end, (force, _)) in stance().zip(forces_w.filter(|(_, on)| **on)) {
+            end.add_tr_mul(&-(rot_wb.inverse() * force), &mut command.feed_forward);
         }
         command
     }
@@ -250,21 +252,19 @@ fn look_at_feet<T: Scalar, const N: usize, const F: usize>(
     limbs: &Limbs<T, N, F>,
     com_w: &Vector3<T>,
     contacts: &[bool; F],
-) -> ([FootData<T, N>; F], Vector3<T>) {
+) -> ([FootData<T>; F], Vector3<T>) {
     let base = limbs.posture.base();
-    let mut on = contacts.iter();
-    let feet = limbs.ends.each_ref().map(|end| {
-        let end_w = end.turned(&base.rotation);
-        FootData {
-            in_contact: on.next().copied().unwrap_or(false),
-            arm_w: end_w.position + (base.translation - com_w),
-            end_w,
-        }
-    });
+    let from_com = base.translation - com_w;
+    let mut feet = [FootData {
+        in_contact: false,
+        arm_w: Vector3::zeros(),
+    }; F];
     let (mut sum, mut low, mut count) = (Vector3::zeros(), T::ZERO, T::ZERO);
-    for foot in &feet {
+    for ((foot, end), on) in feet.iter_mut().zip(&limbs.ends).zip(contacts) {
+        foot.in_contact = *on;
+        foot.arm_w = base.rotation * end.position + from_com;
         sum += foot.arm_w;
-        if foot.in_contact {
+        if *on {
             low += foot.arm_w.z;
             count += T::ONE;
         }

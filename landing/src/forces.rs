@@ -6,19 +6,21 @@
 
 use dense_qp::{Problem, Status, solve_warm};
 use nalgebra::{Matrix3, Vector3};
-use rbd_core::LimbEnd;
+use rbd_core::Limbs;
 use so3::Scalar;
 
 use crate::{Outcome, Settings};
 
+/// Rows that enter or leave in one solve. A tick that needs more ends with forces that keep every limit, and the next goes on from its
+/// rows.
+const MAX_ITERATIONS: u32 = 40;
+
 /// What the QP needs to know of one foot.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FootData<T: Scalar, const N: usize> {
+pub(crate) struct FootData<T: Scalar> {
     pub(crate) in_contact: bool,
     /// From the centre of mass to the foot, world axes.
     pub(crate) arm_w: Vector3<T>,
-    /// Position relative to the base, and Jacobian, world axes.
-    pub(crate) end_w: LimbEnd<T, N>,
 }
 
 /// Wrench about the centre of mass that the forces are to make.
@@ -39,6 +41,8 @@ pub(crate) struct Data<T, const V: usize, const M: usize> {
     row_upper: [T; M],
     lower: [T; V],
     upper: [T; V],
+    /// Whether other feet are in contact than in the program before.
+    regrouped: bool,
 }
 
 impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
@@ -52,14 +56,15 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             row_upper: [T::ZERO; M],
             lower: [T::ZERO; V],
             upper: [T::ZERO; V],
+            regrouped: false,
         }
     }
 
     /// Writes H, g and the bounds of the feet.
-    fn write_cost<const N: usize, const F: usize>(
+    fn write_cost<const F: usize>(
         &mut self,
         settings: &Settings<T>,
-        feet: &[FootData<T, N>; F],
+        feet: &[FootData<T>; F],
         wanted: &Wrench<T>,
     ) {
         let (force, moment) = (settings.force_weight, settings.moment_weight);
@@ -86,6 +91,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
                 }
             }
         }
+        self.regrouped = false;
         let limits = self.lower.chunks_mut(3).zip(self.upper.chunks_mut(3));
         for ((gradient, (lower, upper)), foot) in self.gradient.chunks_mut(3).zip(limits).zip(feet)
         {
@@ -98,6 +104,7 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             } else {
                 ([T::ZERO; 3], [T::ZERO; 3])
             };
+            self.regrouped |= upper.last() != high.last();
             gradient.copy_from_slice((-pull).as_slice());
             lower.copy_from_slice(&low);
             upper.copy_from_slice(&high);
@@ -130,7 +137,8 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
     fn write_rows<const N: usize, const F: usize>(
         &mut self,
         settings: &Settings<T>,
-        feet: &[FootData<T, N>; F],
+        feet: &[FootData<T>; F],
+        limbs: &Limbs<T, N, F>,
         other_torques: &[T; N],
         max_torques: &[T; N],
     ) {
@@ -170,12 +178,14 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
             *low = so3::math::min(-*most - *other, T::ZERO);
             *high = so3::math::max(*most - *other, T::ZERO);
         }
-        for (i, foot) in feet.iter().enumerate().filter(|(_, foot)| foot.in_contact) {
-            for (j, column) in foot.end_w.columns() {
+        let rot_wb = &limbs.posture.base().rotation;
+        let ends = limbs.ends.iter().zip(feet).enumerate();
+        for (i, (end, _)) in ends.filter(|(_, (_, foot))| foot.in_contact) {
+            for (j, column) in end.columns() {
                 let row = self.rows.get_mut(4 * F + j);
                 let triple = row.and_then(|row| row.get_mut(3 * i..3 * i + 3));
                 if let (Some(triple), Some(span)) = (triple, self.spans.get_mut(4 * F + j)) {
-                    triple.copy_from_slice((-column).as_slice());
+                    triple.copy_from_slice((-(rot_wb * column)).as_slice());
                     *span = match *span {
                         [0, 0] => [3 * i, 3 * i + 3],
                         [from, _] => [from, 3 * i + 3],
@@ -189,33 +199,35 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
     pub(crate) fn solve<const N: usize, const F: usize>(
         &mut self,
         settings: &Settings<T>,
-        feet: &[FootData<T, N>; F],
+        feet: &[FootData<T>; F],
+        limbs: &Limbs<T, N, F>,
         wanted: &Wrench<T>,
         torques: (&[T; N], &[T; N]),
         workspace: &mut dense_qp::Workspace<T, V, M>,
     ) -> ([Vector3<T>; F], Outcome) {
         self.write_cost(settings, feet, wanted);
-        self.write_rows(settings, feet, torques.0, torques.1);
+        self.write_rows(settings, feet, limbs, torques.0, torques.1);
         let problem = self.problem();
         let mut forces = [Vector3::zeros(); F];
         let options = dense_qp::Settings {
-            max_iterations: 200,
+            max_iterations: MAX_ITERATIONS,
             ..dense_qp::Settings::default()
         };
+        // Other feet share the load anew: the active rows of before would mostly have to leave one by one.
+        if self.regrouped {
+            workspace.forget();
+        }
         let Ok(solution) = solve_warm(&problem, &options, workspace) else {
             return (forces, Outcome::BadData);
         };
-        let clipped = solution.x.iter().zip(self.lower.iter().zip(&self.upper));
-        let mut numbers = clipped.map(|(x, (l, u))| {
-            if x.is_finite_number() {
-                so3::math::clamp(*x, *l, *u)
-            } else {
-                T::ZERO
-            }
-        });
+        let mut numbers = solution.x.iter();
         for force in &mut forces {
-            for x in force.iter_mut() {
-                *x = numbers.next().unwrap_or(T::ZERO);
+            for (x, number) in force.iter_mut().zip(numbers.by_ref()) {
+                *x = if number.is_finite_number() {
+                    *number
+                } else {
+                    T::ZERO
+                };
             }
         }
         let outcome = if solution.status == Status::Solved {
@@ -223,6 +235,42 @@ impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
         } else {
             Outcome::Failed(solution.status)
         };
+        self.clip(&mut forces);
+        if !matches!(outcome, Outcome::Solved(_)) {
+            self.shorten(settings.friction, &mut forces);
+        }
         (forces, outcome)
+    }
+
+    /// Brings forces inside friction and torques, which a program that was cut short may leave: first into the pyramid, then shorter
+    /// until the joints can give them. Zero force keeps every row, so some length does.
+    fn shorten<const F: usize>(&self, friction: T, forces: &mut [Vector3<T>; F]) {
+        for force in forces.iter_mut() {
+            let side = friction * force.z;
+            force.x = so3::math::clamp(force.x, -side, side);
+            force.y = so3::math::clamp(force.y, -side, side);
+        }
+        let limits = self.row_lower.iter().zip(&self.row_upper);
+        for (row, (low, high)) in self.rows.iter().zip(limits).skip(4 * F) {
+            for (entries, force) in row.chunks(3).zip(forces.iter_mut()) {
+                let terms = entries.iter().zip(force.iter());
+                let value = terms.fold(T::ZERO, |sum, (a, x)| sum + *a * *x);
+                if value > *high {
+                    *force *= *high / value;
+                } else if value < *low {
+                    *force *= *low / value;
+                }
+            }
+        }
+    }
+
+    /// Clips forces into their bounds, against round-off.
+    fn clip<const F: usize>(&self, forces: &mut [Vector3<T>; F]) {
+        let mut bounds = self.lower.iter().zip(&self.upper);
+        for force in forces {
+            for (x, (low, high)) in force.iter_mut().zip(bounds.by_ref()) {
+                *x = so3::math::clamp(*x, *low, *high);
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! z × (p − o), of a prismatic joint z. Joints that do not move the end have no column, so work with a foot costs the length
 //! of its leg, not the number of joints of the robot.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
 use super::at;
@@ -18,7 +18,7 @@ use crate::tree::Tree;
 /// One end: position and linear Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimbEnd<T: Scalar, const N: usize> {
-    /// Origin of the frame in the axes of the Jacobian, m.
+    /// Origin of the frame relative to the base, base axes, m.
     pub position: Vector3<T>,
     columns: [Vector3<T>; N],
     /// Joints that may move the end: `first..last`.
@@ -56,24 +56,6 @@ impl<T: Scalar, const N: usize> LimbEnd<T, N> {
                 *tau += column.dot(force);
             }
         }
-    }
-
-    /// The same end seen in other axes: p and columns turned by `rot`.
-    #[inline]
-    #[must_use]
-    pub fn turned(&self, rot: &Rotation3<T>) -> Self {
-        let mut turned = Self {
-            position: rot * self.position,
-            columns: [Vector3::zeros(); N],
-            first: self.first,
-            last: self.last,
-        };
-        for (j, column) in self.columns() {
-            if let Some(slot) = turned.columns.get_mut(j) {
-                *slot = rot * column;
-            }
-        }
-        turned
     }
 }
 

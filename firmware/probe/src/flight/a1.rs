@@ -6,7 +6,9 @@ use jump_control::{Measurement, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Tick, Work};
 use landing::{Landing, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{Configuration, Frame, Link, Model, Motion, Tangent, Transform, joint_friction};
+use rbd_core::{
+    Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
+};
 
 use super::digested;
 use super::plan::{self, Planned};
@@ -256,6 +258,7 @@ fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet
     let torques = motors.map(|motor| motor.torque);
     let landing = Landing::<T, 12, 4, 12, 28>::new(*feet, landing::Settings::a1(), torques);
     let mut workspace = Workspace::new();
+    let mut limbs = Limbs::ZERO;
     let stream = &mut Stream::new(2026);
     for k in 0..WILD {
         let base = Transform::new(
@@ -275,12 +278,15 @@ fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet
             ..Target::LEVEL
         };
         let on = core::array::from_fn(|i| (k >> i) & 1 == 0);
-        let input = (&q, &v, &mut workspace);
+        let input = (&q, &v, &mut limbs, &mut workspace);
         digested::<T, _, _, _>(
             recorder,
             SUBJECT,
             input,
-            |(q, v, ws)| landing.step(model, q, v, &on, &target, &q.joints, ws),
+            |(q, v, limbs, ws)| {
+                limbs.update(model, q, feet);
+                landing.step_at(model, limbs, v, &on, &target, &q.joints, ws)
+            },
             |_| "wild landing tick",
         );
     }

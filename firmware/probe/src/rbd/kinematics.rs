@@ -158,9 +158,6 @@ fn limbs<T: Real, R: Recorder, M: Tree<T, N>, const N: usize>(
     let Some(end) = limbs.ends.first() else {
         return;
     };
-    on.call("LimbEnd::turned", (end, &q.base.rotation), |(end, rot)| {
-        end.turned(rot).position
-    });
     let speed = on.call("LimbEnd::mul", (end, joints), |(end, qd)| end.mul(qd));
     on.call("LimbEnd::add_tr_mul", (end, speed), |(end, f)| {
         let mut torques = [T::ZERO; N];

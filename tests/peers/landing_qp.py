@@ -1,0 +1,105 @@
+"""dense-qp beside DAQP (pip) on the landing programs of real runs: same optimum, times, worst instruction counts.
+
+    pip install daqp numpy
+    for t in a1/lateral a1/barrel-roll …; do saltus run $t --json --programs $t.bin; done
+    python tests/peers/landing_qp.py *.bin [--count]
+
+Both solve cold. The two take turns, ROUNDS times over all programs; a program's time is the least of its times. Ours is clocked around the
+call, DAQP's is its own timer (set-up plus solve). With --count the programs that took either side most iterations are run under callgrind,
+and instructions inside `measured` and inside DAQP's `daqp_quadprog` are compared.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import daqp
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROUNDS = 3
+COUNTED = 6
+
+
+def programs(path):
+    data = np.fromfile(path)
+    n, m, count = (int(v) for v in data[:3])
+    at = 3
+    for _ in range(count):
+        parts = []
+        for shape in [(n, n), (n,), (m, n), (m,), (m,), (n,), (n,)]:
+            size = int(np.prod(shape))
+            parts.append(np.ascontiguousarray(data[at : at + size].reshape(shape)))
+            at += size
+        yield parts
+
+
+def stated(h, g, a, lower, upper, least, most):
+    """As DAQP wants it: bounds first, equalities marked."""
+    low = np.maximum(np.concatenate([least, lower]), -1e30)
+    up = np.minimum(np.concatenate([most, upper]), 1e30)
+    sense = np.where(low == up, 5, 0).astype(np.int32)
+    return h, g, a, up, low, sense
+
+
+def by_daqp(problem, settings={}):
+    h, g, a, up, low, sense = problem
+    x, _, flag, info = daqp.solve(h, g, a, up, low, sense.copy(), **settings)
+    return x, flag, info["setup_time"] + info["solve_time"], info["iterations"]
+
+
+def callgrind(command, inside):
+    with tempfile.TemporaryDirectory() as folder:
+        out = f"{folder}/out"
+        tool = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", f"--toggle-collect={inside}"]
+        text = subprocess.run([*tool, *command], capture_output=True, text=True).stderr
+        return int(re.search(r"Collected : (\d+)", text).group(1))
+
+
+def main():
+    count = "--count" in sys.argv
+    files = [f for f in sys.argv[1:] if not f.startswith("--")]
+    build = ["cargo", "build", "--release", "-q", "-p", "dense-qp", "--example", "recorded", "--message-format=json"]
+    built = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    ours = re.search(r'"executable":"([^"]*recorded)"', built).group(1)
+    ok = True
+    print(f"{'programs':24} {'number':>6} {'us ours':>8} {'DAQP':>8} {'ratio':>6}   {'with rows':>9} {'ours':>7} {'DAQP':>7} {'ratio':>6}"
+          f" {'|x-x_DAQP|':>11} {'iterations':>10}")
+    for file in files:
+        stated_all = [stated(*p) for p in programs(file)]
+        times = np.full((len(stated_all), 2), np.inf)
+        answers = None
+        for _ in range(ROUNDS):
+            with tempfile.NamedTemporaryFile() as out:
+                subprocess.run([ours, file, out.name], check=True)
+                answers = np.fromfile(out.name).reshape(len(stated_all), -1)
+            times[:, 0] = np.minimum(times[:, 0], answers[:, -1])
+            off, daqp_iterations = 0.0, []
+            for k, problem in enumerate(stated_all):
+                x, flag, t, iterations = by_daqp(problem)
+                assert flag == 1, (file, k, flag)
+                times[k, 1] = min(times[k, 1], t)
+                off = max(off, np.abs(x - answers[k, :12]).max() / max(1.0, np.abs(x).max()))
+                daqp_iterations.append(iterations)
+        some = answers[:, 12] > 1
+        med, busy = np.median(times, axis=0) * 1e6, np.median(times[some], axis=0) * 1e6
+        print(f"{pathlib.Path(file).stem:24} {len(times):6} {med[0]:8.2f} {med[1]:8.2f} {med[0] / med[1]:6.2f}   {some.sum():9}"
+              f" {busy[0]:7.2f} {busy[1]:7.2f} {busy[0] / busy[1]:6.2f} {off:11.1e} {int(answers[:, 12].max()):10}")
+        ok &= med[0] <= 0.6 * med[1] and off <= 1e-8
+        if count:
+            hard = set(np.argsort(answers[:, 12])[-COUNTED:]) | set(np.argsort(daqp_iterations)[-COUNTED:])
+            both = []
+            for k in sorted(int(k) for k in hard):
+                mine = callgrind([ours, file, "/dev/null", str(k)], "recorded::measured*")
+                code = f"import sys; sys.path[:0]=[{str(pathlib.Path(__file__).parent)!r}]; import landing_qp as q; p=list(q.programs({file!r}))[{k}]; q.by_daqp(q.stated(*p))"
+                both.append((mine / 2, callgrind([sys.executable, "-c", code], "daqp_quadprog")))
+            worst = np.max(both, axis=0)
+            print(f"    instructions at worst: ours {worst[0]:.0f}, DAQP {worst[1]:.0f}, ratio {worst[0] / worst[1]:.2f}")
+            ok &= worst[0] <= worst[1]
+    return 0 if ok else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
