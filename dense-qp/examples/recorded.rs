@@ -11,8 +11,8 @@
     reason = "a measuring program"
 )]
 
+use core::hint::black_box;
 use dense_qp::{Problem, Settings, Solution, Status, Workspace, solve};
-use std::hint::black_box;
 use std::time::Instant;
 
 const N: usize = 12;
