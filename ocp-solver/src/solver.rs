@@ -175,6 +175,17 @@ impl<T: Scalar> Solver<T> {
                 };
             }
             let violation = largest_violation(stages);
+            if violation < run.best.primal {
+                // Where nothing better comes out, this is what the answer is about.
+                run.best = Residual {
+                    primal: violation,
+                    ..run.best
+                };
+                run.best_cost = iterate::merit(stages).cost;
+                for stage in stages.iter_mut() {
+                    stage.best = (stage.state, stage.control);
+                }
+            }
             if violation <= far {
                 break;
             }

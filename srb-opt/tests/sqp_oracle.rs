@@ -68,12 +68,22 @@ fn three_reference_problems() {
 }
 
 /// `cargo test --release -p srb-opt --test sqp_oracle -- --ignored`
-///
-/// `forward` reaches the same cost, but its steps are still 1e-4 after 300 programs; `barrel_box` was not run.
 #[test]
 #[ignore = "minutes"]
 fn four_more_reference_problems() {
     for name in ["diagonal", "barrel", "double_barrel", "double_backflip"] {
         agree(TASKS.iter().find(|task| task.name == name).unwrap());
     }
+}
+
+#[test]
+#[ignore = "minutes"]
+fn forward() {
+    agree(TASKS.iter().find(|task| task.name == "forward").unwrap());
+}
+
+#[test]
+#[ignore = "minutes"]
+fn barrel_box() {
+    agree(TASKS.iter().find(|task| task.name == "barrel_box").unwrap());
 }

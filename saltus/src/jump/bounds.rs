@@ -12,6 +12,7 @@
 //! | *sideways* | every axis of a friction pyramid gives at most μ n F, so \|p̈\| ≤ a = μ n F/m while feet stand, for at most T_s; farthest is a at first and coasting then, a T_s (T − T_s/2) |
 //! | *free fall* | see [`free_fall`] |
 //! | *force* | as free fall, upwards with p̈_z ≤ n F/m − g |
+//! | *impulse* | p̈_z ≤ a = n F/m − g while feet stand and −g after, from rest, so p_z rises by at most a T_s²/2 + a T_s T_f − g T_f²/2 in a stance of T_s and a flight of T_f |
 //! | *power* | the joints' work is at most the sum of their largest torque × speed times T_s; losses only take from it; it must lift m g Δz |
 //! | *start* | at the start the velocities vanish: the rotation stays over the first interval and p moves by at most (n F/m + g) dt²/2 |
 //! | *goal* | position and rotation at the end are given: the trunk there must be over the ground |
@@ -39,8 +40,8 @@ const SLACK: f64 = 1e-6;
 /// The first bound that the task breaks.
 pub(crate) fn impossible(task: &Task) -> Option<Impossible> {
     let facts = Facts::of(task);
-    let bounds: [fn(&Task, &Facts) -> Option<Impossible>; 8] = [
-        durations, falling, feet, start, goal, sideways, free_fall, lifting,
+    let bounds: [fn(&Task, &Facts) -> Option<Impossible>; 9] = [
+        durations, falling, feet, start, goal, sideways, free_fall, impulse, lifting,
     ];
     bounds.iter().find_map(|bound| bound(task, &facts))
 }
@@ -322,6 +323,59 @@ fn free_fall(task: &Task, facts: &Facts) -> Option<Impossible> {
     })
 }
 
+/// What lifts the robot: force over the time of the stance. A robot heavier than its feet can push only sinks.
+fn impulse(task: &Task, facts: &Facts) -> Option<Impossible> {
+    if facts.feet == 0.0 || facts.hops {
+        return None;
+    }
+    let problem = &task.problem;
+    let g = problem.gravity;
+    let shortest = |stands: bool| -> f64 {
+        let phases = problem.used_phases().iter();
+        phases
+            .filter(|phase| phase.contacts.contains(&true) == stands)
+            .map(|phase| phase.min_duration)
+            .sum()
+    };
+    // The highest rise with a constant acceleration `a` of the stance: longest where it lifts, shortest where it sinks.
+    let rise = |a: f64| {
+        let stance = if a > 0.0 {
+            facts.stance
+        } else {
+            shortest(true)
+        };
+        let flight = shortest(false).max(a * stance / g);
+        0.5 * a * stance * stance + (a * stance - 0.5 * g * flight) * flight
+    };
+    let most = facts.feet * problem.max_force / problem.mass - g;
+    let wanted = problem.goal_w.z - problem.start_w.z;
+    let missing = wanted - rise(most);
+    (missing > SLACK).then(|| {
+        let (mut low, mut high) = (most, 100.0 * g);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if rise(middle) < wanted {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let force = (low + g) * problem.mass / facts.feet;
+        Impossible {
+            bound: "impulse",
+            because: format!(
+                "{:.0} feet of {:.1} N carry {:.1} N of weight: the centre of mass ends at least {missing:.3} m too low",
+                facts.feet,
+                problem.max_force,
+                problem.mass * g
+            ),
+            relaxation: format!(
+                "the legs would have to push with at least {force:.1} N per foot, or the goal to be {missing:.3} m lower"
+            ),
+        }
+    })
+}
+
 /// What lifts the robot: force over the length of the legs, and power over the time of the stance.
 fn lifting(task: &Task, facts: &Facts) -> Option<Impossible> {
     if facts.hops {
@@ -450,6 +504,10 @@ mod tests {
                 task("a1/double-backflip", |task| {
                     task.fix_timing(&[0.5, 0.33, 0.2]).unwrap();
                 }),
+            ),
+            (
+                "impulse",
+                task("a1/lateral", |task| task.problem.max_force = 30.0),
             ),
             (
                 "force",

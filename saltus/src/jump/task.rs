@@ -407,7 +407,9 @@ fn phase(
                 format!("no foot `{foot}`; there are {known}"),
             )
         })?;
-        contacts[leg] = true;
+        if core::mem::replace(&mut contacts[leg], true) {
+            return Err(("feet".to_owned(), format!("`{foot}` is named twice")));
+        }
     }
     let [shortest, longest] = match table.feet.len() {
         0 => [shortest_flight, DURATIONS[1]],

@@ -23,7 +23,12 @@ pub(crate) struct Args {
     #[arg(required_unless_present_any = ["reference", "problem"], conflicts_with_all = ["reference", "problem", "srb"])]
     task: Option<String>,
     /// Durations of the phases, s: plan with this timing instead of finding the best.
-    #[arg(long, value_delimiter = ',', requires = "task")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        requires = "task",
+        allow_hyphen_values = true
+    )]
     timing: Option<Vec<f64>>,
     /// Plan for the quadruped of this URDF instead of the task's robot: twelve joints, four legs of three below a floating base, one per
     /// quadrant, with effort and speed limits.
