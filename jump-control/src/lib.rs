@@ -10,6 +10,7 @@ pub mod phase;
 pub mod plan;
 pub mod sample;
 pub mod slew;
+pub mod steady;
 pub mod watch;
 mod weigh;
 
@@ -21,5 +22,6 @@ pub use phase::{Event, Phase, TRANSITIONS, next_phase};
 pub use plan::{Node, Plan, PlanError};
 pub use sample::{Reference, Torques, sample};
 pub use slew::Slew;
+pub use steady::Steady;
 pub use watch::{Fault, Measurement, Watch};
 pub use weigh::Scales;

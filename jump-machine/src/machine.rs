@@ -6,7 +6,7 @@ use jump_control::{
 };
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Workspace};
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Limbs, Tangent, Tree};
+use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
 
 use crate::{Jump, Refusal, Settings};
@@ -310,6 +310,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
             Phase::Stance => {
                 let factor = self.scales.factor(jump.weight, s.max_payload);
                 reference.torques = reference.torques.map(|torque| torque * factor);
+                let feet_b = self.limbs.ends.map(|end| end.position);
+                let moment = (then.node, t - measured.age);
+                let mass = jump.weight / T::of(-GRAVITY[2]);
+                let forces = s.steady.forces(&jump.plan, moment, mass, measured, &feet_b);
+                for (end, force) in self.limbs.ends.iter().zip(&forces) {
+                    end.add_tr_mul(&-force, &mut reference.torques);
+                }
             }
             Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
                 let up_b = measured.base.rotation.inverse() * Vector3::z();

@@ -1,6 +1,6 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
-use jump_control::CartesianPd;
+use jump_control::{CartesianPd, Steady};
 use landing::{Detector, PreLanding};
 use rbd_core::{Frame, Motor};
 use so3::Scalar;
@@ -38,6 +38,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub slew: T,
     /// Push-off and flight.
     pub pd: CartesianPd<T, N, F>,
+    /// The base in the push-off.
+    pub steady: Steady<T>,
     /// Touchdown.
     pub detector: Detector<T, N, F>,
     /// Legs before touchdown; its joints are those of legs without ground while no jump is armed.
@@ -71,6 +73,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             safe_damping: T::TWO,
             slew: of(1e4),
             pd: CartesianPd::a1(feet),
+            steady: Steady::a1(),
             detector: Detector::new(feet),
             posture: PreLanding {
                 // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the

@@ -7,7 +7,7 @@ use super::sensors::{Sensors, Told};
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, ROBOT, TRUNK, feet, kinematics};
 use a1_model::{MOTORS, a1};
-use jump_control::{Fault, Phase, Plan, Torques, sample};
+use jump_control::{Fault, Phase, Plan, Steady, Torques, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use landing::Outcome;
 use nalgebra::Vector3;
@@ -127,7 +127,10 @@ pub(crate) fn run_watched(
         landing_joints: reference.landing_joints,
     };
     let mut workspace = landing::Workspace::new();
-    let settings = Settings::a1(feet(), MOTORS, task.start.joints);
+    let mut settings = Settings::a1(feet(), MOTORS, task.start.joints);
+    if disturbance.imu.is_none() {
+        settings.steady = Steady::a1_known_base();
+    }
     let mut machine =
         Machine::<_, _, JOINTS, FOOT_COUNT, 12, 28>::new(&ROBOT, settings, &mut workspace);
     machine
