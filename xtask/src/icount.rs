@@ -8,12 +8,13 @@
 use core::fmt::Write as _;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::thread;
 
 use anyhow::{Context, Result, bail};
 
+use crate::bench::dynamics;
 use crate::run;
 
 #[derive(clap::Args)]
@@ -38,7 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !run::exists("valgrind") {
         run::install_debian(&["valgrind"])?;
     }
-    let counts = measure(&build()?)?;
+    let counts = measure(&dynamics::build(&run::root().join("target/icount"), "")?)?;
     let path = run::root().join(GOLDEN);
     if args.overwrite {
         fs::write(&path, format(&counts)?).with_context(|| GOLDEN.to_owned())?;
@@ -67,27 +68,6 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         TOLERANCE * 100.0
     );
     Ok(())
-}
-
-fn build() -> Result<PathBuf> {
-    let target = run::root().join("target/icount");
-    run::succeed(
-        run::cargo()
-            .args([
-                "build",
-                "--release",
-                "--quiet",
-                "--package",
-                "saltus-tests",
-                "--bin",
-                "bench-dynamics",
-            ])
-            .arg("--target-dir")
-            .arg(&target)
-            .env_remove("CARGO_ENCODED_RUSTFLAGS")
-            .env("RUSTFLAGS", ""),
-    )?;
-    Ok(target.join("release/bench-dynamics"))
 }
 
 /// Counts every algorithm that the bench lists; the loop over the states is measured as `none` and subtracted.

@@ -119,7 +119,7 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
     let peer = |name: &str| directory.join(name);
     Ok([
         Program {
-            path: ours(directory, "native", NATIVE)?,
+            path: build(&directory.join("ours/native"), NATIVE)?,
             tag: "native",
             robots: &[],
         },
@@ -139,16 +139,15 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
             robots: &["icub23"],
         },
         Program {
-            path: ours(directory, "baseline", "")?,
+            path: build(&directory.join("ours/baseline"), "")?,
             tag: "baseline",
             robots: &[],
         },
     ])
 }
 
-/// Builds our bench with the given compiler flags, in a folder of its own.
-fn ours(directory: &Path, name: &str, flags: &str) -> Result<PathBuf> {
-    let target = directory.join("ours").join(name);
+/// Builds our bench into a target folder of its own with the given compiler flags, and none that are around.
+pub(crate) fn build(target: &Path, flags: &str) -> Result<PathBuf> {
     run::succeed(
         run::cargo()
             .args([
@@ -161,7 +160,7 @@ fn ours(directory: &Path, name: &str, flags: &str) -> Result<PathBuf> {
                 "bench-dynamics",
             ])
             .arg("--target-dir")
-            .arg(&target)
+            .arg(target)
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
             .env("RUSTFLAGS", flags),
     )?;

@@ -1,6 +1,6 @@
 //! `cargo xtask bench`: our code beside its peers, in pinned versions from pip, as tables of ratios.
 
-mod dynamics;
+pub(crate) mod dynamics;
 mod scripts;
 
 use anyhow::Result;
