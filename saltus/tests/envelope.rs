@@ -48,6 +48,54 @@ fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     assert_eq!(std::fs::read_to_string(&file).unwrap(), now);
 }
 
+#[test]
+fn the_study_without_each_measure_is_one_table() {
+    let out = folder("ablation");
+    let ablate = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+        command.args(["envelope", "a1/lateral", "--samples", "1", "--json"]);
+        command.args(more).arg("--out").arg(&out).output().unwrap()
+    };
+    let first = ablate(&["--ablate"]);
+    assert!(first.status.success());
+    let report: serde_json::Value = serde_json::from_slice(&first.stdout).unwrap();
+    let rows = report["ablation"].as_array().unwrap();
+    let named: Vec<&str> = rows.iter().filter_map(|r| r["without"].as_str()).collect();
+    assert_eq!(
+        named,
+        [
+            "nothing",
+            "weighing",
+            "drives",
+            "margins",
+            "delay",
+            "lookahead",
+            "posture",
+            "steady"
+        ]
+    );
+    for row in rows {
+        assert!(row["done"] == 1 || row["no_plan"].is_string(), "{row}");
+    }
+    assert_eq!(rows[0]["on_target"], 1);
+
+    // Each measure changes the run: the errors differ from those with all.
+    let line = |name: &str| {
+        let text = read(&out.join(format!("without-{name}")), "shard-1-of-1.csv");
+        text.lines().nth(2).unwrap().to_owned()
+    };
+    for name in &named[1..] {
+        assert_ne!(line(name), line("nothing"), "{name}");
+    }
+
+    // What is there goes on, as a study of its own too.
+    let table = read(&out, "ablation.csv");
+    assert!(ablate(&["--ablate"]).status.success());
+    assert_eq!(read(&out, "ablation.csv"), table);
+    let other = ablate(&[]);
+    assert!(String::from_utf8_lossy(&other.stderr).contains("something else"));
+}
+
 /// Ctrl-C: the samples so far make a table, and the same command goes on.
 #[cfg(unix)]
 #[test]

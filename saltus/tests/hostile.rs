@@ -133,6 +133,28 @@ const MISTAKES: &[(&[&str], i32, &[&str])] = &[
     ),
     (&["envelope", "icub/velocity"], 1, &["no task"]),
     (
+        &["envelope", "a1/lateral", "--without", "luck"],
+        2,
+        &["luck", "weighing"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--ablate", "--without", "delay"],
+        2,
+        &["--ablate"],
+    ),
+    (
+        &[
+            "envelope",
+            "a1/lateral",
+            "--planner",
+            "kinematics",
+            "--without",
+            "drives",
+        ],
+        1,
+        &["whole-body"],
+    ),
+    (
         &["plan", "a1/lateral", "--timing", "0.5,nan"],
         2,
         &["timing"],

@@ -19,6 +19,13 @@ const AXES: [Axis; 4] = [
     ("joint_friction", |s| s.values[3], [0.7, 1.3]),
 ];
 
+/// What an [`outcome`](Sample) is where the target is met.
+const TARGET: &str = "target";
+/// Why a run is not on target, gravest first.
+pub(crate) const CAUSES: [&str; 6] = ["fault", "no_touchdown", "fell", "trunk", "place", "heading"];
+/// Place that counts as near, m.
+const NEAR: f64 = 0.20;
+
 /// One run of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sample {
@@ -28,7 +35,7 @@ pub(crate) struct Sample {
     values: [f64; 4],
     position_error: f64,
     orientation_error: f64,
-    /// `target`, or why not: `fault`, `no_touchdown`, `trunk`, `fell`, `place`, `heading`.
+    /// `target`, or why not: the first of [`CAUSES`] that holds.
     outcome: String,
 }
 
@@ -43,21 +50,16 @@ impl Sample {
         run: &Run,
         verdict: &Verdict,
     ) -> Self {
-        let outcome = if run.fault.is_some() {
-            "fault"
-        } else if run.first_contact.is_none() {
-            "no_touchdown"
-        } else if !verdict.trunk_is_right {
-            "trunk"
-        } else if !(verdict.landed && verdict.upright) {
-            "fell"
-        } else if verdict.position_error > 0.10 {
-            "place"
-        } else if verdict.on_target() {
-            "target"
-        } else {
-            "heading"
-        };
+        let holds = [
+            run.fault.is_some(),
+            run.first_contact.is_none(),
+            !(verdict.landed && verdict.upright),
+            !verdict.trunk_is_right,
+            verdict.position_error > 0.10,
+            !verdict.on_target(),
+        ];
+        let mut causes = CAUSES.into_iter().zip(holds);
+        let outcome = causes.find_map(|(cause, holds)| holds.then_some(cause));
         Self {
             index,
             seed,
@@ -69,7 +71,7 @@ impl Sample {
             ],
             position_error: verdict.position_error,
             orientation_error: verdict.orientation_error,
-            outcome: outcome.to_owned(),
+            outcome: outcome.unwrap_or(TARGET).to_owned(),
         }
     }
 
@@ -84,21 +86,12 @@ impl Sample {
 
     /// The way back from [`Sample::line`]; `None` for headings and broken lines.
     pub(crate) fn parse(line: &str) -> Option<Self> {
-        const OUTCOMES: [&str; 7] = [
-            "target",
-            "fault",
-            "no_touchdown",
-            "trunk",
-            "fell",
-            "place",
-            "heading",
-        ];
         let cells: Vec<&str> = line.split(',').collect();
         let [index, seed, a, b, c, d, place, turn, outcome] = cells[..] else {
             return None;
         };
         let number = |text: &str| text.parse::<f64>().ok();
-        OUTCOMES.contains(&outcome).then_some(())?;
+        (outcome == TARGET || CAUSES.contains(&outcome)).then_some(())?;
         Some(Self {
             index: index.parse().ok()?,
             seed: seed.parse().ok()?,
@@ -110,7 +103,51 @@ impl Sample {
     }
 
     pub(crate) fn good(&self) -> bool {
-        self.outcome == "target"
+        self.outcome == TARGET
+    }
+
+    /// As [`Sample::good`], but within 0.20 m.
+    fn near(&self) -> bool {
+        let placed = self.outcome == "place" && self.position_error <= NEAR;
+        self.good() || placed && self.orientation_error <= 10.0
+    }
+}
+
+/// Samples counted.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Counts {
+    pub(crate) samples: usize,
+    pub(crate) on_target: usize,
+    /// On target but for a place within 0.20 m.
+    pub(crate) near: usize,
+    /// Those not on target, by [`CAUSES`].
+    pub(crate) failed: [usize; CAUSES.len()],
+}
+
+impl Counts {
+    pub(crate) fn of(samples: &[Sample]) -> Self {
+        let count = |is: &dyn Fn(&Sample) -> bool| samples.iter().filter(|s| is(s)).count();
+        Self {
+            samples: samples.len(),
+            on_target: count(&Sample::good),
+            near: count(&Sample::near),
+            failed: CAUSES.map(|cause| count(&|s| s.outcome == cause)),
+        }
+    }
+
+    /// Causes with the number of their samples, without those that have none.
+    pub(crate) fn causes(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let causes = CAUSES.into_iter().zip(self.failed);
+        causes.filter(|(_, count)| *count > 0)
+    }
+
+    /// Causes for people: `place 3, fell 1`.
+    pub(crate) fn failures(&self) -> String {
+        let words: Vec<String> = self
+            .causes()
+            .map(|(name, n)| format!("{name} {n}"))
+            .collect();
+        words.join(", ")
     }
 }
 
@@ -171,11 +208,7 @@ pub(crate) fn table(samples: &[Sample]) -> String {
         let name = format!("friction,{f0:.4},{f1:.4},mass,{m0:.4},{m1:.4}");
         row(&name, &cell);
     }
-    let mut causes = std::collections::BTreeMap::new();
-    for sample in samples.iter().filter(|s| !s.good()) {
-        *causes.entry(sample.outcome.as_str()).or_insert(0) += 1;
-    }
-    for (cause, count) in causes {
+    for (cause, count) in Counts::of(samples).causes() {
         let _ = writeln!(out, "# failed: {cause} {count}");
     }
     out
@@ -248,7 +281,7 @@ pub(crate) fn picture(samples: &[Sample], title: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Sample, bin, table, wilson};
+    use super::{Counts, Sample, bin, table, wilson};
 
     fn sample(index: u64, friction: f64, outcome: &str) -> Sample {
         Sample {
@@ -304,5 +337,18 @@ mod tests {
         assert!(text.contains("friction,0.8000,0.9000,,,,2,2,1.0000,"));
         assert!(text.contains("friction,1.1000,1.2000,,,,2,0,0.0000,"));
         assert!(text.contains("# failed: fell 2"));
+    }
+
+    #[test]
+    fn failures_are_counted_by_cause_and_near_ones_apart() {
+        let mut samples: Vec<Sample> = ["target", "place", "place", "place", "fell", "trunk"]
+            .map(|outcome| sample(0, 1.0, outcome))
+            .into();
+        samples[1].position_error = 0.15;
+        samples[2].position_error = 0.25;
+        (samples[3].position_error, samples[3].orientation_error) = (0.15, 12.0);
+        let counts = Counts::of(&samples);
+        assert_eq!((counts.samples, counts.on_target, counts.near), (6, 1, 2));
+        assert_eq!(counts.failures(), "fell 1, trunk 1, place 3");
     }
 }

@@ -1,6 +1,7 @@
 //! The closed loop: plant and joint control at 10 kHz, the jump machine at 1 kHz.
 
 use super::log::Sample;
+use super::measure::Measure;
 use super::plant::{Disturbance, Plant, Sim, plant};
 use super::reference::{Reference, heading_matrix};
 use super::sensors::{Sensors, Told};
@@ -21,6 +22,16 @@ pub(crate) const SETTLE: f64 = 2.0;
 const FRICTION_SMOOTHING: f64 = 0.1;
 /// Ticks of the plant per tick of the controller.
 const RATIO: usize = 10;
+
+/// Which run of a plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trial<'a> {
+    pub(crate) sim: Sim,
+    /// Of the disturbances; 0 is the nominal run.
+    pub(crate) seed: u64,
+    /// Measures that the controller does without.
+    pub(crate) without: &'a [Measure],
+}
 
 /// Everything a run leaves behind.
 pub(crate) struct Run {
@@ -95,19 +106,24 @@ pub(super) fn run_tampered(
     tamper: impl FnMut(u64, &mut Told),
     progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
-    run_watched(task, reference, sim, seed, tamper, progress, |_| {})
+    let trial = Trial {
+        sim,
+        seed,
+        without: &[],
+    };
+    run_watched(task, reference, trial, tamper, progress, |_| {})
 }
 
 /// As [`run_tampered`]; `watch` sees the landing's memory after every tick that solved a program.
 pub(crate) fn run_watched(
     task: &Task,
     reference: &Reference,
-    sim: Sim,
-    seed: u64,
+    trial: Trial<'_>,
     mut tamper: impl FnMut(u64, &mut Told),
     mut progress: impl FnMut(f64, Phase),
     mut watch: impl FnMut(&landing::Workspace<f64, 12, 28>),
 ) -> Result<Run, String> {
+    let Trial { sim, seed, without } = trial;
     let disturbance = Disturbance::draw(seed);
     let mut sensors = Sensors::new(&disturbance, seed, &task.start);
     let mut plant = plant(sim, task, &disturbance)?;
@@ -131,6 +147,10 @@ pub(crate) fn run_watched(
     if disturbance.imu.is_none() {
         settings.steady = Steady::a1_known_base();
     }
+    for measure in without {
+        measure.leave(&mut settings);
+    }
+    let delayed = !without.contains(&Measure::Delay);
     let mut machine =
         Machine::<_, _, JOINTS, FOOT_COUNT, 12, 28>::new(&ROBOT, settings, &mut workspace);
     machine
@@ -161,6 +181,9 @@ pub(crate) fn run_watched(
             break;
         }
         let mut told = sensors.measure(&plant, &felt);
+        if !delayed && told.measured.age.is_finite() {
+            told.measured.age = 0.0;
+        }
         tamper(k, &mut told);
         let tick = machine.tick(t, Some(&told));
         run.count(&tick);

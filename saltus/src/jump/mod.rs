@@ -9,6 +9,7 @@ mod fuzz;
 pub(crate) mod judge;
 pub(crate) mod kinematics;
 pub(crate) mod log;
+pub(crate) mod measure;
 mod pace;
 pub(crate) mod planned;
 pub(crate) mod plant;

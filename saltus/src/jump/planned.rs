@@ -61,6 +61,14 @@ impl Origin {
 }
 
 impl Planner {
+    /// Its name on the command line and in results.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::WholeBody => "whole-body",
+            Self::Kinematics => "kinematics",
+        }
+    }
+
     /// Plans the legs along a plan of the body.
     pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
         if self == Self::Kinematics {

@@ -4,6 +4,7 @@ use super::{Args, Files, code};
 use crate::cmd::folder::{describe, must_be_new};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
+use crate::jump::execute::Trial;
 use crate::jump::judge::Verdict;
 use crate::jump::planned::Origin;
 use crate::jump::plant::Sim;
@@ -58,15 +59,12 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
         Some(path) => {
             let mut programs = Programs::default();
             let watch = |memory: &_| programs.add(memory);
-            let run = execute::run_watched(
-                task,
-                reference,
-                args.sim,
-                args.seed,
-                |_, _| {},
-                progress,
-                watch,
-            )?;
+            let trial = Trial {
+                sim: args.sim,
+                seed: args.seed,
+                without: &[],
+            };
+            let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
             std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
             run
         }

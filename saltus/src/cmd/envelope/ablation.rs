@@ -1,0 +1,148 @@
+//! A study beside the same study without each measure: what each is worth.
+
+use super::study::{Study, refuse_strangers};
+use crate::cmd::folder::write;
+use crate::cmd::interrupt;
+use crate::jump::envelope::{CAUSES, Counts, wilson};
+use crate::jump::measure::Measure;
+use core::fmt::Write;
+use indicatif::ProgressBar;
+use serde_json::{Map, Value, json};
+
+/// Name of the row with all measures, and of its folder.
+const NONE: &str = "nothing";
+
+/// One row: what was left out, and what came of it; without a plan nothing is executed.
+pub(super) struct Row {
+    without: &'static str,
+    result: Result<Counts, String>,
+}
+
+/// Runs the study with all measures and without each, in folders of their own, until Ctrl-C.
+pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, String> {
+    let parts = core::iter::once(None).chain(Measure::ALL.map(Some));
+    let parts = parts.map(|off| {
+        let name = off.map_or(NONE, Measure::name);
+        let part = Study {
+            without: off.into_iter().collect(),
+            folder: study.folder.join(format!("without-{name}")),
+            ..study.clone()
+        };
+        (name, part)
+    });
+    let parts: Vec<_> = parts.collect();
+    refuse_strangers(&study.folder, "without-")?;
+    for (_, part) in &parts {
+        part.refuse_strangers()?;
+    }
+    bar.set_message("planning ");
+    let whole = study.plan()?;
+    let mut rows = Vec::new();
+    for (without, part) in parts {
+        if interrupt::asked() {
+            break;
+        }
+        bar.set_message(format!("without {without} "));
+        let replanned = part.without.iter().any(|measure| measure.is_planned());
+        let own = replanned.then(|| part.plan()).transpose();
+        let result = match own {
+            Ok(own) => Ok(Counts::of(&part.run(own.as_ref().unwrap_or(&whole), bar)?)),
+            Err(error) => Err(error),
+        };
+        rows.push(Row { without, result });
+    }
+    if !rows.is_empty() {
+        write(&study.folder, "ablation.csv", csv(&rows).as_bytes())?;
+    }
+    Ok(rows)
+}
+
+/// The rows as a file.
+fn csv(rows: &[Row]) -> String {
+    let mut out = format!(
+        "without,samples,on_target,rate,low95,high95,within_20_cm,{},no_plan\n",
+        CAUSES.join(",")
+    );
+    for Row { without, result } in rows {
+        let _ = match result {
+            Ok(counts) => {
+                let Counts {
+                    samples,
+                    on_target,
+                    near,
+                    failed,
+                } = counts;
+                let rate = *on_target as f64 / (*samples).max(1) as f64;
+                let [low, high] = wilson(*on_target, *samples);
+                let failed = failed.map(|n| n.to_string()).join(",");
+                writeln!(
+                    out,
+                    "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},{near},{failed},"
+                )
+            }
+            Err(error) => {
+                let error = error.replace('"', "'").replace('\n', " ");
+                let empty = ",".repeat(CAUSES.len());
+                writeln!(out, "{without},0,0,,,,0{empty},\"{error}\"")
+            }
+        };
+    }
+    out
+}
+
+/// The rows for people.
+pub(super) fn text(rows: &[Row]) -> String {
+    let mut out = format!(
+        "{:10} {:>9} {:>15} {:>13}  failures\n",
+        "without", "on target", "95 %", "within 0.20 m"
+    );
+    for Row { without, result } in rows {
+        let _ = match result {
+            Ok(counts) => {
+                let [low, high] = wilson(counts.on_target, counts.samples);
+                writeln!(
+                    out,
+                    "{without:10} {:>3} of {:<3} {:>4.0} to {:>3.0} % {:>13}  {}",
+                    counts.on_target,
+                    counts.samples,
+                    100.0 * low,
+                    100.0 * high,
+                    counts.near,
+                    counts.failures()
+                )
+            }
+            Err(error) => writeln!(out, "{without:10} no plan: {error}"),
+        };
+    }
+    out
+}
+
+/// The rows as JSON.
+pub(super) fn json(rows: &[Row]) -> Value {
+    let rows = rows.iter().map(|Row { without, result }| match result {
+        Ok(counts) => {
+            let mut row = counts_json(counts);
+            row.insert("without".into(), json!(without));
+            Value::Object(row)
+        }
+        Err(error) => json!({ "without": without, "no_plan": error }),
+    });
+    rows.collect()
+}
+
+/// Counts as JSON, failures by cause.
+pub(super) fn counts_json(counts: &Counts) -> Map<String, Value> {
+    let failed: Map<String, Value> = counts
+        .causes()
+        .map(|(cause, count)| (cause.to_owned(), json!(count)))
+        .collect();
+    [
+        ("done", json!(counts.samples)),
+        ("on_target", json!(counts.on_target)),
+        ("within_20_cm", json!(counts.near)),
+        ("failed", Value::Object(failed)),
+    ]
+    .map(|(key, value)| (key.to_owned(), value))
+    .into_iter()
+    .collect()
+}

@@ -1,0 +1,133 @@
+//! `saltus envelope`: how often a jump succeeds, over what may differ from the plan.
+
+mod ablation;
+mod study;
+
+use super::interrupt;
+use super::output::Output;
+use crate::jump::envelope::{Counts, table};
+use crate::jump::measure::Measure;
+use crate::jump::planned::Planner;
+use crate::jump::plant::Sim;
+use crate::jump::task::Task;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use study::{Shard, Study, names, shard};
+
+/// Options of `saltus envelope`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Task, such as a1/lateral.
+    task: String,
+    /// Number of runs over all shards.
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..))]
+    samples: u64,
+    /// Seed of the whole study.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    seed: u64,
+    /// Simulator.
+    #[arg(long, default_value = "native")]
+    sim: Sim,
+    /// How the legs are planned along the single rigid body's motion.
+    #[arg(long, default_value = "whole-body")]
+    planner: Planner,
+    /// Measures against disturbances to do without, separated by commas.
+    #[arg(long, value_name = "MEASURE", value_delimiter = ',')]
+    without: Vec<Measure>,
+    /// The study with all measures, and once without each.
+    #[arg(long, conflicts_with = "without")]
+    ablate: bool,
+    /// Part k of n, from 1/n to n/n; every part may run on a machine of its own.
+    #[arg(long, default_value = "1/1", value_parser = shard)]
+    shard: Shard,
+    /// Folder of the study; by default out/envelope-TASK, with what differs from the defaults. A study that is there already
+    /// goes on.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+impl Args {
+    /// The folder where none is given.
+    fn folder(&self, task: &Task, without: &[Measure]) -> PathBuf {
+        let kind = if self.ablate { "ablation" } else { "envelope" };
+        let mut name = format!("{kind}-{}", task.name.replace(['/', '\\'], "-"));
+        if self.planner == Planner::Kinematics {
+            name += "-kinematics";
+        }
+        if !without.is_empty() {
+            name += "-without-";
+            name += &names(without).replace(',', "-");
+        }
+        Path::new("out").join(name)
+    }
+}
+
+/// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
+pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+    let task = Task::load(&args.task)?;
+    let mut without = args.without.clone();
+    without.sort_unstable();
+    without.dedup();
+    let study = Study {
+        task: &task,
+        planner: args.planner,
+        sim: args.sim,
+        samples: args.samples,
+        seed: args.seed,
+        shard: args.shard,
+        folder: match &args.out {
+            Some(folder) => folder.clone(),
+            None => args.folder(&task, &without),
+        },
+        without,
+    };
+    interrupt::listen()?;
+    let bar = args
+        .output
+        .bar(0, "{msg}{pos}/{len} [{bar:40}] {elapsed}, {eta} left")?;
+    let (text, result) = if args.ablate {
+        let rows = ablation::run(&study, &bar)?;
+        (
+            ablation::text(&rows),
+            json!({ "ablation": ablation::json(&rows) }),
+        )
+    } else {
+        study.refuse_strangers()?;
+        bar.set_message("planning ");
+        let reference = study.plan()?;
+        bar.set_message("");
+        let samples = study.run(&reference, &bar)?;
+        let mut text = table(&samples);
+        text += &format!("{} of {} samples", samples.len(), args.samples);
+        let counts = ablation::counts_json(&Counts::of(&samples));
+        (text, Value::Object(counts))
+    };
+    bar.finish_and_clear();
+    let complete = !interrupt::asked();
+    if args.output.json {
+        let mut report = json!({
+            "task": task.name,
+            "sim": args.sim.name(),
+            "planner": args.planner.name(),
+            "seed": args.seed,
+            "samples": args.samples,
+            "without": study.without.iter().map(|measure| measure.name()).collect::<Vec<_>>(),
+            "complete": complete,
+            "folder": study.folder,
+        });
+        if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
+            report.extend(result);
+        }
+        println!("{report}");
+    } else if !args.output.quiet {
+        println!("{}\nfolder: {}", text.trim_end(), study.folder.display());
+    }
+    Ok(if complete {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(interrupt::CODE)
+    })
+}

@@ -1,0 +1,171 @@
+//! What makes an execution robust; a study can do without each of them, which shows what it is worth.
+
+use super::planned::Planner;
+use super::reference::Reference;
+use super::task::Task;
+use super::whole_body::FRICTION_SMOOTHING;
+use super::{FOOT_COUNT, JOINTS, Node, ROBOT};
+use a1_model::a1;
+use jump_machine::Settings;
+use rbd_core::{Tree, joint_friction};
+
+/// One measure against disturbances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+pub(crate) enum Measure {
+    /// Weighing while the robot waits, and the plan's torques scaled by what it weighs.
+    Weighing,
+    /// Rotor inertia and joint friction in the plan's torques.
+    Drives,
+    /// Plan forces that keep to a share of friction, torque and speed.
+    Margins,
+    /// References as late as the measurements that they are compared with.
+    Delay,
+    /// The plan's torques a millisecond early, for what holding and the slew limit delay them by.
+    Lookahead,
+    /// A landing posture that follows tilt and speed before touchdown.
+    Posture,
+    /// Forces of the feet against a wrong turning rate.
+    Steady,
+}
+
+impl Measure {
+    /// All of them.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Weighing,
+        Self::Drives,
+        Self::Margins,
+        Self::Delay,
+        Self::Lookahead,
+        Self::Posture,
+        Self::Steady,
+    ];
+
+    /// Its name on the command line and in results.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Weighing => "weighing",
+            Self::Drives => "drives",
+            Self::Margins => "margins",
+            Self::Delay => "delay",
+            Self::Lookahead => "lookahead",
+            Self::Posture => "posture",
+            Self::Steady => "steady",
+        }
+    }
+
+    /// Whether the plan is another without it.
+    pub(crate) const fn is_planned(self) -> bool {
+        matches!(self, Self::Drives | Self::Margins)
+    }
+
+    /// Plans a task without these measures.
+    pub(crate) fn plan(
+        task: &Task,
+        planner: Planner,
+        without: &[Self],
+    ) -> Result<Reference, String> {
+        let mut task = task.clone();
+        if without.contains(&Self::Margins) {
+            let limits = &mut task.limits;
+            (limits.friction_share, limits.speed_share) = (1.0, 1.0);
+            limits.torque_shares = [1.0; 3];
+            task.problem.friction = limits.friction;
+        }
+        let body = task.solve()?;
+        let mut reference = planner.plan(&task, &body)?;
+        if without.contains(&Self::Drives) {
+            if planner != Planner::WholeBody {
+                return Err("only whole-body plans can do without drives".into());
+            }
+            forget_drives(&mut reference.nodes);
+        }
+        Ok(reference)
+    }
+
+    /// Takes the measure out of the controller.
+    pub(crate) fn leave(self, settings: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
+        match self {
+            Self::Weighing => settings.max_payload = 0.0,
+            Self::Lookahead => settings.lookahead = 0.0,
+            // No time before touchdown is that long after it.
+            Self::Posture => settings.levelling = -f64::INFINITY,
+            Self::Steady => {
+                let steady = &mut settings.steady;
+                (steady.stiffness, steady.damping, steady.turning) = (0.0, 0.0, 0.0);
+            }
+            Self::Drives | Self::Margins | Self::Delay => {}
+        }
+    }
+}
+
+/// Takes the torques that turn rotors and overcome joint friction out of a whole-body plan, whose accelerations are the
+/// differences of its nodes' velocities.
+fn forget_drives(nodes: &mut [Node]) {
+    let rotors = Tree::<f64, JOINTS>::bodies(&ROBOT).map(|body| body.rotor_inertia);
+    let mut rest = nodes;
+    while let [node, after @ ..] = rest {
+        let Some(next) = after.first() else { return };
+        let (now, then) = (node.joint_velocities, next.joint_velocities);
+        let dt = next.time - node.time;
+        let middle = core::array::from_fn(|i| 0.5 * (now[i] + then[i]));
+        let lost = joint_friction(&a1::LIMITS, &middle, FRICTION_SMOOTHING);
+        for (i, torque) in node.torques.iter_mut().enumerate() {
+            *torque += lost[i] - rotors[i] * (then[i] - now[i]) / dt;
+        }
+        rest = after;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Measure, forget_drives};
+    use crate::jump::whole_body::FRICTION_SMOOTHING;
+    use crate::jump::{JOINTS, Node, ROBOT, State, Velocity};
+    use a1_model::{A1, a1};
+    use clap::ValueEnum;
+    use rbd_core::{Posture, joint_friction, rnea};
+
+    #[test]
+    fn names_are_those_of_the_command_line() {
+        for measure in Measure::ALL {
+            let value = measure.to_possible_value().unwrap();
+            assert_eq!(value.get_name(), measure.name());
+        }
+        assert_eq!(Measure::value_variants(), Measure::ALL);
+    }
+
+    /// What is left are the torques of a robot without rotors and friction, by inverse dynamics.
+    #[test]
+    fn a_plan_without_drives_has_the_torques_of_a_robot_without_them() {
+        const DT: f64 = 0.005;
+        let speeds = |k: usize| core::array::from_fn(|i| 0.3 * (i as f64 - 5.0) + 0.1 * k as f64);
+        let accelerations: [f64; JOINTS] = [0.1 / DT; JOINTS];
+        let middle = speeds(0).map(|speed: f64| speed + 0.05);
+        let q = State {
+            joints: core::array::from_fn(|i| 0.2 * i as f64 - 1.0),
+            ..State::NEUTRAL
+        };
+        let joints_only = |joints| Velocity {
+            joints,
+            ..Velocity::ZERO
+        };
+        let (v, a) = (joints_only(middle), joints_only(accelerations));
+        let with = rnea(&ROBOT, &Posture::new(&ROBOT, &q), &v, &a).joints;
+        let lost = joint_friction(&a1::LIMITS, &middle, FRICTION_SMOOTHING);
+        let mut nodes = [0, 1].map(|k| Node {
+            time: DT * k as f64,
+            joint_velocities: speeds(k),
+            ..Node::ZERO
+        });
+        nodes[0].torques = core::array::from_fn(|i| with[i] - lost[i]);
+        forget_drives(&mut nodes);
+        let without = rnea(&A1, &Posture::new(&A1, &q), &v, &a).joints;
+        for i in 0..JOINTS {
+            assert!((nodes[0].torques[i] - without[i]).abs() < 1e-9, "joint {i}");
+            // Otherwise nothing would be shown.
+            assert!((with[i] - lost[i] - without[i]).abs() > 1e-3, "joint {i}");
+        }
+        assert_eq!(nodes[1].torques, [0.0; JOINTS]);
+    }
+}
