@@ -12,7 +12,7 @@ fn main() {
     let settings = Settings::a1(FEET.map(|foot| foot.frame), MOTORS, crouch);
     // All memory there is; a static in firmware.
     let mut workspace = landing::Workspace::new();
-    let mut machine = Machine::<f64, _, 12, 4, 12, 28>::new(&A1Geared, settings, &mut workspace);
+    let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings, &mut workspace);
     let mut inputs = Inputs {
         measured: Measurement {
             base: Transform::IDENTITY,

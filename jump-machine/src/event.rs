@@ -6,9 +6,7 @@ use so3::Scalar;
 
 use crate::{Machine, Refusal};
 
-impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usize, const R: usize>
-    Machine<'_, T, M, N, F, V, R>
-{
+impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M, N, F> {
     /// The event of this tick, if any, at time `t` of the plan.
     pub(crate) fn event(&mut self, t: T, measured: &Measurement<T, N, F>) -> Option<Event> {
         let (settings, velocity) = (&self.settings, &measured.base_velocity);

@@ -46,10 +46,9 @@ pub struct Tick {
 
 /// A robot that stands, jumps when it is given a plan, lands and stands again.
 ///
-/// `V` must be 3 F and `R` 4 F + N. It borrows model, plans and the QP's workspace, so that they can be statics.
+/// It borrows model, plans and the landing's memory, so that they can be statics.
 #[derive(Debug)]
-pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize, const V: usize, const R: usize>
-{
+pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) settings: Settings<T, N, F>,
     pub(crate) jump: Option<Jump<'a, T, N, F>>,
     pub(crate) phase: Phase,
@@ -58,8 +57,8 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize, const V: us
     pub(crate) calm: T,
     pub(crate) refusal: Option<Refusal>,
     model: &'a M,
-    landing: Landing<T, N, F, V, R>,
-    workspace: &'a mut Workspace<T, V, R>,
+    landing: Landing<T, N, F>,
+    workspace: &'a mut Workspace<T, N, F>,
     posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
     level_feet: [Vector3<T>; F],
@@ -82,15 +81,13 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize, const V: us
     fault: Option<Fault>,
 }
 
-impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usize, const R: usize>
-    Machine<'a, T, M, N, F, V, R>
-{
+impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
     /// A standing robot without a jump. Until the first tick its joints are damped.
     #[must_use]
     pub fn new(
         model: &'a M,
         settings: Settings<T, N, F>,
-        workspace: &'a mut Workspace<T, V, R>,
+        workspace: &'a mut Workspace<T, N, F>,
     ) -> Self {
         let torques = settings.motors.map(|motor| motor.torque);
         Self {
@@ -203,9 +200,9 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize, const V: usiz
         self.fault
     }
 
-    /// The landing's memory: [`Workspace::problem`] is the quadratic program of the last landing tick.
+    /// The landing's memory: [`landing::Program::of`] writes out the quadratic program of the last landing tick.
     #[must_use]
-    pub const fn workspace(&self) -> &Workspace<T, V, R> {
+    pub const fn workspace(&self) -> &Workspace<T, N, F> {
         self.workspace
     }
 

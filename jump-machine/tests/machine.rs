@@ -10,7 +10,7 @@ use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_o
 use rbd_core::{Frame, Motion, Motor, Transform};
 use so3::Scalar;
 
-type A1Machine<'a, T> = Machine<'a, T, A1Geared, 12, 4, 12, 28>;
+type A1Machine<'a, T> = Machine<'a, T, A1Geared, 12, 4>;
 
 fn crouch<T: Scalar>() -> [T; 12] {
     core::array::from_fn(|i| T::of([0.0, 0.8, -1.6][i % 3]))
@@ -62,7 +62,7 @@ fn in_air() -> Inputs<f64, 12, 4> {
     heard
 }
 
-fn machine(workspace: &mut Workspace<f64, 12, 28>) -> A1Machine<'_, f64> {
+fn machine(workspace: &mut Workspace<f64, 12, 4>) -> A1Machine<'_, f64> {
     let settings = Settings::a1(FEET.map(|foot| foot.frame), MOTORS, crouch());
     Machine::new(&A1Geared, settings, workspace)
 }

@@ -25,7 +25,7 @@ fn main() -> Result<(), Error> {
 
     // What firmware holds: the controller, and its memory in a static.
     let feet = FEET.map(|foot| foot.frame);
-    let landing = Landing::<f64, 12, 4, 12, 28>::new(feet, Settings::a1(), [33.5; 12]);
+    let landing = Landing::<f64, 12, 4>::new(feet, Settings::a1(), [33.5; 12]);
     let mut workspace = Workspace::new();
     let target = Target {
         height: 0.25,

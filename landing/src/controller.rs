@@ -3,19 +3,20 @@
 //! The body is a single rigid body under the foot forces: m c̈ = Σ f + m g and L̇ = Σ (p − c) × f. Wanted are
 //! c̈_d = K_p(c_d − c) − K_d ċ and L̇_d = I_w(K_p log(R_d Rᵀ) − K_d ω), with c_d over the middle of the feet.
 
-use dense_qp::{Problem, Status};
+use dense_qp::Status;
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::{
     Configuration, Frame, GRAVITY, Limbs, Tangent, Tree, centroidal_state, generalized_gravity,
 };
-use so3::Scalar;
+use so3::{Scalar, math};
 
-use crate::forces::{Data, FootData, Wrench};
+use crate::forces::Forces;
+use crate::wrench::{Arm, Wrench};
 use crate::{Settings, Target};
 
-/// The landing controller of a robot with `N` joints and `F` feet; `V` must be 3 F and `M` 4 F + N.
+/// The landing controller of a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Landing<T, const N: usize, const F: usize, const V: usize, const M: usize> {
+pub struct Landing<T, const N: usize, const F: usize> {
     /// The feet; each is the end of a leg of its own.
     pub feet: [Frame<T>; F],
     /// Gains, weights and limits.
@@ -24,31 +25,24 @@ pub struct Landing<T, const N: usize, const F: usize, const V: usize, const M: u
     pub max_torques: [T; N],
 }
 
-/// Memory of the controller: the QP's arrays and active set. All zero at first.
+/// Memory of the controller: the program of the last tick that had one, and the limits that held at its solution. All zero at
+/// first.
 #[derive(Clone, Debug)]
-pub struct Workspace<T: Scalar, const V: usize, const M: usize> {
-    data: Data<T, V, M>,
-    qp: dense_qp::Workspace<T, V, M>,
+pub struct Workspace<T: Scalar, const N: usize, const F: usize> {
+    pub(crate) forces: Forces<T, N, F>,
 }
 
-impl<T: Scalar, const V: usize, const M: usize> Workspace<T, V, M> {
+impl<T: Scalar, const N: usize, const F: usize> Workspace<T, N, F> {
     /// All zero.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            data: Data::new(),
-            qp: dense_qp::Workspace::new(),
+            forces: Forces::new(),
         }
-    }
-
-    /// The quadratic program of the last tick that had one, for those who solve it by other means.
-    #[must_use]
-    pub const fn problem(&self) -> Problem<'_, T, V, M> {
-        self.data.problem()
     }
 }
 
-impl<T: Scalar, const V: usize, const M: usize> Default for Workspace<T, V, M> {
+impl<T: Scalar, const N: usize, const F: usize> Default for Workspace<T, N, F> {
     fn default() -> Self {
         Self::new()
     }
@@ -59,9 +53,10 @@ impl<T: Scalar, const V: usize, const M: usize> Default for Workspace<T, V, M> {
 pub enum Outcome {
     /// No foot is in contact: nothing to solve.
     Airborne,
-    /// Solved in so many iterations.
+    /// Optimal, after so many active sets.
     Solved(u32),
-    /// Not solved: the forces are the best iterate, inside the force limits.
+    /// Not optimal ([`Status::Limit`]: more active sets than a tick has time for; the next tick goes on from the last): the forces are
+    /// the last iterate, brought inside all limits.
     Failed(Status),
     /// The state was not finite: forces are zero and the joints only damped.
     BadData,
@@ -84,13 +79,10 @@ pub struct Command<T: Scalar, const N: usize, const F: usize> {
     pub outcome: Outcome,
 }
 
-impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
-    Landing<T, N, F, V, M>
-{
+impl<T: Scalar, const N: usize, const F: usize> Landing<T, N, F> {
     /// A controller.
     #[must_use]
     pub const fn new(feet: [Frame<T>; F], settings: Settings<T>, max_torques: [T; N]) -> Self {
-        const { assert!(V == 3 * F && M == 4 * F + N, "V must be 3 F and M 4 F + N") };
         Self {
             feet,
             settings,
@@ -111,7 +103,7 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         contacts: &[bool; F],
         target: &Target<T>,
         waiting: &[T; N],
-        workspace: &mut Workspace<T, V, M>,
+        workspace: &mut Workspace<T, N, F>,
     ) -> Command<T, N, F> {
         let limbs = Limbs::new(model, configuration, &self.feet);
         self.step_at(
@@ -132,7 +124,7 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         contacts: &[bool; F],
         target: &Target<T>,
         waiting: &[T; N],
-        workspace: &mut Workspace<T, V, M>,
+        workspace: &mut Workspace<T, N, F>,
     ) -> Command<T, N, F> {
         let s = &self.settings;
         let mut command = Command {
@@ -145,7 +137,7 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
         };
         let posture = &limbs.posture;
         let body = centroidal_state(model, posture, velocity);
-        let (feet, support) = look_at_feet(limbs, &body.com_w, contacts);
+        let (arms_w, support) = look_at_feet(limbs, &body.com_w, contacts);
         let finite = body
             .com_w
             .iter()
@@ -188,9 +180,22 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
                 (*stiffness, *damping) = (T::ZERO, s.stance_damping);
             }
         }
-        let limits = (&other, &self.max_torques);
-        let Workspace { data, qp } = workspace;
-        (command.forces_w, command.outcome) = data.solve(s, &feet, limbs, &wanted, limits, qp);
+        let forces = &mut workspace.forces;
+        let cone = (s.friction, s.max_normal_force);
+        let torques = (&other, &self.max_torques);
+        forces.limits.write(cone, limbs, contacts, torques);
+        forces.on = *contacts;
+        let (force, moment) = (math::sqrt(s.force_weight), math::sqrt(s.moment_weight));
+        forces.arms = arms_w.map(|arm_w| Arm {
+            force,
+            moment_w: arm_w * moment,
+        });
+        forces.effort = s.effort_weight;
+        forces.wanted = Wrench {
+            force_w: wanted.force_w * force,
+            moment_w: wanted.moment_w * moment,
+        };
+        (command.forces_w, command.outcome) = forces.solve();
         let forces_w = command.forces_w.iter().zip(contacts);
         for (end, (force, _)) in stance().zip(forces_w.filter(|(_, on)| **on)) {
             end.add_tr_mul(&-(rot_wb.inverse() * force), &mut command.feed_forward);
@@ -247,25 +252,22 @@ impl<T: Scalar, const N: usize, const F: usize, const V: usize, const M: usize>
     }
 }
 
-/// Feet with their arms, and the support: the middle of all feet horizontally, the mean of those in contact vertically.
+/// Arms of the feet from the centre of mass, and the support: the middle of all feet horizontally, the mean of those in contact
+/// vertically.
 fn look_at_feet<T: Scalar, const N: usize, const F: usize>(
     limbs: &Limbs<T, N, F>,
     com_w: &Vector3<T>,
     contacts: &[bool; F],
-) -> ([FootData<T>; F], Vector3<T>) {
+) -> ([Vector3<T>; F], Vector3<T>) {
     let base = limbs.posture.base();
     let from_com = base.translation - com_w;
-    let mut feet = [FootData {
-        in_contact: false,
-        arm_w: Vector3::zeros(),
-    }; F];
+    let mut arms_w = [Vector3::zeros(); F];
     let (mut sum, mut low, mut count) = (Vector3::zeros(), T::ZERO, T::ZERO);
-    for ((foot, end), on) in feet.iter_mut().zip(&limbs.ends).zip(contacts) {
-        foot.in_contact = *on;
-        foot.arm_w = base.rotation * end.position + from_com;
-        sum += foot.arm_w;
+    for ((arm_w, end), on) in arms_w.iter_mut().zip(&limbs.ends).zip(contacts) {
+        *arm_w = base.rotation * end.position + from_com;
+        sum += *arm_w;
         if *on {
-            low += foot.arm_w.z;
+            low += arm_w.z;
             count += T::ONE;
         }
     }
@@ -273,5 +275,5 @@ fn look_at_feet<T: Scalar, const N: usize, const F: usize>(
     if count > T::ZERO {
         support.z = low / count;
     }
-    (feet, support + com_w)
+    (arms_w, support + com_w)
 }

@@ -1,276 +1,296 @@
-//! The force QP.
+//! The force program of a tick, and its solution.
 //!
-//! minimise w_f |Σ f − F|² + w_m |Σ r × f − M|² + w_e |f|² over the foot forces f in world axes, r from the centre
-//! of mass to the foot, subject to |f_x|, |f_y| ≤ μ f_z, 0 ≤ f_z ≤ f_max and |τ| ≤ τ_max with τ = −Jᵀ f + τ_0; feet in
-//! the air have bounds [0, 0], which the solver eliminates.
+//! minimise w_f |Σ f − F|² + w_m |Σ r × f − M|² + w_e |f|² over the forces f on the feet in contact, r from the centre of mass to the
+//! foot, world axes, subject to the [limits](crate::limits) of each foot.
+//!
+//! Feet meet only in the six numbers of the wrench. With B f = (√w_f f, √w_m r × f), b the wanted wrench weighed likewise and
+//! s = (b − Σ B f)/w_e, a foot whose rows n_k hold is stationary at f = Bᵀs − Σ λ_k n_k, and all feet together at
+//! (w_e + Σ B P Bᵀ) s = b − Σ B f₀, P and f₀ from the [face](crate::face). So every active set costs one 6 × 6 system whatever
+//! the number of rows, and remembered rows cost nothing. The search is the dual one of Goldfarb and Idnani (1983): from the
+//! optimum over some rows, the most violated row enters while the multipliers of all others stay positive; a row whose multiplier
+//! reaches zero leaves.
 
-use dense_qp::{Problem, Status, solve_warm};
-use nalgebra::{Matrix3, Vector3};
-use rbd_core::Limbs;
-use so3::Scalar;
+use dense_qp::Status;
+use nalgebra::Vector3;
+use so3::{Scalar, math};
 
-use crate::{Outcome, Settings};
+use crate::Outcome;
+use crate::face::{Face, MOST};
+use crate::limits::{Limits, Row};
+use crate::wrench::{Arm, Inverse, Square, Wrench};
 
-/// Rows that enter or leave in one solve. A tick that needs more ends with forces that keep every limit, and the next goes on from its
-/// rows.
-const MAX_ITERATIONS: u32 = 40;
+/// Factorisations in one tick. A tick that needs more ends with forces that keep every limit, and the next goes on from its rows.
+pub(crate) const MAX_STEPS: u32 = 20;
 
-/// What the QP needs to know of one foot.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FootData<T: Scalar> {
-    pub(crate) in_contact: bool,
-    /// From the centre of mass to the foot, world axes.
-    pub(crate) arm_w: Vector3<T>,
-}
-
-/// Wrench about the centre of mass that the forces are to make.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Wrench<T: Scalar> {
-    pub(crate) force_w: Vector3<T>,
-    pub(crate) moment_w: Vector3<T>,
-}
-
-/// Arrays of one QP with `V` = 3 F variables and `M` = 4 F + N rows.
+/// The program and where its search stands.
 #[derive(Clone, Debug)]
-pub(crate) struct Data<T, const V: usize, const M: usize> {
-    hessian: [[T; V]; V],
-    gradient: [T; V],
-    rows: [[T; V]; M],
-    spans: [[usize; 2]; M],
-    row_lower: [T; M],
-    row_upper: [T; M],
-    lower: [T; V],
-    upper: [T; V],
-    /// Whether other feet are in contact than in the program before.
-    regrouped: bool,
+pub(crate) struct Forces<T: Scalar, const N: usize, const F: usize> {
+    pub(crate) limits: Limits<T, N, F>,
+    /// Feet in contact.
+    pub(crate) on: [bool; F],
+    pub(crate) arms: [Arm<T>; F],
+    /// w_e.
+    pub(crate) effort: T,
+    /// The wanted wrench, weighed.
+    pub(crate) wanted: Wrench<T>,
+    faces: [Face<T>; F],
+    forces: [Vector3<T>; F],
+    /// Largest entry of Bᵀs at the last stationary point: what round-off in the forces is relative to.
+    pull: T,
 }
 
-impl<T: Scalar, const V: usize, const M: usize> Data<T, V, M> {
+/// Why a search ended early.
+enum Stop {
+    Limit,
+    Numerical,
+}
+
+/// How one foot's force and multipliers change as the entering row's multiplier grows by one.
+#[derive(Clone, Copy)]
+struct Step<T: Scalar> {
+    force: Vector3<T>,
+    rates: [T; MOST],
+}
+
+impl<T: Scalar> Step<T> {
+    const NONE: Self = Self {
+        force: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
+        rates: [T::ZERO; MOST],
+    };
+}
+
+impl<T: Scalar, const N: usize, const F: usize> Forces<T, N, F> {
     pub(crate) const fn new() -> Self {
         Self {
-            hessian: [[T::ZERO; V]; V],
-            gradient: [T::ZERO; V],
-            rows: [[T::ZERO; V]; M],
-            spans: [[0; 2]; M],
-            row_lower: [T::ZERO; M],
-            row_upper: [T::ZERO; M],
-            lower: [T::ZERO; V],
-            upper: [T::ZERO; V],
-            regrouped: false,
+            limits: Limits::NONE,
+            on: [false; F],
+            arms: [Arm::ZERO; F],
+            effort: T::ZERO,
+            wanted: Wrench::ZERO,
+            faces: [Face::FREE; F],
+            forces: [Vector3::new(T::ZERO, T::ZERO, T::ZERO); F],
+            pull: T::ZERO,
         }
     }
 
-    /// Writes H, g and the bounds of the feet.
-    fn write_cost<const F: usize>(
-        &mut self,
-        settings: &Settings<T>,
-        feet: &[FootData<T>; F],
-        wanted: &Wrench<T>,
-    ) {
-        let (force, moment) = (settings.force_weight, settings.moment_weight);
-        for (i, foot) in feet.iter().enumerate() {
-            for (j, other) in feet.iter().enumerate().skip(i) {
-                // w_f + w_m [r_i]×ᵀ[r_j]×, and [a]×ᵀ[b]× = (a·b) − b aᵀ.
-                let (a, b) = (&foot.arm_w, &other.arm_w);
-                let turn = *a * -moment;
-                let mut block = b * turn.transpose();
-                let diagonal = force + moment * a.dot(b);
-                let effort = if i == j {
-                    settings.effort_weight
-                } else {
-                    T::ZERO
-                };
-                for k in 0..3 {
-                    if let Some(x) = block.get_mut((k, k)) {
-                        *x += diagonal + effort;
-                    }
-                }
-                self.put_block(i, j, &block);
-                if i != j {
-                    self.put_block(j, i, &block.transpose());
-                }
+    /// Forces for the feet, world axes: optimal, or inside all limits and said not to be.
+    pub(crate) fn solve(&mut self) -> ([Vector3<T>; F], Outcome) {
+        let mut steps = 0;
+        self.remember();
+        let outcome = match self.search(&mut steps) {
+            Ok(()) => Outcome::Solved(steps),
+            Err(Stop::Limit) => Outcome::Failed(Status::Limit),
+            Err(Stop::Numerical) => {
+                self.faces = [Face::FREE; F];
+                Outcome::Failed(Status::Numerical)
             }
-        }
-        self.regrouped = false;
-        let limits = self.lower.chunks_mut(3).zip(self.upper.chunks_mut(3));
-        for ((gradient, (lower, upper)), foot) in self.gradient.chunks_mut(3).zip(limits).zip(feet)
-        {
-            let pull = wanted.force_w * settings.force_weight
-                + wanted.moment_w.cross(&foot.arm_w) * settings.moment_weight;
-            let top = settings.max_normal_force;
-            let (low, high) = if foot.in_contact {
-                let side = settings.friction * top;
-                ([-side, -side, T::ZERO], [side, side, top])
-            } else {
-                ([T::ZERO; 3], [T::ZERO; 3])
-            };
-            self.regrouped |= upper.last() != high.last();
-            gradient.copy_from_slice((-pull).as_slice());
-            lower.copy_from_slice(&low);
-            upper.copy_from_slice(&high);
-        }
-    }
-
-    /// Writes one 3 × 3 block of H.
-    fn put_block(&mut self, i: usize, j: usize, block: &Matrix3<T>) {
-        for (row, values) in self.hessian.iter_mut().skip(3 * i).zip(block.row_iter()) {
-            for (slot, x) in row.iter_mut().skip(3 * j).zip(values.iter()) {
-                *slot = *x;
-            }
-        }
-    }
-
-    /// The program as it stands.
-    pub(crate) const fn problem(&self) -> Problem<'_, T, V, M> {
-        Problem::new(
-            &self.hessian,
-            &self.gradient,
-            &self.rows,
-            &self.row_lower,
-            &self.row_upper,
-        )
-        .with_bounds(&self.lower, &self.upper)
-        .with_spans(&self.spans)
-    }
-
-    /// Writes the rows: four of friction per foot, then one per joint.
-    fn write_rows<const N: usize, const F: usize>(
-        &mut self,
-        settings: &Settings<T>,
-        feet: &[FootData<T>; F],
-        limbs: &Limbs<T, N, F>,
-        other_torques: &[T; N],
-        max_torques: &[T; N],
-    ) {
-        let limits = self.row_lower.iter_mut().zip(self.row_upper.iter_mut());
-        let shapes = self.rows.iter_mut().zip(&mut self.spans);
-        let mut rows = shapes.zip(limits);
-        for (i, foot) in feet.iter().enumerate() {
-            let (one, zero, mu) = (T::ONE, T::ZERO, settings.friction);
-            // ± f_x − μ f_z ≤ 0 and ± f_y − μ f_z ≤ 0; nothing to say of a foot in the air.
-            for values in [
-                [one, zero, -mu],
-                [-one, zero, -mu],
-                [zero, one, -mu],
-                [zero, -one, -mu],
-            ] {
-                let Some(((row, span), (low, high))) = rows.next() else {
-                    return;
-                };
-                (*low, *high) = (-T::INFINITY, T::ZERO);
-                *row = [T::ZERO; V];
-                *span = [0; 2];
-                if foot.in_contact {
-                    *span = [3 * i, 3 * i + 3];
-                    for (slot, value) in row.iter_mut().skip(3 * i).zip(values) {
-                        *slot = value;
-                    }
-                }
-            }
-        }
-        for (other, most) in other_torques.iter().zip(max_torques) {
-            let Some(((row, span), (low, high))) = rows.next() else {
-                return;
-            };
-            *row = [T::ZERO; V];
-            *span = [0; 2];
-            // Where the other torques alone use up the joint, zero force must remain possible.
-            *low = so3::math::min(-*most - *other, T::ZERO);
-            *high = so3::math::max(*most - *other, T::ZERO);
-        }
-        let rot_wb = &limbs.posture.base().rotation;
-        let ends = limbs.ends.iter().zip(feet).enumerate();
-        for (i, (end, _)) in ends.filter(|(_, (_, foot))| foot.in_contact) {
-            for (j, column) in end.columns() {
-                let row = self.rows.get_mut(4 * F + j);
-                let triple = row.and_then(|row| row.get_mut(3 * i..3 * i + 3));
-                if let (Some(triple), Some(span)) = (triple, self.spans.get_mut(4 * F + j)) {
-                    triple.copy_from_slice((-(rot_wb * column)).as_slice());
-                    *span = match *span {
-                        [0, 0] => [3 * i, 3 * i + 3],
-                        [from, _] => [from, 3 * i + 3],
-                    };
-                }
-            }
-        }
-    }
-
-    /// Forces of the feet. A problem that cannot be solved gives the last iterate clipped into the limits, and says so.
-    pub(crate) fn solve<const N: usize, const F: usize>(
-        &mut self,
-        settings: &Settings<T>,
-        feet: &[FootData<T>; F],
-        limbs: &Limbs<T, N, F>,
-        wanted: &Wrench<T>,
-        torques: (&[T; N], &[T; N]),
-        workspace: &mut dense_qp::Workspace<T, V, M>,
-    ) -> ([Vector3<T>; F], Outcome) {
-        self.write_cost(settings, feet, wanted);
-        self.write_rows(settings, feet, limbs, torques.0, torques.1);
-        let problem = self.problem();
-        let mut forces = [Vector3::zeros(); F];
-        let options = dense_qp::Settings {
-            max_iterations: MAX_ITERATIONS,
-            ..dense_qp::Settings::default()
         };
-        // Other feet share the load anew: the active rows of before would mostly have to leave one by one.
-        if self.regrouped {
-            workspace.forget();
-        }
-        let Ok(solution) = solve_warm(&problem, &options, workspace) else {
-            return (forces, Outcome::BadData);
-        };
-        let mut numbers = solution.x.iter();
-        for force in &mut forces {
-            for (x, number) in force.iter_mut().zip(numbers.by_ref()) {
-                *x = if number.is_finite_number() {
-                    *number
-                } else {
-                    T::ZERO
-                };
+        let mut forces = self.forces;
+        for (foot, force) in forces.iter_mut().enumerate() {
+            if !force.iter().all(|x| x.is_finite_number()) {
+                *force = Vector3::zeros();
             }
-        }
-        let outcome = if solution.status == Status::Solved {
-            Outcome::Solved(solution.iterations)
-        } else {
-            Outcome::Failed(solution.status)
-        };
-        self.clip(&mut forces);
-        if !matches!(outcome, Outcome::Solved(_)) {
-            self.shorten(settings.friction, &mut forces);
+            self.limits.shorten(foot, force);
         }
         (forces, outcome)
     }
 
-    /// Brings forces inside friction and torques, which a program that was cut short may leave: first into the pyramid, then shorter
-    /// until the joints can give them. Zero force keeps every row, so some length does.
-    fn shorten<const F: usize>(&self, friction: T, forces: &mut [Vector3<T>; F]) {
-        for force in forces.iter_mut() {
-            let side = friction * force.z;
-            force.x = so3::math::clamp(force.x, -side, side);
-            force.y = so3::math::clamp(force.y, -side, side);
+    /// The rows of the last tick as they are now.
+    fn remember(&mut self) {
+        for (face, on) in self.faces.iter_mut().zip(&self.on) {
+            if *on {
+                self.limits.rebuild(face);
+            } else {
+                *face = Face::FREE;
+            }
         }
-        let limits = self.row_lower.iter().zip(&self.row_upper);
-        for (row, (low, high)) in self.rows.iter().zip(limits).skip(4 * F) {
-            for (entries, force) in row.chunks(3).zip(forces.iter_mut()) {
-                let terms = entries.iter().zip(force.iter());
-                let value = terms.fold(T::ZERO, |sum, (a, x)| sum + *a * *x);
-                if value > *high {
-                    *force *= *high / value;
-                } else if value < *low {
-                    *force *= *low / value;
+    }
+
+    fn search(&mut self, steps: &mut u32) -> Result<(), Stop> {
+        let mut inverse = self.inverse(steps)?;
+        loop {
+            self.settle(&mut inverse, steps)?;
+            let Some(mut violated) = self.most_violated() else {
+                return Ok(());
+            };
+            loop {
+                inverse = self.enter(violated, steps)?;
+                match self.most_violated() {
+                    Some(next) => violated = next,
+                    None => break,
                 }
             }
         }
     }
 
-    /// Clips forces into their bounds, against round-off.
-    fn clip<const F: usize>(&self, forces: &mut [Vector3<T>; F]) {
-        let mut bounds = self.lower.iter().zip(&self.upper);
-        for force in forces {
-            for (x, (low, high)) in force.iter_mut().zip(bounds.by_ref()) {
-                *x = so3::math::clamp(*x, *low, *high);
+    /// (w_e + Σ B P Bᵀ)⁻¹.
+    fn inverse(&self, steps: &mut u32) -> Result<Inverse<T>, Stop> {
+        if *steps >= MAX_STEPS {
+            return Err(Stop::Limit);
+        }
+        *steps += 1;
+        let mut square = Square::diagonal(self.effort);
+        for ((face, arm), on) in self.faces.iter().zip(&self.arms).zip(&self.on) {
+            if *on {
+                face.add_to(arm, &mut square);
+            }
+        }
+        Ok(Inverse::new(&square))
+    }
+
+    /// The stationary forces with all rows of the faces met; rows that would pull leave.
+    fn settle(&mut self, inverse: &mut Inverse<T>, steps: &mut u32) -> Result<(), Stop> {
+        loop {
+            let s = self.stationary(inverse);
+            let least = -self.tolerance();
+            let mut pulling = false;
+            for face in &mut self.faces {
+                if let Some((k, multiplier)) = face.least()
+                    && multiplier < least
+                {
+                    self.limits.remove(face, k);
+                    pulling = true;
+                }
+            }
+            if !pulling {
+                return self.confirm(&s);
+            }
+            *inverse = self.inverse(steps)?;
+        }
+    }
+
+    /// Forces and multipliers of the active set, from scratch; returns s.
+    fn stationary(&mut self, inverse: &Inverse<T>) -> Wrench<T> {
+        let mut missing = self.wanted;
+        for ((face, arm), force) in self.faces.iter().zip(&self.arms).zip(&mut self.forces) {
+            *force = face.point();
+            missing = missing.sub(&arm.wrench(force));
+        }
+        let s = inverse.solve(&missing);
+        self.pull = T::ZERO;
+        let feet = self.faces.iter_mut().zip(&self.arms).zip(&self.on);
+        for (((face, arm), on), force) in feet.zip(&mut self.forces) {
+            if *on {
+                let pull = arm.pull(&s);
+                self.pull = math::max(self.pull, pull.amax());
+                *force += face.free(&pull);
+                face.balance(&pull, force);
+            }
+        }
+        s
+    }
+
+    /// Whether the forces make the wrench that their multiplier s says.
+    fn confirm(&self, s: &Wrench<T>) -> Result<(), Stop> {
+        let mut off = self.wanted.sub(&s.scaled(self.effort));
+        for (arm, force) in self.arms.iter().zip(&self.forces) {
+            off = off.sub(&arm.wrench(force));
+        }
+        // False for NaN.
+        if off.size() <= self.wanted.size() * stationarity() {
+            Ok(())
+        } else {
+            Err(Stop::Numerical)
+        }
+    }
+
+    /// Violation, or multiplier below zero, that is round-off, N.
+    fn tolerance(&self) -> T {
+        let sum = self.forces.iter().fold(T::ONE, |sum, f| sum + f.amax());
+        (sum * T::of(4096.0) + self.pull * T::of(8.0)) * T::EPSILON
+    }
+
+    /// Foot and number of the row that is violated most.
+    fn most_violated(&self) -> Option<(usize, usize)> {
+        let (mut worst, mut most) = (None, self.tolerance());
+        for (foot, (force, on)) in self.forces.iter().zip(&self.on).enumerate() {
+            if *on {
+                let violation = self.limits.most_violated(foot, force);
+                if violation.force > most {
+                    (worst, most) = (Some((foot, violation.row)), violation.force);
+                }
+            }
+        }
+        worst
+    }
+
+    /// Moves until the row holds, past the multipliers that reach zero on the way; returns the inverse of the new active set.
+    fn enter(&mut self, (foot, row): (usize, usize), steps: &mut u32) -> Result<Inverse<T>, Stop> {
+        let Row { normal, most } = self.limits.row(row);
+        let mut multiplier = T::ZERO;
+        loop {
+            let limits = &self.limits;
+            let (Some(face), Some(arm)) = (self.faces.get_mut(foot), self.arms.get(foot)) else {
+                return Err(Stop::Numerical);
+            };
+            let split = face.split(&normal);
+            if !split.is_independent(&normal) || face.is_full() {
+                // The force cannot move along the normal: the rows that it depends on give way until one is let go.
+                let rates = face.combination(&normal).map(|x| -x);
+                let Some((k, t)) = face.blocking(&rates, MOST) else {
+                    return Err(Stop::Numerical);
+                };
+                face.advance(t, &rates);
+                multiplier += t;
+                limits.remove(face, k);
+                continue;
+            }
+            face.push(row, most, &split, multiplier);
+            let arm = *arm;
+            let inverse = self.inverse(steps)?;
+            // The old set answers a pull along the normal's free part t with K⁻¹ B t, K = K' + B t (B t)ᵀ/|t|² and K' of the new set.
+            let along = arm.wrench(&split.rest);
+            let answer = inverse.solve(&along);
+            let per_length = T::ONE / split.rest.norm_squared();
+            let stiff = T::ONE + along.dot(&answer) * per_length;
+            let share = T::ONE / stiff;
+            let s = answer.scaled(share);
+            let here = split.rest * share;
+
+            let force = self.forces.get(foot).copied().unwrap_or_default();
+            let (mut t, mut blocking) = ((normal.dot(&force) - most) * stiff * per_length, None);
+            let mut steps_of = [Step::NONE; F];
+            let feet = self.faces.iter().zip(&self.arms).zip(&self.on);
+            for (i, (step, ((face, arm), on))) in steps_of.iter_mut().zip(feet).enumerate() {
+                if !*on {
+                    continue;
+                }
+                let pull = arm.pull(&s);
+                step.force = face.free(&pull);
+                if i == foot {
+                    step.force -= here;
+                }
+                step.rates = face.combination(&(pull - step.force));
+                let old = face.len() - usize::from(i == foot);
+                if let Some((k, reach)) = face.blocking(&step.rates, old)
+                    && reach < t
+                {
+                    (t, blocking) = (reach, Some((i, k)));
+                }
+            }
+            let feet = self.faces.iter_mut().zip(&mut self.forces);
+            for (step, (face, force)) in steps_of.iter().zip(feet) {
+                *force += step.force * t;
+                face.advance(t, &step.rates);
+            }
+            let Some((other, k)) = blocking else {
+                return Ok(inverse);
+            };
+            if let Some(face) = self.faces.get_mut(foot) {
+                multiplier = face.pop();
+            }
+            if let Some(face) = self.faces.get_mut(other) {
+                self.limits.remove(face, k);
             }
         }
     }
+}
+
+/// Largest error of the wrench, relative to the wanted one, of forces that are called optimal.
+fn stationarity<T: Scalar>() -> T {
+    T::of(if T::EPSILON < T::of(1e-12) {
+        1e-9
+    } else {
+        1e-2
+    })
 }

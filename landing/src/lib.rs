@@ -3,16 +3,21 @@
 
 mod controller;
 mod detector;
+mod face;
 mod forces;
 mod least_squares;
+mod limits;
 mod observer;
 mod posture;
+mod program;
 mod settings;
 mod touchdown;
+mod wrench;
 
 pub use controller::{Command, Landing, Outcome, Workspace};
 pub use detector::{Detector, DetectorState};
 pub use observer::{ForceObserver, ObserverState};
 pub use posture::PreLanding;
+pub use program::Program;
 pub use settings::{Settings, Target};
 pub use touchdown::{ContactFilter, TouchdownState};

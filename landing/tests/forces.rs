@@ -6,7 +6,7 @@ use landing::{Landing, Outcome, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, Motion, Tangent};
 
-type A1Landing = Landing<f64, 12, 4, 12, 28>;
+type A1Landing = Landing<f64, 12, 4>;
 
 fn landing() -> A1Landing {
     let feet = FEET.map(|foot| foot.frame);

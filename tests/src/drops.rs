@@ -155,7 +155,7 @@ fn place(plant: &mut Plant, drop: &Drop) {
 pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
     place(plant, drop);
     let feet = FEET.map(|foot| foot.frame);
-    let landing = Landing::<f64, 12, 4, 12, 28>::new(feet, Settings::a1(), [33.5; 12]);
+    let landing = Landing::<f64, 12, 4>::new(feet, Settings::a1(), [33.5; 12]);
     let mut workspace = Workspace::new();
     let detector = Detector::new(feet);
     let posture = PreLanding::new(feet, POSTURE);

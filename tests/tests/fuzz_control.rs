@@ -191,7 +191,7 @@ proptest! {
         waiting in uniform12(number()),
         (q, qd) in (uniform12(number()), uniform12(number())),
     ) {
-        let landing = Landing::<f64, 12, 4, 12, 28>::new(feet(), Settings::a1(), [33.5; 12]);
+        let landing = Landing::<f64, 12, 4>::new(feet(), Settings::a1(), [33.5; 12]);
         let mut workspace = Workspace::new();
         let (height, rot_wb, x, y) = target;
         let target = Target { height, rot_wb, offset_w: [x, y] };

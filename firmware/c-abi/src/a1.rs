@@ -56,8 +56,8 @@ pub struct A1Target {
 }
 
 struct A1Landing {
-    landing: Landing<f64, N, 4, 12, 28>,
-    workspace: Workspace<f64, 12, 28>,
+    landing: Landing<f64, N, 4>,
+    workspace: Workspace<f64, N, 4>,
 }
 
 impl Resident for A1Landing {

@@ -13,7 +13,7 @@ pub struct Control<'a, T: Planned>
 where
     A1Geared: Model<T, 12>,
 {
-    machine: Machine<'a, T, A1Geared, 12, 4, 12, 28>,
+    machine: Machine<'a, T, A1Geared, 12, 4>,
     ticks: u32,
 }
 
@@ -23,7 +23,7 @@ where
 {
     /// Standing, with the jump armed; `None` if the plan in flash is refused.
     #[must_use]
-    pub fn new(workspace: &'a mut Workspace<T, 12, 28>) -> Option<Self> {
+    pub fn new(workspace: &'a mut Workspace<T, 12, 4>) -> Option<Self> {
         let mut machine = Machine::new(&A1Geared, settings(), workspace);
         machine.arm(jump()?, T::of(HOLD)).ok()?;
         Some(Self { machine, ticks: 0 })

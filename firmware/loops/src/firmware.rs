@@ -159,7 +159,7 @@ macro_rules! image {
         #[entry]
         fn main() -> ! {
             let workspace =
-                cortex_m::singleton!(: landing::Workspace<$T, 12, 28> = landing::Workspace::new());
+                cortex_m::singleton!(: landing::Workspace<$T, 12, 4> = landing::Workspace::new());
             let control = workspace.and_then(Control::new);
             let control = control.and_then(|it| cortex_m::singleton!(: Control<'static, $T> = it));
             let robot = <$Board as Board<$T>>::robot();

@@ -121,7 +121,7 @@ pub(crate) fn run_watched(
     trial: Trial<'_>,
     mut tamper: impl FnMut(u64, &mut Told),
     mut progress: impl FnMut(f64, Phase),
-    mut watch: impl FnMut(&landing::Workspace<f64, 12, 28>),
+    mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
     let Trial { sim, seed, without } = trial;
     let disturbance = Disturbance::draw(seed);
@@ -151,8 +151,7 @@ pub(crate) fn run_watched(
         measure.leave(&mut settings);
     }
     let delayed = !without.contains(&Measure::Delay);
-    let mut machine =
-        Machine::<_, _, JOINTS, FOOT_COUNT, 12, 28>::new(&ROBOT, settings, &mut workspace);
+    let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&ROBOT, settings, &mut workspace);
     machine
         .arm(jump, 0.0)
         .map_err(|refusal| refusal.to_string())?;

@@ -2,7 +2,12 @@
 //!
 //! Little-endian f64: variables, rows, number of programs; then per program H, g, A, l, u, and the bounds of the variables.
 
-use landing::Workspace;
+use landing::{Program, Workspace};
+
+use super::{FOOT_COUNT, JOINTS};
+
+const VARIABLES: usize = 3 * FOOT_COUNT;
+const ROWS: usize = 4 * FOOT_COUNT + JOINTS;
 
 /// Programs in the order of their ticks.
 #[derive(Debug, Default)]
@@ -13,8 +18,9 @@ pub(crate) struct Programs {
 
 impl Programs {
     /// Adds the program of the last tick.
-    pub(crate) fn add<const V: usize, const M: usize>(&mut self, workspace: &Workspace<f64, V, M>) {
-        let p = workspace.problem();
+    pub(crate) fn add(&mut self, workspace: &Workspace<f64, JOINTS, FOOT_COUNT>) {
+        let program = Program::<f64, VARIABLES, ROWS>::of(workspace);
+        let p = program.problem();
         let (Some(lower), Some(upper)) = (p.lower, p.upper) else {
             return;
         };
@@ -22,7 +28,7 @@ impl Programs {
         self.numbers.extend(matrices.flatten());
         self.numbers.extend(p.row_lower.iter().chain(p.row_upper));
         self.numbers.extend(lower.iter().chain(upper));
-        self.sizes = [V, M, self.sizes[2] + 1];
+        self.sizes = [VARIABLES, ROWS, self.sizes[2] + 1];
     }
 
     /// The file.

@@ -58,7 +58,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     });
 
     let limits = robot.motors.map(|motor| motor.torque);
-    let landing = Landing::<T, 12, 4, 12, 28>::new(robot.feet, Settings::a1(), limits);
+    let landing = Landing::<T, 12, 4>::new(robot.feet, Settings::a1(), limits);
     let target = Target {
         height: T::of(0.25),
         ..Target::LEVEL

@@ -178,7 +178,7 @@ where
     A1Geared: Model<T, 12>,
 {
     let mut workspace = Workspace::new();
-    let mut machine = Machine::<T, _, 12, 4, 12, 28>::new(&A1Geared, settings(), &mut workspace);
+    let mut machine = Machine::<T, _, 12, 4>::new(&A1Geared, settings(), &mut workspace);
     let Some(jump) = jump() else { return };
     if machine.arm(jump, T::of(HOLD)).is_err() {
         return;
@@ -256,7 +256,7 @@ fn balls<T: Real>(feet: &[Frame<T>; 4]) -> [ContactSphere<T>; BALLS] {
 fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet: &[Frame<T>; 4]) {
     let motors = crate::control::motors(model);
     let torques = motors.map(|motor| motor.torque);
-    let landing = Landing::<T, 12, 4, 12, 28>::new(*feet, landing::Settings::a1(), torques);
+    let landing = Landing::<T, 12, 4>::new(*feet, landing::Settings::a1(), torques);
     let mut workspace = Workspace::new();
     let mut limbs = Limbs::ZERO;
     let stream = &mut Stream::new(2026);
