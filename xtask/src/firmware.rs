@@ -2,12 +2,13 @@
 //!
 //! Every image flies a jump in closed loop with the contact simulator, and must leave the host's bits. The worst call of every
 //! tick is compared with two numbers in `firmware/budgets.txt`: what it took when the file was written, of which five per
-//! cent more is an error, and the goal of the project, which must not be lost once it is met.
+//! cent more is an error, and the goal of the project. A missed goal is an error too, unless the file says `(missed)` beside it; the
+//! verdict names those, and the word must go once the goal is met.
 
 use core::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use object::{Object, ObjectSegment};
 
 use crate::bare::Bare;
@@ -19,9 +20,12 @@ use crate::{probe, replay, run};
 /// What may be added to a stored number before it is an error.
 const TOLERANCE: f64 = 1.05;
 
+/// Written behind a goal that is known not to be met.
+const EXCUSE: &str = "(missed)";
+
 const HEADER: &str = "\
 # Costs of the control ticks at worst over a jump, and of wild states, as `cargo xtask firmware --overwrite` measured them.
-# The goals are written by hand and kept; `-` is none.
+# The goals are written by hand and kept; `-` is none; `(missed)` is one that is known not to be met.
 # board image tick | instructions, goal | bytes of stack, goal
 ";
 
@@ -39,13 +43,25 @@ pub(crate) struct Args {
 struct Budget {
     stored: Option<f64>,
     goal: Option<f64>,
+    /// Whether the goal is known not to be met.
+    excused: bool,
 }
 
 impl Budget {
-    /// Whether `measured` is within budget: no more than before, and no goal lost that was met.
-    fn holds(&self, measured: f64) -> bool {
-        let most = self.stored.map_or(f64::INFINITY, |x| x * TOLERANCE);
-        measured <= most && (!self.misses(measured) || self.stored.is_some_and(|x| self.misses(x)))
+    /// What is wrong with `measured`: more than before, or on the wrong side of its goal.
+    fn complaint(&self, measured: f64) -> Option<String> {
+        let goal = self.goal.unwrap_or(f64::INFINITY);
+        match (self.misses(measured), self.excused) {
+            (true, false) => return Some(format!("{measured}, more than its goal {goal}")),
+            (false, true) => {
+                return Some(format!(
+                    "{measured}, which meets its goal {goal}: take `(missed)` away"
+                ));
+            }
+            _ => {}
+        }
+        let stored = self.stored?;
+        (measured > stored * TOLERANCE).then(|| format!("{measured}, {stored} before"))
     }
 
     /// Whether there is a goal that `measured` does not meet.
@@ -66,7 +82,7 @@ struct Line {
 pub(crate) fn run(args: &Args) -> Result<()> {
     let path = run::root().join("firmware/budgets.txt");
     let mut lines = read(&path)?;
-    let (mut exceeded, mut ticks, mut missed) = (Vec::new(), 0, 0);
+    let (mut wrong, mut excused, mut ticks) = (Vec::new(), Vec::new(), 0);
     for board in args.selection.boards() {
         let bare = Bare::find(board.target, args.selection.core)?;
         println!("{}: {}; {bare}", board.name, board.processor);
@@ -86,7 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             );
             for worst in &worst {
                 ticks += 1;
-                missed += usize::from(judge(board, name, worst, &mut lines, &mut exceeded));
+                judge(board, name, worst, &mut lines, &mut wrong, &mut excused);
             }
         }
         if board.name == BOARDS[0].name && args.selection.names_no_image() {
@@ -97,27 +113,29 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if args.overwrite {
         write(&path, &lines)?;
     }
-    if exceeded.is_empty() {
-        println!(
-            "firmware: {ticks} ticks equal the host's and cost no more than before; {missed} still miss a goal"
-        );
-        return Ok(());
-    }
-    bail!(
-        "firmware: {} of {ticks} ticks exceed their budgets: {}",
-        exceeded.len(),
-        exceeded.join("; ")
-    )
+    ensure!(
+        wrong.is_empty(),
+        "firmware: {} of {ticks} ticks are out of budget: {}",
+        wrong.len(),
+        wrong.join("; ")
+    );
+    let known = match excused.as_slice() {
+        [] => "and meet every goal".into(),
+        some => format!("and meet every goal but {}", some.join("; ")),
+    };
+    println!("firmware: {ticks} ticks equal the host's, cost no more than before, {known}");
+    Ok(())
 }
 
-/// Prints a tick beside its budgets, and stores it; returns whether it misses a goal.
+/// Prints a tick beside its budgets, and stores it; adds what is wrong, and goals that are known to be missed.
 fn judge(
     board: &Board,
     image: &str,
     worst: &Worst,
     lines: &mut Vec<Line>,
-    exceeded: &mut Vec<String>,
-) -> bool {
+    wrong: &mut Vec<String>,
+    excused: &mut Vec<String>,
+) {
     let tick = worst.label.rsplit('/').next().unwrap_or_default();
     let key = format!("{} {image} {}", board.name, tick.replace(' ', "-"));
     let known = lines.iter().position(|line| line.key == key);
@@ -130,7 +148,7 @@ fn judge(
         lines.len() - 1
     });
     let Some(line) = lines.get_mut(index) else {
-        return false;
+        return;
     };
     let stack = f64::from(worst.stack);
     let goal = |budget: &Budget, measured: f64| match budget.goal {
@@ -146,15 +164,18 @@ fn judge(
         worst.stack,
         goal(&line.stack, stack)
     );
-    if !line.instructions.holds(worst.instructions) {
-        exceeded.push(format!("{key} took {} instructions", worst.instructions));
+    let measured = [
+        ("instructions", &mut line.instructions, worst.instructions),
+        ("bytes of stack", &mut line.stack, stack),
+    ];
+    for (unit, budget, number) in measured {
+        if let Some(complaint) = budget.complaint(number) {
+            wrong.push(format!("{key} took {complaint} ({unit})"));
+        } else if budget.excused {
+            excused.push(format!("{key} ({number} {unit})"));
+        }
+        budget.stored = Some(number);
     }
-    if !line.stack.holds(stack) {
-        exceeded.push(format!("{key} took {stack} B of stack"));
-    }
-    line.instructions.stored = Some(worst.instructions);
-    line.stack.stored = Some(stack);
-    line.instructions.misses(worst.instructions) || line.stack.misses(stack)
 }
 
 /// Bytes of the image: code, tables, and what data begin with.
@@ -182,9 +203,11 @@ fn parse(line: &str) -> Result<Line> {
             "-" => Ok(None),
             number => number.parse::<f64>().map(Some),
         };
+        let sure = goal.trim().strip_suffix(EXCUSE);
         Ok(Budget {
             stored: number(stored)?,
-            goal: number(goal)?,
+            goal: number(sure.unwrap_or(goal))?,
+            excused: sure.is_some(),
         })
     };
     Ok(Line {
@@ -198,7 +221,14 @@ fn write(path: &PathBuf, lines: &[Line]) -> Result<()> {
     let number = |x: Option<f64>| x.map_or_else(|| "-".into(), |x| x.to_string());
     let mut text = HEADER.to_owned();
     for line in lines {
-        let budget = |b: &Budget| format!("{}, {}", number(b.stored), number(b.goal));
+        let budget = |b: &Budget| {
+            let excuse = if b.excused {
+                format!(" {EXCUSE}")
+            } else {
+                String::new()
+            };
+            format!("{}, {}{excuse}", number(b.stored), number(b.goal))
+        };
         writeln!(
             text,
             "{} | {} | {}",
@@ -215,26 +245,27 @@ mod tests {
     use super::{Budget, parse};
 
     #[test]
-    fn five_per_cent_more_or_a_lost_goal_is_an_error() {
-        let line = parse("mps2-an500 jump landing-tick | 1000, 2000 | 500, -").ok();
+    fn five_per_cent_more_or_a_missed_goal_is_an_error() {
+        let line = parse("mps2-an500 jump landing-tick | 1000, 2000 | 500, 400 (missed)").ok();
         let budgets = line.map(|line| (line.instructions, line.stack));
         let Some((instructions, stack)) = budgets else {
             unreachable!("the line has all parts")
         };
-        assert!(instructions.holds(1050.0) && !instructions.holds(1051.0));
-        assert!(stack.holds(525.0) && !stack.holds(526.0));
-        let with = |goal| Budget {
-            stored: Some(1000.0),
+        let holds = |budget: &Budget, x| budget.complaint(x).is_none();
+        assert!(holds(&instructions, 1050.0) && !holds(&instructions, 1051.0));
+        // Known to be missed: no worse than before, and met only if the file says so.
+        assert!(stack.excused && holds(&stack, 525.0) && !holds(&stack, 526.0));
+        assert!(!holds(&stack, 400.0));
+        let with = |stored, goal| Budget {
+            stored,
             goal: Some(goal),
+            excused: false,
         };
-        assert!(with(1020.0).holds(1020.0) && !with(1020.0).holds(1030.0));
-        // Missed before, and no worse now.
-        assert!(with(900.0).holds(1050.0) && with(900.0).misses(1050.0));
-        let new = Budget {
-            stored: None,
-            ..with(900.0)
-        };
-        assert!(new.holds(900.0) && !new.holds(901.0));
+        let close = with(Some(1000.0), 1020.0);
+        assert!(holds(&close, 1020.0) && !holds(&close, 1030.0));
+        let new = with(None, 900.0);
+        assert!(holds(&new, 900.0) && !holds(&new, 901.0));
         assert!(parse("no budgets").is_err() && parse("a | 1, x | 1, 2").is_err());
+        assert!(parse("a | 1, 2 (forgiven) | 1, 2").is_err());
     }
 }

@@ -4,7 +4,7 @@ use a1_model::A1Geared;
 use contact_sim::{Block, ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
 use jump_control::{Measurement, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Tick, Work};
-use landing::{Landing, Target, Workspace};
+use landing::{Landing, Outcome, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
     Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
@@ -25,7 +25,7 @@ const RATIO: usize = 10;
 /// Balls that touch the ground: feet and knees.
 const BALLS: usize = 8;
 /// States that no jump visits, on which the landing is tried.
-const WILD: usize = 100;
+const WILD: usize = 1000;
 
 impl Numbers for Tick {
     fn visit(&self, take: &mut dyn FnMut(f64)) {
@@ -287,7 +287,10 @@ fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet
                 limbs.update(model, q, feet);
                 landing.step_at(model, limbs, v, &on, &target, &q.joints, ws)
             },
-            |_| "wild landing tick",
+            |command| match command.outcome {
+                Outcome::Failed(_) => "capped landing tick",
+                _ => "wild landing tick",
+            },
         );
     }
 }
