@@ -1,6 +1,8 @@
 //! The humanoid's jumps, end to end.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+mod recording;
+
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -57,7 +59,9 @@ fn the_torque_program_jumps_four_centimetres_and_stands() {
 #[test]
 fn the_report_has_the_figures_of_the_paper() {
     run("icub/velocity", "icub-report", &[]);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("icub-report/report.html");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("icub-report");
+    assert!(recording::agrees_with_csv(&folder) > 100);
+    let path = folder.join("report.html");
     let page = std::fs::read_to_string(path).unwrap();
     let data = page.split("const DATA = ").nth(1).unwrap();
     let data: Value = serde_json::from_str(data.split(";</script>").next().unwrap()).unwrap();

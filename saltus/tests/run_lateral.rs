@@ -1,6 +1,8 @@
 //! The main job, end to end: one command plans, simulates and reports a jump.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+mod recording;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -67,6 +69,8 @@ fn lateral_lands_upright_on_its_target_and_leaves_a_report() {
             "the report needs the network: {outside}"
         );
     }
+    // Standing on four feet alone is longer than the flight.
+    assert!(recording::agrees_with_csv(&out) > 500);
     let log = std::fs::read_to_string(out.join("log.csv")).unwrap();
     let columns = log.lines().next().unwrap().split(',').count();
     assert!(log.lines().all(|line| line.split(',').count() == columns));

@@ -46,7 +46,13 @@ fn a_stored_plan_jumps_as_the_one_that_was_just_made() {
         let [a, b] = [&fresh, &stored].map(|result| result[key].as_f64().unwrap());
         assert!((a - b).abs() < 2e-3, "{key}: {a} and {b}");
     }
-    for name in ["report.html", "log.csv", "result.json", "strip.svg"] {
+    for name in [
+        "report.html",
+        "log.csv",
+        "log.mcap",
+        "result.json",
+        "strip.svg",
+    ] {
         assert!(folder.join("stored").join(name).exists(), "{name}");
     }
 

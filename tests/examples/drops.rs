@@ -1,69 +1,127 @@
-//! The table of drops: `cargo run --release -p saltus-tests --example drops`, and with MuJoCo
-//! `cargo xtask mujoco run --release -p saltus-tests --features mujoco --example drops`.
+//! Landing alone, A1 dropped on its feet: `cargo run --release -p saltus-tests --example drops -- [DROPS] [SEED]`, and with MuJoCo
+//! `cargo xtask mujoco run --release -p saltus-tests --features mujoco --example drops -- [DROPS] [SEED]`.
+//!
+//! DROPS (100) from 0.3 to 1.0 m, each again with one foot sensor dead, stuck or chattering; then a fifth of that from higher up, beside
+//! the height that the joints' energy allows.
 #![allow(missing_docs, reason = "a program")]
 
-use saltus_tests::drops::{Drop, End, Plant, Wrong, eighteen, native, run};
+use core::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Mutex;
 
-fn good(plant: &mut Plant, drops: impl Iterator<Item = Drop>) -> Result<String, String> {
-    let ends: Vec<(Drop, End)> = drops
-        .map(|drop| run(plant, &drop).map(|end| (drop, end)))
-        .collect::<Result<_, _>>()
-        .map_err(|e| e.to_string())?;
+use saltus_tests::drops::{Drop, End, Plant, Wrong, drawn, energy_bound, native, run, with_fault};
+
+type Make = fn() -> Result<Plant, String>;
+
+/// Runs drops 0 to `count` on all cores.
+fn all(
+    make: Make,
+    count: u64,
+    drop: impl Fn(u64) -> Drop + Sync,
+) -> Result<Vec<(Drop, End)>, String> {
+    let next = AtomicU64::new(0);
+    let ends = Mutex::new(Vec::new());
+    let work = || -> Result<(), String> {
+        let mut plant = make()?;
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return Ok(());
+            }
+            let drop = drop(index);
+            let end = run(&mut plant, &drop).map_err(|error| error.to_string())?;
+            ends.lock()
+                .map_err(|error| error.to_string())?
+                .push((drop, end));
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .try_for_each(|worker| match worker.join() {
+                Ok(result) => result,
+                Err(_) => Err("a worker panicked".to_owned()),
+            })
+    })?;
+    ends.into_inner().map_err(|error| error.to_string())
+}
+
+/// Prints a row, and the drops that went wrong; the number of good ones.
+fn row(what: &str, ends: &[&(Drop, End)]) -> usize {
     let good = ends.iter().filter(|(_, end)| end.good()).count();
-    let bad: Vec<String> = ends
-        .iter()
-        .filter(|(_, end)| !end.good())
-        .map(|(drop, end)| {
-            format!(
-                "roll {:.0} pitch {:.0} sideways {} {:?}: upright {} trunk {} rest {}",
-                drop.roll.to_degrees(),
-                drop.pitch.to_degrees(),
-                drop.sideways,
-                drop.fault,
-                end.upright,
-                end.trunk_touched,
-                end.at_rest
-            )
-        })
-        .collect();
-    Ok(format!(
-        "{good} of {}{}",
-        ends.len(),
-        bad.iter().map(|b| format!("\n    {b}")).collect::<String>()
-    ))
+    let failures: u32 = ends.iter().map(|(_, end)| end.failures).sum();
+    let share = 100.0 * good as f64 / ends.len().max(1) as f64;
+    println!(
+        "{what:40} {good:4} of {:4}  {share:5.1} %  {failures} QPs failed",
+        ends.len()
+    );
+    for (drop, end) in ends.iter().filter(|(_, end)| !end.good()).take(20) {
+        println!(
+            "    {:.2} m, roll {:.0}, pitch {:.0}, {:.2} m/s, {:?}: upright {}, trunk touched {}, at rest {}",
+            drop.height,
+            drop.roll.to_degrees(),
+            drop.pitch.to_degrees(),
+            drop.sideways,
+            drop.fault,
+            end.upright,
+            end.trunk_touched,
+            end.at_rest
+        );
+    }
+    good
+}
+
+fn study(name: &str, make: Make, count: u64, seed: u64) -> Result<(), String> {
+    println!("{name}, seed {seed}: tilted by up to 20 degrees, up to 0.5 m/s sideways");
+    let low = [0.3, 1.0];
+    let right = all(make, count, |i| drawn(seed, i, low))?;
+    let wrong = all(make, count, |i| with_fault(&drawn(seed, i, low), i))?;
+    let good = row("0.3 to 1.0 m", &right.iter().collect::<Vec<_>>());
+    let still = row(
+        "the same, one foot sensor wrong",
+        &wrong.iter().collect::<Vec<_>>(),
+    );
+    let lost = 100.0 * (good as f64 - still as f64) / count as f64;
+    println!("    points lost: {lost:.1}");
+    for kind in [Wrong::Dead, Wrong::Stuck, Wrong::Chattering] {
+        let of_kind = |(drop, _): &&(Drop, End)| drop.fault.is_some_and(|(_, is)| is == kind);
+        row(
+            &format!("    {kind:?}"),
+            &wrong.iter().filter(of_kind).collect::<Vec<_>>(),
+        );
+    }
+    println!(
+        "the knees alone can take up a level fall of {:.2} m",
+        energy_bound()
+    );
+    for height in [1.0, 1.25, 1.5, 1.75, 2.0] {
+        let ends = all(make, count.div_ceil(5), |i| {
+            drawn(seed, i, [height, height])
+        })?;
+        row(&format!("{height} m"), &ends.iter().collect::<Vec<_>>());
+    }
+    Ok(())
 }
 
 fn main() -> Result<(), String> {
-    let heights: Vec<f64> = std::env::args()
-        .skip(1)
-        .filter_map(|a| a.parse().ok())
-        .collect();
-    let heights = if heights.is_empty() {
-        vec![0.3, 0.5, 0.8, 1.0]
-    } else {
-        heights
+    let mut arguments = std::env::args().skip(1);
+    let mut number = |default: u64| match arguments.next() {
+        None => Ok(default),
+        Some(text) => text
+            .parse::<u64>()
+            .map_err(|error| format!("{text}: {error}: give DROPS and SEED as numbers")),
     };
-    let mut plants: Vec<(&str, Plant)> = vec![("native", native())];
-    #[cfg(feature = "mujoco")]
-    plants.push((
-        "mujoco",
-        saltus_tests::drops::mujoco().map_err(|e| e.to_string())?,
-    ));
-    for (name, plant) in &mut plants {
-        for height in &heights {
-            println!("{name} {height} m: {}", good(plant, eighteen(*height))?);
-            for wrong in [Wrong::Dead, Wrong::Stuck, Wrong::Chattering] {
-                // Each drop with one bad foot, in turn.
-                let drops = eighteen(*height).enumerate().map(|(i, drop)| Drop {
-                    fault: Some((i % 4, wrong)),
-                    ..drop
-                });
-                println!(
-                    "{name} {height} m, one foot {wrong:?}: {}",
-                    good(plant, drops)?
-                );
-            }
-        }
+    let (count, seed) = (number(100)?, number(1)?);
+    if cfg!(not(feature = "mujoco")) {
+        return study("native", || Ok(native()), count, seed);
     }
+    #[cfg(feature = "mujoco")]
+    study(
+        "mujoco",
+        || saltus_tests::drops::mujoco().map_err(|error| error.to_string()),
+        count,
+        seed,
+    )?;
     Ok(())
 }

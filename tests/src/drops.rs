@@ -14,6 +14,12 @@ pub const CONTACTS: usize = 12;
 /// A plant for drops.
 pub type Plant = Box<dyn Simulator<f64, 12, CONTACTS, Error = Error>>;
 
+/// Mass of the robot, kg; gravity, m/s².
+const MASS: f64 = 13.741;
+const GRAVITY: f64 = 9.81;
+/// Thigh and shank, m.
+const LINK: f64 = 0.2;
+
 /// Legs under and 4 cm outside the hips, 0.29 m long.
 pub const POSTURE: [f64; 12] = [
     0.14, 0.77, -1.54, -0.14, 0.77, -1.54, 0.14, 0.77, -1.54, -0.14, 0.77, -1.54,
@@ -126,6 +132,55 @@ fn coin(seed: &mut u64) -> bool {
     *seed >> 63 == 1
 }
 
+/// Numbers in [0, 1) from a seed (SplitMix64).
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Drop number `index` of a study, all sensors right: a height between two, tilted by up to 20° about any horizontal axis,
+/// at up to 0.5 m/s sideways.
+#[must_use]
+pub fn drawn(seed: u64, index: u64, [low, high]: [f64; 2]) -> Drop {
+    let mut state = seed ^ index.wrapping_mul(0xd134_2543_de82_ef95);
+    let mut between = |a: f64, b: f64| a + (b - a) * uniform(&mut state);
+    let tilt = between(0.0, 20.0).to_radians();
+    let about = between(0.0, core::f64::consts::TAU);
+    Drop {
+        height: between(low, high),
+        roll: tilt * so3::math::cos(about),
+        pitch: tilt * so3::math::sin(about),
+        sideways: between(-0.5, 0.5),
+        fault: None,
+    }
+}
+
+/// A drop with one sensor wrong: kinds and feet in turn.
+#[must_use]
+pub fn with_fault(drop: &Drop, index: u64) -> Drop {
+    let kinds = [Wrong::Dead, Wrong::Stuck, Wrong::Chattering];
+    let foot = (index / 3 % 4) as usize;
+    Drop {
+        fault: Some((foot, kinds[(index % 3) as usize])),
+        ..*drop
+    }
+}
+
+/// Height from which the knees alone can take up a level fall, m: at full torque from the landing posture to their stops,
+/// feet under the hips. Beyond it a landing lives on what impacts and friction take.
+///
+/// 4 τ (q_stop − q) = m g (h + ΔL), with legs of length L = 2 l cos(q/2).
+#[must_use]
+pub fn energy_bound() -> f64 {
+    let (start, stop) = (-POSTURE[2], -a1::LIMITS[2].lower);
+    let work = 4.0 * MOTORS[2].torque * (stop - start);
+    let leg = |knee: f64| 2.0 * LINK * so3::math::cos(0.5 * knee);
+    work / (MASS * GRAVITY) - (leg(start) - leg(stop))
+}
+
 fn place(plant: &mut Plant, drop: &Drop) {
     let mut q = Configuration {
         joints: POSTURE,
@@ -171,7 +226,8 @@ pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
         failures: 0,
         faulty: [false; 4],
     };
-    let mut seed = 7;
+    // Another chattering for every drop.
+    let mut seed = drop.height.to_bits() ^ 7;
     let mut felt = [0.0; 12];
     for k in 0..3000 {
         let (q, v) = (*plant.configuration(), *plant.velocity());

@@ -6,6 +6,7 @@ mod board;
 mod c_abi;
 mod ci;
 mod cross;
+mod devtools;
 mod examples;
 mod firmware;
 mod first_hour;

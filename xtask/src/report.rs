@@ -1,24 +1,31 @@
 //! `cargo xtask report`: the report of a run, looked at with a real browser.
 //!
-//! Chromium opens the file at two times of the animation, which the address asks for. Both pictures must show something, they must
-//! differ, and the page must not complain on its console.
+//! Chromium opens the file and presses its buttons. The animation waits where the address asks for, plays when `Play` is clicked and
+//! stops when `Pause` is; the picture shows something, it changes while time goes on, and the page says nothing on its console.
 
 use core::time::Duration;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
+use std::thread;
+use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
+use crate::devtools::Browser;
 use crate::run;
 
 /// The window, pixels.
 const WINDOW: [u32; 2] = [1200, 900];
 /// Where the animation is in it: left, top, right, bottom, pixels.
 const VIEW: [u32; 4] = [60, 190, 1140, 540];
-/// Times of the animation: before the take-off and in flight, s.
-const TIMES: [f64; 2] = [0.1, 0.65];
+/// Time of the animation at which the page is opened, before the take-off, s.
+const BEGIN: f64 = 0.1;
+/// Time of the animation that playing must reach, in flight, s.
+const FLYING: f64 = 0.65;
+/// Longest time for that: a quarter of the speed, and a slow machine.
+const PLAYING: Duration = Duration::from_secs(60);
 /// Fewest colours of a picture that shows something.
 const COLORS: usize = 100;
 /// Fewest pixels that an animation changes between the two.
@@ -49,21 +56,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !run::exists(&args.browser.to_string_lossy()) {
         run::install_debian(&["chromium"])?;
     }
-    let [first, second] = TIMES;
-    let before = look(&args.browser, &html, &folder, first)?;
-    let after = look(&args.browser, &html, &folder, second)?;
-    let colors = before.colors();
-    ensure!(
-        colors >= COLORS,
-        "the report shows nothing: {colors} colours in the animation's place"
-    );
-    let moved = before.changed(&after);
-    ensure!(
-        moved >= MOVED,
-        "the animation stands still: {moved} pixels changed from {first} to {second} s"
-    );
-    println!("{colors} colours, {moved} pixels move, nothing on the console");
-    Ok(())
+    let mut browser = Browser::start(&args.browser, &folder.join("profile"), WINDOW)?;
+    play(&mut browser, &html, &folder)
 }
 
 /// Runs a short jump for its report.
@@ -78,45 +72,80 @@ fn make(folder: &Path) -> Result<PathBuf> {
     Ok(out.join("report.html"))
 }
 
-/// A picture of the page at a time of the animation; what it says on its console is an error.
-fn look(browser: &Path, html: &Path, folder: &Path, time: f64) -> Result<Picture> {
-    let png = folder.join(format!("at-{time}-s.png"));
-    let log = folder.join(format!("at-{time}-s.log"));
-    let [width, height] = WINDOW;
-    let mut chromium = Command::new(browser);
-    chromium
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-            "--disable-quic",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--hide-scrollbars",
-            "--virtual-time-budget=3000",
-            "--enable-logging=stderr",
-        ])
-        .arg(format!(
-            "--user-data-dir={}",
-            folder.join("profile").display()
-        ))
-        .arg(format!("--window-size={width},{height}"))
-        .arg(format!("--screenshot={}", png.display()))
-        .arg(format!("file://{}#t={time}", html.display()))
-        .stderr(File::create(&log)?);
-    run::stdout_within(&mut chromium, Duration::from_secs(180))?;
-    let said = fs::read(&log)?;
-    for line in String::from_utf8_lossy(&said).lines() {
-        // Software rendering is slow, and the driver says so.
-        if line.contains("CONSOLE") && !line.contains("GL Driver Message") {
-            bail!("the page says on its console: {line}");
+/// What the page shows of time: the label of its button, and where it is, s.
+fn clock(browser: &mut Browser) -> Result<(String, f64)> {
+    let both = browser.ask(
+        "[document.getElementById('play').textContent, +document.getElementById('scrub').value]",
+    )?;
+    let label = both[0].as_str().context("no button")?;
+    Ok((label.to_owned(), both[1].as_f64().context("no time")?))
+}
+
+/// A picture of the page, kept as a file.
+fn picture(browser: &mut Browser, path: &Path) -> Result<Picture> {
+    fs::write(path, browser.picture()?)?;
+    Picture::read(path)
+}
+
+/// Opens the page, lets it play and stops it.
+fn play(browser: &mut Browser, html: &Path, folder: &Path) -> Result<()> {
+    browser.open(&format!("file://{}#t={BEGIN}", html.display()))?;
+    let (label, begin) = clock(browser)?;
+    ensure!(
+        label == "Play" && (begin - BEGIN).abs() < 1e-3,
+        "at #t={BEGIN} the page shows `{label}` at {begin} s"
+    );
+    let before = picture(browser, &folder.join("waits.png"))?;
+    let colors = before.colors();
+    ensure!(
+        colors >= COLORS,
+        "the report shows nothing: {colors} colours in the animation's place"
+    );
+    let (_, still) = clock(browser)?;
+    ensure!(
+        still == begin,
+        "the animation does not wait: {begin} to {still} s"
+    );
+
+    browser.click("play")?;
+    let limit = Instant::now() + PLAYING;
+    let passed = loop {
+        let (label, now) = clock(browser)?;
+        ensure!(
+            label == "Pause",
+            "after a click on Play the button says `{label}`"
+        );
+        if now >= FLYING {
+            break now;
         }
-    }
-    Picture::read(&png)
+        ensure!(
+            Instant::now() < limit,
+            "the animation stands still: {now} s after {} s of playing",
+            PLAYING.as_secs()
+        );
+        thread::sleep(Duration::from_millis(20));
+    };
+    let after = picture(browser, &folder.join("plays.png"))?;
+    let moved = before.changed(&after);
+    ensure!(
+        moved >= MOVED,
+        "nothing moves: {moved} pixels changed from {begin} to {passed} s"
+    );
+
+    browser.click("play")?;
+    let (label, stopped) = clock(browser)?;
+    thread::sleep(Duration::from_millis(300));
+    let (_, later) = clock(browser)?;
+    ensure!(
+        label == "Play" && later == stopped,
+        "after a click on Pause the button says `{label}` and time goes from {stopped} to {later} s"
+    );
+    let said = browser.console();
+    ensure!(said.is_empty(), "the page says on its console: {said:?}");
+    println!(
+        "{colors} colours, {moved} pixels move while it plays from {begin} to {passed:.3} s, nothing on the console"
+    );
+    Ok(())
 }
 
 /// Pixels of the animation's place, red, green, blue.

@@ -1,7 +1,7 @@
 //! What is kept of a run: one sample per millisecond.
 
 use super::{JOINTS, ROBOT};
-use core::fmt::Write;
+use crate::log::{Log, Row};
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
 use rbd_core::{Model, Motion};
@@ -40,20 +40,46 @@ impl Sample {
     }
 }
 
-/// The samples as CSV.
-pub(crate) fn csv(samples: &[Sample]) -> String {
-    let mut out = String::from(
-        "time,phase,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,com_x,com_y,com_z,com_vx,com_vy,com_vz,com_z_plan,h_x,h_y,h_z,\
-         locked_x,locked_y,locked_z",
-    );
+/// The samples as a table.
+pub(crate) fn table(samples: &[Sample]) -> Log {
+    let own = [
+        "x",
+        "y",
+        "z",
+        "qx",
+        "qy",
+        "qz",
+        "qw",
+        "vx",
+        "vy",
+        "vz",
+        "wx",
+        "wy",
+        "wz",
+        "com_x",
+        "com_y",
+        "com_z",
+        "com_vx",
+        "com_vy",
+        "com_vz",
+        "com_z_plan",
+        "h_x",
+        "h_y",
+        "h_z",
+        "locked_x",
+        "locked_y",
+        "locked_z",
+    ];
+    let mut columns = own.map(str::to_owned).to_vec();
     for kind in ["q", "qd", "tau"] {
-        for name in Model::<f64, JOINTS>::joint_names(&ROBOT) {
-            let _ = write!(out, ",{kind}_{name}");
-        }
+        let names = Model::<f64, JOINTS>::joint_names(&ROBOT);
+        columns.extend(names.iter().map(|name| format!("{kind}_{name}")));
     }
-    out.push_str(",f_left_x,f_left_y,f_left_z,f_right_x,f_right_y,f_right_z,clearance\n");
-    for s in samples {
-        let _ = write!(out, "{:.4},{:?}", s.time, s.phase);
+    for foot in ["left", "right"] {
+        columns.extend(["x", "y", "z"].map(|axis| format!("f_{foot}_{axis}")));
+    }
+    columns.push("clearance".to_owned());
+    let rows = samples.iter().map(|s| {
         let base_velocity = s.base_velocity.to_array();
         let numbers = s
             .position
@@ -70,10 +96,14 @@ pub(crate) fn csv(samples: &[Sample]) -> String {
             .chain(&s.torques)
             .chain(s.forces_w.iter().flat_map(|f| f.iter()))
             .chain(core::iter::once(&s.clearance));
-        for x in numbers {
-            let _ = write!(out, ",{x:.6}");
+        Row {
+            time: s.time,
+            phase: format!("{:?}", s.phase),
+            numbers: numbers.copied().collect(),
         }
-        out.push('\n');
+    });
+    Log {
+        rows: rows.collect(),
+        columns,
     }
-    out
 }

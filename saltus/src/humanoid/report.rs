@@ -4,12 +4,20 @@
 use super::execute::Run;
 use super::log::Sample;
 use super::{JOINTS, ROBOT, State, Task, poses};
+use crate::log::Log;
+use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::Phase;
+use nalgebra::Vector3;
 use rbd_core::{Model, Transform};
 use serde_json::{Value, json};
+
+/// The base as a box, m.
+const TRUNK_SIZE: [f64; 3] = [0.12, 0.18, 0.14];
+/// Radius of the balls in the place of feet, m.
+const DRAWN_FOOT: f64 = 0.02;
 
 /// The report's text; `free` is the same jump without the rows on angular momentum.
 pub(crate) fn html(
@@ -26,8 +34,8 @@ pub(crate) fn html(
         "scene": {
             "floor": 0.0,
             "block": null,
-            "foot_radius": 0.02,
-            "trunk": [0.12, 0.18, 0.14],
+            "foot_radius": DRAWN_FOOT,
+            "trunk": TRUNK_SIZE,
             // The base's x axis points backwards.
             "nose": -0.07,
             "goal": [0.0, 0.0, 0.0],
@@ -40,32 +48,53 @@ pub(crate) fn html(
     Ok(page(&title, intro, &data))
 }
 
-/// Both legs and both arms as chains of four points, with the forces on the soles.
+/// Both legs and both arms as chains of four points.
+fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
+    let q = State {
+        base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
+        joints: s.joints,
+    };
+    let poses = poses(&q);
+    let body = |i: usize| poses.bodies[i].translation;
+    let leg = |hip: usize, sole: usize| {
+        let foot = poses.frame(&SOLES[sole].frame).translation;
+        [body(hip), body(hip + 3), body(hip + 4), foot]
+    };
+    let arm = |shoulder: usize| {
+        let (upper, elbow) = (body(shoulder), body(shoulder + 3));
+        [body(joint::TORSO_YAW), upper, upper, elbow]
+    };
+    [
+        leg(joint::L_HIP_PITCH, 0),
+        leg(joint::R_HIP_PITCH, 1),
+        arm(joint::L_SHOULDER_PITCH),
+        arm(joint::R_SHOULDER_PITCH),
+    ]
+}
+
+/// The run as MCAP.
+pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
+    let scene = Scene {
+        trunk: TRUNK_SIZE,
+        foot_radius: DRAWN_FOOT,
+        floor: 0.0,
+        block: None,
+    };
+    recording::mcap(task.name(), log, &scene, |k| {
+        let s = &run.samples[k];
+        let [left, right] = s.forces_w;
+        Frame {
+            position: s.position,
+            orientation: s.orientation,
+            limbs: limbs(s),
+            forces_w: [left, right, Vector3::zeros(), Vector3::zeros()],
+        }
+    })
+}
+
+/// Limbs with the forces on the soles, for the animation.
 fn frames(samples: &[Sample]) -> Value {
     let kept: Vec<&Sample> = samples.iter().step_by(FRAME).collect();
-    let points = |s: &Sample| {
-        let q = State {
-            base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
-            joints: s.joints,
-        };
-        let poses = poses(&q);
-        let body = |i: usize| poses.bodies[i].translation;
-        let leg = |hip: usize, sole: usize| {
-            let foot = poses.frame(&SOLES[sole].frame).translation;
-            [body(hip), body(hip + 3), body(hip + 4), foot]
-        };
-        let arm = |shoulder: usize| {
-            let (upper, elbow) = (body(shoulder), body(shoulder + 3));
-            [body(joint::TORSO_YAW), upper, upper, elbow]
-        };
-        let limbs = [
-            leg(joint::L_HIP_PITCH, 0),
-            leg(joint::R_HIP_PITCH, 1),
-            arm(joint::L_SHOULDER_PITCH),
-            arm(joint::R_SHOULDER_PITCH),
-        ];
-        limbs.as_flattened().iter().map(vector).collect::<Vec<_>>()
-    };
     let zero = json!([0, 0, 0]);
     let forces = |s: &Sample| {
         let [left, right] = s.forces_w.each_ref().map(vector);
@@ -78,7 +107,7 @@ fn frames(samples: &[Sample]) -> Value {
         "position": each(&|s| vector(&s.position)),
         "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
         "com": each(&|s| vector(&s.com)),
-        "points": each(&|s| json!(points(s))),
+        "points": each(&|s| json!(limbs(s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&forces),
     })
 }

@@ -1,7 +1,7 @@
 //! What is kept of a run: one sample per millisecond.
 
 use super::{FOOT_COUNT, JOINTS, SPHERES};
-use core::fmt::Write;
+use crate::log::{Log, Row};
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
 use rbd_core::Model;
@@ -33,26 +33,23 @@ pub(crate) fn joint_names() -> [String; JOINTS] {
     Model::<f64, JOINTS>::joint_names(&super::ROBOT).map(|name| name.replace("_joint", ""))
 }
 
-/// The samples as CSV.
-pub(crate) fn csv(samples: &[Sample]) -> String {
-    let mut out = String::from("time,phase,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,com_x,com_y,com_z");
+/// The samples as a table.
+pub(crate) fn table(samples: &[Sample]) -> Log {
+    let own = [
+        "x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz", "com_x",
+        "com_y", "com_z",
+    ];
+    let mut columns = own.map(str::to_owned).to_vec();
     let joints = joint_names();
     for kind in ["q", "qd", "tau", "q_plan"] {
-        for name in &joints {
-            let _ = write!(out, ",{kind}_{name}");
-        }
+        columns.extend(joints.iter().map(|name| format!("{kind}_{name}")));
     }
     for kind in ["f", "f_plan"] {
-        for (foot, axis) in FEET_NAMES
-            .iter()
-            .flat_map(|f| ["x", "y", "z"].map(|a| (f, a)))
-        {
-            let _ = write!(out, ",{kind}_{foot}_{axis}");
+        for foot in FEET_NAMES {
+            columns.extend(["x", "y", "z"].map(|axis| format!("{kind}_{foot}_{axis}")));
         }
     }
-    out.push('\n');
-    for s in samples {
-        let _ = write!(out, "{:.4},{:?}", s.time, s.phase);
+    let rows = samples.iter().map(|s| {
         let numbers = s
             .position
             .iter()
@@ -66,10 +63,14 @@ pub(crate) fn csv(samples: &[Sample]) -> String {
             .chain(&s.planned_joints)
             .chain(s.forces_w.iter().take(FOOT_COUNT).flat_map(|f| f.iter()))
             .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()));
-        for x in numbers {
-            let _ = write!(out, ",{x:.6}");
+        Row {
+            time: s.time,
+            phase: format!("{:?}", s.phase),
+            numbers: numbers.copied().collect(),
         }
-        out.push('\n');
+    });
+    Log {
+        rows: rows.collect(),
+        columns,
     }
-    out
 }

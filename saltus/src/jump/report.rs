@@ -7,8 +7,11 @@ use super::planned::Origin;
 use super::reference::Reference;
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, State, feet};
+use crate::log::Log;
+use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
 use a1_model::MOTORS;
+use nalgebra::Vector3;
 use rbd_core::Transform;
 use serde_json::{Value, json};
 
@@ -37,26 +40,47 @@ pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]
     page(&title, &intro, &data)
 }
 
+/// Hip, thigh, calf and foot of each leg.
+fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
+    let q = State {
+        base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
+        joints: s.joints,
+    };
+    let (poses, feet) = (poses(&q), feet());
+    core::array::from_fn(|leg| {
+        let link = |i: usize| poses.bodies[3 * leg + i].translation;
+        [
+            link(0),
+            link(1),
+            link(2),
+            poses.frame(&feet[leg]).translation,
+        ]
+    })
+}
+
+/// The run as MCAP.
+pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
+    let terrain = super::plant::terrain(task);
+    let scene = Scene {
+        trunk: super::TRUNK_SIZE,
+        foot_radius: a1_model::FOOT_RADIUS,
+        floor: terrain.floor,
+        block: terrain.block.map(|block| [block.lower, block.upper]),
+    };
+    recording::mcap(&task.name, log, &scene, |k| {
+        let s = &run.samples[k];
+        Frame {
+            position: s.position,
+            orientation: s.orientation,
+            limbs: limbs(s),
+            forces_w: core::array::from_fn(|foot| s.forces_w[foot]),
+        }
+    })
+}
+
 /// Poses of the links and forces, for the animation.
 fn frames(samples: &[Sample]) -> Value {
     let kept: Vec<&Sample> = samples.iter().step_by(FRAME).collect();
-    let points = |s: &Sample| {
-        let rotation = s.orientation.to_rotation_matrix();
-        let q = State {
-            base: Transform::new(rotation, s.position),
-            joints: s.joints,
-        };
-        let poses = poses(&q);
-        feet()
-            .iter()
-            .enumerate()
-            .flat_map(|(leg, foot)| {
-                let link = |i: usize| poses.bodies[3 * leg + i].translation;
-                [link(0), link(1), link(2), poses.frame(foot).translation]
-            })
-            .map(|p| vector(&p))
-            .collect::<Vec<_>>()
-    };
     let each = |f: &dyn Fn(&Sample) -> Value| kept.iter().map(|s| f(s)).collect::<Vec<_>>();
     json!({
         "t": each(&|s| round(s.time, 4)),
@@ -64,7 +88,7 @@ fn frames(samples: &[Sample]) -> Value {
         "position": each(&|s| vector(&s.position)),
         "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
         "com": each(&|s| vector(&s.com)),
-        "points": each(&|s| json!(points(s))),
+        "points": each(&|s| json!(limbs(s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&|s| json!(s.forces_w[..FOOT_COUNT].iter().map(vector).collect::<Vec<_>>())),
     })
 }

@@ -33,9 +33,11 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
             println!("{name:26} {value}");
         }
     }
+    let log = log::table(&run.samples);
     let files = Files {
         task: task.name(),
-        log: log::csv(&run.samples),
+        mcap: report::mcap(task, &run, &log)?,
+        log: &log,
         result: &result,
         report: report::html(task, &run, free.as_ref(), &table)?,
         strip: None,

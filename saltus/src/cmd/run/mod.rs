@@ -8,6 +8,7 @@ use super::output::Output;
 use crate::humanoid as icub;
 use crate::jump::planned::Planner;
 use crate::jump::plant::{Disturbance, Sim};
+use crate::log::Log;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -89,7 +90,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
 /// What a run leaves behind.
 struct Files<'a> {
     task: &'a str,
-    log: String,
+    log: &'a Log,
+    /// The log as MCAP.
+    mcap: Vec<u8>,
     result: &'a Value,
     report: String,
     /// The jump in one picture, where there is one.
@@ -100,8 +103,10 @@ impl Files<'_> {
     /// Writes a new folder and tells where it is.
     fn publish(&self, args: &Args) -> Result<(), String> {
         let result = format!("{:#}\n", self.result);
+        let csv = self.log.csv();
         let mut files = vec![
-            ("log.csv", self.log.as_bytes()),
+            ("log.csv", csv.as_bytes()),
+            ("log.mcap", self.mcap.as_slice()),
             ("result.json", result.as_bytes()),
             ("report.html", self.report.as_bytes()),
         ];

@@ -86,9 +86,11 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
             println!("{name:18} {value}");
         }
     }
+    let log = log::table(&run.samples);
     let files = Files {
         task: &task.name,
-        log: log::csv(&run.samples),
+        mcap: report::mcap(task, &run, &log)?,
+        log: &log,
         result: &result,
         report: report::html(task, reference, &run, &table),
         strip: Some(strip::svg(task, &run, reference.takeoff)),

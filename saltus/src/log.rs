@@ -1,0 +1,35 @@
+//! The log of a run, one row per millisecond, whatever the robot.
+
+use core::fmt::Write;
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Row {
+    /// Time of the plan, s: negative before the push-off.
+    pub(crate) time: f64,
+    pub(crate) phase: String,
+    /// In the order of the columns.
+    pub(crate) numbers: Vec<f64>,
+}
+
+/// All rows, with the names of their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Log {
+    pub(crate) columns: Vec<String>,
+    pub(crate) rows: Vec<Row>,
+}
+
+impl Log {
+    /// As text: time and phase, then the columns.
+    pub(crate) fn csv(&self) -> String {
+        let mut out = format!("time,phase,{}\n", self.columns.join(","));
+        for row in &self.rows {
+            let _ = write!(out, "{:.4},{}", row.time, row.phase);
+            for x in &row.numbers {
+                let _ = write!(out, ",{x:.6}");
+            }
+            out.push('\n');
+        }
+        out
+    }
+}
