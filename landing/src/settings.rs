@@ -18,7 +18,7 @@ pub struct Settings<T> {
     pub force_weight: T,
     /// Weight on the error of the total moment, (N m)⁻².
     pub moment_weight: T,
-    /// Weight on the forces themselves, N⁻².
+    /// Weight on the forces themselves, N⁻²: positive, for it shares the load where the wrench does not say how.
     pub effort_weight: T,
     /// Coulomb coefficient of the friction pyramid.
     pub friction: T,

@@ -313,11 +313,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         target: &[T; R],
         weights: &[T; R],
     ) {
-        let wanted = target.iter().zip(weights).zip(&task.drift);
-        for (row, ((x, w), drift)) in task.jacobian.iter().zip(wanted) {
-            let (a, constant) = self.row(row);
-            self.program.minimise(&a, *x - *drift - constant, *w);
-        }
+        let rows = task.jacobian.each_ref().map(|row| self.row(row));
+        let wanted = target.iter().zip(&task.drift).zip(weights);
+        let rows = rows.iter().zip(wanted);
+        self.program.minimise_rows(
+            rows.map(|((a, constant), ((x, drift), w))| (a, *x - *drift - *constant, *w)),
+        );
     }
 
     /// Adds ½ Σ wᵢ (q̈ᵢ − q̈ᵢ*)²: the posture term of paper B eq. (6a).
@@ -330,9 +331,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// Adds ½ Σ wᵢ (τᵢ − τᵢ*)²: the continuity term of paper B eq. (6a) when τ* is the last tick's.
     pub fn minimise_torques(&mut self, target: &[T; N], weights: &[T; N]) {
         let rows = self.effort.iter().zip(&self.effort_constant);
-        for ((row, constant), (x, w)) in rows.zip(target.iter().zip(weights)) {
-            self.program.minimise(row, *x - *constant, *w);
-        }
+        let rows = rows.zip(target.iter().zip(weights));
+        self.program
+            .minimise_rows(rows.map(|((a, constant), (x, w))| (a, *x - *constant, *w)));
     }
 
     /// Adds ½ Σ wᵢ (fᵢ − fᵢ*)² over the force coordinates, weights per N² and (N m)².

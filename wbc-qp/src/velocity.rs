@@ -78,9 +78,10 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityQp<T, N,
         target: &[T; R],
         weights: &[T; R],
     ) {
-        for ((row, x), w) in task.jacobian.iter().zip(target).zip(weights) {
-            self.program.minimise(&flat(row), *x, *w);
-        }
+        let rows = task.jacobian.each_ref().map(flat);
+        let rows = rows.iter().zip(target.iter().zip(weights));
+        self.program
+            .minimise_rows(rows.map(|(a, (x, w))| (a, *x, *w)));
     }
 
     /// Adds ½ Σ wᵢ (q̇ᵢ − q̇ᵢ*)²: the posture and continuity terms of paper B eq. (3a).

@@ -1,0 +1,176 @@
+//! Rows that enter and leave the active set.
+
+use so3::{Scalar, math};
+
+use super::{Search, scale_inverse, signed};
+use crate::Status;
+use crate::kernels::{at, head, head_mut, max_abs, put};
+use crate::settings::row_tolerance;
+
+/// How the search for a point that satisfies all rows ended.
+pub(super) enum Pass {
+    Feasible,
+    Stop(Status),
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
+    /// Enters violated rows until none is left.
+    pub(super) fn search(&mut self) -> Pass {
+        self.w.pool_len = 0;
+        loop {
+            let (id, side) = match self.next() {
+                Ok(Some(found)) => found,
+                Ok(None) => return Pass::Feasible,
+                Err(status) => return Pass::Stop(status),
+            };
+            self.prepare(id, side);
+            let mut lambda = T::ZERO;
+            loop {
+                if self.iterations >= self.s.max_iterations {
+                    return Pass::Stop(Status::Limit);
+                }
+                self.iterations += 1;
+                self.answer();
+                self.turn();
+                // The first multiplier to reach zero.
+                let mut blocking = None;
+                let mut t = T::INFINITY;
+                let w = &*self.w;
+                let largest = max_abs(crate::kernels::head(&w.vec_b, w.basis.len));
+                let noise = T::of(8.0) * T::EPSILON * largest;
+                for (k, (l, r)) in w.lambda.iter().zip(&w.vec_b).take(w.basis.len).enumerate() {
+                    if *r > noise {
+                        let ratio = math::max(*l, T::ZERO) / *r;
+                        if ratio < t {
+                            (t, blocking) = (ratio, Some(k));
+                        }
+                    }
+                }
+                let d = w.candidate.free;
+                let full = if d > T::ZERO {
+                    self.excess(id, side) / d
+                } else {
+                    T::INFINITY
+                };
+                if full <= t {
+                    if !full.is_finite_number() {
+                        return Pass::Stop(self.conflict(id, side));
+                    }
+                    self.advance(full);
+                    self.enter(id, side, lambda + full);
+                    break;
+                }
+                let Some(k) = blocking else {
+                    return Pass::Stop(Status::Numerical);
+                };
+                self.advance(t);
+                lambda += t;
+                self.leave(k);
+            }
+        }
+    }
+
+    /// Coordinates of a row in the basis.
+    pub(super) fn prepare(&mut self, id: usize, side: i8) {
+        let w = &mut *self.w;
+        w.basis.prepare(&w.factor);
+        head_mut(&mut w.candidate.d, w.factor.dim).fill(T::ZERO);
+        // What is left of a row that depends on the equalities is round-off, not a row.
+        let least = if w.elimination.rank == 0 {
+            T::ZERO
+        } else {
+            row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
+        };
+        let sign = signed(side, T::ONE);
+        let (basis, d) = (&w.basis, &mut w.candidate.d);
+        if w.elimination.has_basic() {
+            if id < M {
+                w.elimination
+                    .reduce(crate::kernels::row(self.p.rows, id), &mut w.vec_a);
+            } else {
+                w.elimination.reduce_unit(id - M, &mut w.vec_a);
+            }
+            let reduced = head(&w.vec_a, w.factor.dim);
+            if max_abs(reduced) > least {
+                for (i, a) in reduced.iter().enumerate() {
+                    if *a != T::ZERO {
+                        basis.add_coordinates(i, sign * *a, d);
+                    }
+                }
+            }
+        } else if id < M {
+            let (from, row) = self.p.entries(id);
+            let free = |k: usize| w.elimination.free_index(from + k);
+            let large = |(k, a): (usize, &T)| math::abs(*a) > least && free(k).is_some();
+            if least == T::ZERO || row.iter().enumerate().any(large) {
+                for (k, a) in row.iter().enumerate() {
+                    if let (true, Some(i)) = (*a != T::ZERO, free(k)) {
+                        basis.add_coordinates(i, sign * *a, d);
+                    }
+                }
+            }
+        } else if let Some(i) = w.elimination.free_index(id - M) {
+            basis.add_coordinates(i, sign, d);
+        }
+        let w = &mut *self.w;
+        w.basis.project(&mut w.candidate);
+    }
+
+    /// r (in `vec_b`) of the candidate.
+    pub(super) fn answer(&mut self) {
+        let w = &mut *self.w;
+        for (r, d) in w.vec_b.iter_mut().zip(&w.candidate.d).take(w.basis.len) {
+            *r = *d;
+        }
+        w.basis.solve(&mut w.vec_b);
+    }
+
+    /// z (in `step`) of the candidate.
+    pub(super) fn turn(&mut self) {
+        let w = &mut *self.w;
+        if w.candidate.free > T::ZERO {
+            let free = w.elimination.free_variables();
+            w.basis
+                .direction(w.basis.len, &w.candidate.d, free, &mut w.step);
+            w.elimination.complete(&mut w.step, &mut w.vec_a);
+        } else {
+            w.step.fill(T::ZERO);
+        }
+    }
+
+    /// x ← x − t z, λ_W ← λ_W − t r.
+    pub(super) fn advance(&mut self, t: T) {
+        let w = &mut *self.w;
+        crate::kernels::sub_scaled(&mut w.x, t, &w.step);
+        crate::kernels::sub_scaled(
+            crate::kernels::head_mut(&mut w.lambda, w.basis.len),
+            t,
+            &w.vec_b,
+        );
+    }
+
+    pub(super) fn enter(&mut self, id: usize, side: i8, lambda: T) {
+        let w = &mut *self.w;
+        let k = w.basis.len;
+        w.basis.append(&mut w.candidate, &w.elimination, &w.step);
+        put(&mut w.id, k, id);
+        put(&mut w.side, k, side);
+        put(&mut w.lambda, k, lambda);
+        w.set_state(id, side);
+    }
+
+    /// Row `k` of the active set leaves; the candidate is carried over.
+    pub(super) fn leave(&mut self, k: usize) {
+        let w = &mut *self.w;
+        let id = at(&w.id, k);
+        w.set_state(id, 0);
+        let len = w.basis.len;
+        w.basis.remove(k, &mut w.candidate);
+        for i in k + 1..len {
+            let (id, side, lambda) = (at(&w.id, i), at(&w.side, i), at(&w.lambda, i));
+            put(&mut w.id, i - 1, id);
+            put(&mut w.side, i - 1, side);
+            put(&mut w.lambda, i - 1, lambda);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Newton corrections of (x, λ) for the active rows.
+
+use so3::{Scalar, math};
+
+use super::{Search, scale_inverse, signed};
+use crate::kernels::{at, dot, put};
+use crate::residual::worse;
+
+impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
+    /// gradient ← Hx + g + N_Wᵀλ; returns the size of its largest term.
+    pub(super) fn evaluate_gradient(&mut self) -> T {
+        let w = &mut *self.w;
+        let mut scale = T::ZERO;
+        for ((out, h), g) in w
+            .gradient
+            .iter_mut()
+            .zip(self.p.hessian)
+            .zip(self.p.gradient)
+        {
+            let hx = dot(h, &w.x);
+            scale = worse(scale, worse(math::abs(hx), math::abs(*g)));
+            *out = hx + *g;
+        }
+        for k in 0..w.basis.len {
+            let (id, f) = (at(&w.id, k), signed(at(&w.side, k), at(&w.lambda, k)));
+            scale = worse(
+                scale,
+                math::abs(f) / scale_inverse::<T, N, M>(self.p, w, id),
+            );
+            self.p.add_row(id, f, &mut w.gradient);
+        }
+        scale
+    }
+
+    /// Largest entry of Zᵀ·gradient (left in `vec_a`).
+    pub(super) fn reduced_residual(&mut self) -> T {
+        let w = &mut *self.w;
+        w.elimination.reduce(&w.gradient, &mut w.vec_a);
+        crate::residual::norm(crate::kernels::head(&w.vec_a, w.factor.dim))
+    }
+
+    /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops
+    /// rows until no multiplier is negative. `known` says that [`Search::newton`] has just been called.
+    pub(super) fn correct(&mut self, known: bool) {
+        let w = &mut *self.w;
+        if w.basis.len == 0 {
+            w.elimination.reduce(&w.gradient, &mut w.vec_a);
+            w.factor.solve_transposed(&mut w.vec_a);
+            w.factor.weigh(&mut w.vec_a);
+            w.factor.solve(&mut w.vec_a);
+            for (v, y) in w.elimination.free_variables().iter().zip(&w.vec_a) {
+                put(&mut w.step, *v, *y);
+            }
+            self.move_along_step();
+        } else {
+            if !known {
+                self.newton();
+            }
+            let w = &mut *self.w;
+            for (l, change) in w.lambda.iter_mut().zip(&w.vec_b).take(w.basis.len) {
+                *l += *change;
+            }
+            let free = w.elimination.free_variables();
+            w.basis.direction(0, &w.candidate.d, free, &mut w.step);
+            self.move_along_step();
+            self.drop_negative();
+        }
+        // Far excursions (large proximal steps) leave round-off in the equalities.
+        self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
+    }
+
+    /// The step towards the stationary point with all active rows met, as coordinates y of J in the candidate, and the change of the
+    /// multipliers in `vec_b`; from `gradient`. y₁ meets the active rows, y₂ is the gradient's own, and the
+    /// multipliers take the rest.
+    fn newton(&mut self) {
+        let w = &mut *self.w;
+        w.elimination.reduce(&w.gradient, &mut w.vec_a);
+        w.candidate.d.fill(T::ZERO);
+        for (i, g) in w.vec_a.iter().enumerate().take(w.factor.dim) {
+            w.basis.add_coordinates(i, *g, &mut w.candidate.d);
+        }
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let e = self.excess(id, side);
+            put(&mut self.w.vec_b, k, e);
+        }
+        let w = &mut *self.w;
+        w.basis.solve_transposed(&mut w.vec_b);
+        let rows = w.candidate.d.iter_mut().zip(&mut w.vec_b);
+        for (d, y) in rows.take(w.basis.len) {
+            (*d, *y) = (*y, *y - *d);
+        }
+        w.basis.solve(&mut w.vec_b);
+    }
+
+    /// Remembered rows that would pull instead of push leave before the search, all at once: one by one, each would cost a step. Returns
+    /// whether the Newton step of the rows that stay is there.
+    pub(super) fn drop_unfit(&mut self) -> bool {
+        for _ in 0..3 {
+            if self.w.basis.len == 0 {
+                return false;
+            }
+            self.newton();
+            let before = self.w.basis.len;
+            for k in (0..before).rev() {
+                if at(&self.w.vec_b, k) < T::ZERO {
+                    self.leave(k);
+                }
+            }
+            if self.w.basis.len == before {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// x ← x − step, whose free part is set.
+    fn move_along_step(&mut self) {
+        let w = &mut *self.w;
+        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        crate::kernels::sub_scaled(&mut w.x, T::ONE, &w.step);
+    }
+
+    fn drop_negative(&mut self) {
+        for _ in 0..N {
+            let mut worst = None;
+            let mut value = T::ZERO;
+            for (k, l) in self.w.lambda.iter().take(self.w.basis.len).enumerate() {
+                if *l < value {
+                    (worst, value) = (Some(k), *l);
+                }
+            }
+            let Some(k) = worst else { break };
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            self.leave(k);
+            // The multiplier returns to zero along the direction that leaves the other rows met.
+            self.prepare(id, side);
+            self.answer();
+            self.turn();
+            self.advance(-value);
+        }
+    }
+}

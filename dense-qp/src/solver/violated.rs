@@ -1,0 +1,157 @@
+//! Looks at the rows that are not active, and how far the active ones are off.
+
+use so3::{Scalar, math};
+
+use super::{EQUALITY, Search, is_range, scale_inverse};
+use crate::kernels::{at, put};
+use crate::residual::worse;
+use crate::workspace::POOL;
+use crate::{Status, Workspace};
+
+/// What a look at all rows found.
+enum Look {
+    Feasible,
+    Violated,
+    Unsound,
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
+    /// Looks at every inactive row and bound and collects the most violated ones, relative to their
+    /// scale, in the pool.
+    fn look(&mut self) -> Look {
+        let mut length = T::ZERO;
+        for v in &self.w.x {
+            length += math::abs(*v);
+        }
+        let round_off = T::of(32.0) * T::EPSILON * length;
+        self.tolerance = math::min(
+            math::max(self.s.feasibility, round_off),
+            T::of(1000.0) * self.s.feasibility,
+        );
+        self.primal = T::ZERO;
+        self.w.pool_len = 0;
+        let mut sound = length.is_finite_number();
+        let mut excess = [T::ZERO; POOL];
+        // An infinite entry may satisfy a row that has no limit on that side.
+        let mut sum = T::ZERO;
+        let limits = self.p.row_lower.iter().zip(self.p.row_upper);
+        for (i, (a, (l, u))) in self.p.rows.iter().zip(limits).enumerate() {
+            if at(&self.w.row_state, i) != 0 {
+                continue;
+            }
+            let v = self.p.row_value(i, a, &self.w.x);
+            sum += v;
+            // False for a NaN anywhere.
+            if v <= *u && v >= *l {
+                continue;
+            }
+            sound &= self.judge(i, v, *l, *u, &mut excess);
+        }
+        if self.p.lower.is_some() || self.p.upper.is_some() {
+            for i in 0..N {
+                let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
+                if (v <= u && v >= l) || at(&self.w.bound_state, i) != 0 {
+                    continue;
+                }
+                sound &= self.judge(M + i, v, l, u, &mut excess);
+            }
+        }
+        if !(sound && sum.is_finite_number()) {
+            return Look::Unsound;
+        }
+        if self.w.pool_len > 0 {
+            Look::Violated
+        } else {
+            Look::Feasible
+        }
+    }
+
+    /// A row that is violated, or has bad numbers (then the answer is false).
+    fn judge(&mut self, i: usize, v: T, l: T, u: T, excess: &mut [T; POOL]) -> bool {
+        if !(v.is_finite_number() && is_range(l, u)) {
+            return false;
+        }
+        let (e, side) = if v - u > l - v {
+            (v - u, 1)
+        } else {
+            (l - v, -1)
+        };
+        self.primal = math::max(self.primal, e);
+        let scaled = e * scale_inverse::<T, N, M>(self.p, self.w, i);
+        if scaled > self.tolerance {
+            pool_insert(self.w, excess, scaled, (i, side));
+        }
+        true
+    }
+
+    /// How far x is from the limits of the active rows and the equalities, relative to their scale;
+    /// NaN if a number is bad. Completes `primal`.
+    pub(super) fn drift(&mut self) -> T {
+        let mut drift = T::ZERO;
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let e = self.excess(id, side);
+            self.primal = worse(self.primal, e);
+            drift = worse(
+                drift,
+                math::abs(e) * scale_inverse::<T, N, M>(self.p, self.w, id),
+            );
+        }
+        for i in 0..M {
+            if at(&self.w.row_state, i) == EQUALITY {
+                let e = math::abs(self.excess(i, 1));
+                self.primal = worse(self.primal, e);
+                drift = worse(drift, e * scale_inverse::<T, N, M>(self.p, self.w, i));
+            }
+        }
+        drift
+    }
+
+    /// The row to enter next: the most violated one of the pool, or of all rows when the pool is
+    /// used up.
+    pub(super) fn next(&mut self) -> Result<Option<(usize, i8)>, Status> {
+        for refilled in [false, true] {
+            let (mut worst, mut found) = (self.tolerance, None);
+            for k in 0..self.w.pool_len {
+                let (id, side) = at(&self.w.pool, k);
+                if self.w.state(id) != 0 {
+                    continue;
+                }
+                let e = self.excess(id, side) * scale_inverse::<T, N, M>(self.p, self.w, id);
+                if e > worst {
+                    (worst, found) = (e, Some((id, side)));
+                }
+            }
+            if found.is_some() || refilled {
+                return Ok(found);
+            }
+            match self.look() {
+                Look::Unsound => return Err(Status::Numerical),
+                Look::Feasible => return Ok(None),
+                Look::Violated => {}
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Inserts into the list sorted by excess, which keeps the worst.
+fn pool_insert<T: Scalar, const N: usize, const M: usize>(
+    w: &mut Workspace<T, N, M>,
+    excess: &mut [T; POOL],
+    e: T,
+    entry: (usize, i8),
+) {
+    let (mut e, mut entry) = (e, entry);
+    for (known, slot) in excess.iter_mut().zip(&mut w.pool).take(w.pool_len) {
+        if e > *known {
+            core::mem::swap(known, &mut e);
+            core::mem::swap(slot, &mut entry);
+        }
+    }
+    if w.pool_len < POOL {
+        put(excess, w.pool_len, e);
+        put(&mut w.pool, w.pool_len, entry);
+        w.pool_len += 1;
+    }
+}
