@@ -1,4 +1,8 @@
-//! The Rust of the guide (`docs/guide`), compiled and run as documentation tests.
+//! The Rust of the README and of the guide (`docs/guide`), compiled and run as documentation tests.
+
+/// A few lines for each crate.
+#[doc = include_str!("../../README.md")]
+pub mod readme {}
 
 /// Landing in firmware.
 #[doc = include_str!("../../docs/guide/4-firmware.md")]
