@@ -106,6 +106,9 @@ fn margins_are_kept(task: &str, plan: &Value) {
     for forces in plan["F"].as_array().unwrap() {
         for f in forces.as_array().unwrap().iter().map(numbers) {
             assert!(f[0].abs().max(f[1].abs()) <= 0.45 * f[2] + 1e-6, "{task}");
+            // The ground's cone is round.
+            let cone = 0.57 * f[2] + 1e-5;
+            assert!(f[0] * f[0] + f[1] * f[1] <= cone * cone, "{task}");
         }
     }
     for (k, dt) in dt.iter().enumerate().take(dt.len() - 1) {

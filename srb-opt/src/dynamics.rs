@@ -4,13 +4,14 @@
 //! ```text
 //! p⁺ = p + dt v + ½ dt² a,   v⁺ = v + dt a,   a = Σ f / m − g
 //! ω⁺ = ω + dt α,             α = I⁻¹ (b − ω × I ω),   b = Rᵀ Σ f × (p − p_foot)
-//! R⁺ = R E4(ω dt),           dt = T_i / N_i
+//! R⁺ = R E(ω dt),            dt = T_i / N_i
 //! ```
 //!
 //! Tangent order: position, velocity, rotation (`R Exp(θ)`), angular velocity, durations.
 
+use crate::exponential::Exponential;
 use crate::problem::Problem;
-use crate::rotation::{exp4, exp4_jacobian, hat};
+use crate::rotation::hat;
 use crate::state::{OMEGA, POSITION, ROTATION, State, TIMES, VELOCITY, put, put_column};
 use nalgebra::{Matrix3, Vector3};
 use ocp_solver::Derivatives;
@@ -137,7 +138,7 @@ impl<T: Scalar> Interval<T> {
         put_column(a, POSITION, VELOCITY, &(identity * dt));
         put_column(a, VELOCITY, VELOCITY, &identity);
         let turn = rot.transpose() * next.rot_wb;
-        let turn = exp_inverse_times(&turn, omega, dt);
+        let turn = exp_inverse_times(&turn, problem.exponential, &(omega * dt));
         put_column(a, ROTATION, ROTATION, &turn.next_from_body);
         put_column(a, ROTATION, OMEGA, &(turn.jacobian * dt));
         put_column(a, OMEGA, POSITION, &(inverse_inertia * force_b * dt));
@@ -242,19 +243,22 @@ impl<T: Scalar> Interval<T> {
 
 /// How rotation steps travel over an interval with the rotation gap `d`.
 struct Turn<T: Scalar> {
-    /// `Exp(d) E4ᵀ`.
+    /// `Exp(d) Eᵀ`.
     next_from_body: Matrix3<T>,
     /// `Exp(d) J(ω dt)`.
     jacobian: Matrix3<T>,
 }
 
-/// From `Rᵀ R⁺ = E4 Exp(−d)`, without forming `Exp(d)`: it is `(Rᵀ R⁺)ᵀ E4` up to the drift of E4.
+/// From `Rᵀ R⁺ = E Exp(−d)`, without forming `Exp(d)`: it is `(Rᵀ R⁺)ᵀ E` up to the drift of Taylor's E.
 #[inline(always)]
-fn exp_inverse_times<T: Scalar>(turn: &Matrix3<T>, omega: &Vector3<T>, dt: T) -> Turn<T> {
-    let w = omega * dt;
+fn exp_inverse_times<T: Scalar>(
+    turn: &Matrix3<T>,
+    exponential: Exponential,
+    w: &Vector3<T>,
+) -> Turn<T> {
     let next_from_body = turn.transpose();
     Turn {
         next_from_body,
-        jacobian: next_from_body * exp4(&w) * exp4_jacobian(&w),
+        jacobian: next_from_body * exponential.step(w) * exponential.jacobian(w),
     }
 }

@@ -84,7 +84,9 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
                 state.omega_b += noise(&mut perturb);
             }
             match &before {
-                Some((from, w)) => state.attach(&rotation, from, w),
+                Some((from, w)) => {
+                    state.attach(&rotation, &(from * self.exponential.step(w)));
+                }
                 None => state.rot_wb = rotation,
             }
             before = Some((state.rot_wb, state.omega_b * moved_dt));

@@ -3,6 +3,7 @@
 
 mod dynamics;
 mod error;
+mod exponential;
 mod guess;
 pub mod onboard;
 mod plan;
@@ -17,6 +18,7 @@ mod transcription;
 mod violation;
 
 pub use error::Error;
+pub use exponential::Exponential;
 pub use problem::{Edge, Foot, Ground, Phase, Problem, Reference, Weights};
 pub use row::Row;
 pub use rows::row_capacity;

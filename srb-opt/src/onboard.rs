@@ -18,6 +18,7 @@
 //! ```
 
 use crate::error::Error;
+use crate::exponential::Exponential;
 use crate::problem::{Edge, Foot, Phase, Problem, Reference, Weights};
 use crate::state::State;
 use core::ops::ControlFlow;
@@ -160,6 +161,7 @@ pub fn example<T: Scalar>() -> Jump<T> {
             force: s(1e-5),
             rotation: T::ONE,
         },
+        exponential: Exponential::Taylor4,
         log_epsilon: s(1e-6),
     }
 }

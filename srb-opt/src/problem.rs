@@ -1,6 +1,7 @@
 //! Problem (2) of paper A as plain data: robot, contacts, goal, limits and weights.
 
 use crate::error::Error;
+use crate::exponential::Exponential;
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
@@ -141,6 +142,8 @@ pub struct Problem<T: Scalar, const FEET: usize, const PHASES: usize> {
     pub reference: Reference,
     /// Weights.
     pub weights: Weights<T>,
+    /// Steps of the rotation; the reference problems have Taylor's.
+    pub exponential: Exponential,
     /// Smoothing ε of the rotation error, see the module documentation.
     pub log_epsilon: T,
 }

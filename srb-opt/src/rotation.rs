@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
+pub(crate) use so3::hat;
 use so3::math::{atan2, sin_cos, sqrt};
-pub(crate) use so3::{exp_taylor4 as exp4, hat};
 
 /// Vector of the antisymmetric part of a matrix: `vee((E − Eᵀ)/2)`.
 #[inline(always)]
@@ -17,7 +17,7 @@ pub(crate) fn vee_skew_derivative<T: Scalar>(e: &Matrix3<T>) -> Matrix3<T> {
     (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF
 }
 
-/// Right Jacobian of the exponential to the same order: `exp4(w + δ) ≈ exp4(w) Exp(J δ)`.
+/// Right Jacobian of the Taylor-4 exponential to its order: `E4(w + δ) ≈ E4(w) Exp(J δ)`.
 #[inline(always)]
 pub(crate) fn exp4_jacobian<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
     let (a, s) = (hat(w), w.norm_squared());
@@ -165,6 +165,7 @@ impl<T: Scalar> LogError<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use so3::exp_taylor4 as exp4;
 
     #[test]
     fn the_log_error_derivative_matches_differences() {

@@ -1,6 +1,6 @@
 //! State of a node and the layout of its tangent space.
 
-use crate::rotation::{exp, exp4, inverse, log};
+use crate::rotation::{exp, inverse, log};
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 
@@ -74,14 +74,13 @@ impl<T: Scalar, const PHASES: usize> State<T, PHASES> {
         out
     }
 
-    /// Gives the state the rotation `wanted`, expressed through the rotation `from E4(w)` that the
-    /// interval before reaches, and the gap to it.
+    /// Gives the state the rotation `wanted`, expressed through the rotation `reached = R E(ω dt)` of the
+    /// interval before, and the gap to it.
     ///
-    /// E4 is not orthogonal, so the nodes' matrices form a chain `R⁺ = R E4 Exp(−gap)`: only then do
+    /// Taylor's E is not orthogonal, so the nodes' matrices form a chain `R⁺ = R E Exp(−gap)`: only then do
     /// all nine rows of the reference problem vanish with the gap.
     #[inline(always)]
-    pub(crate) fn attach(&mut self, wanted: &Matrix3<T>, from: &Matrix3<T>, w: &Vector3<T>) {
-        let reached = from * exp4(w);
+    pub(crate) fn attach(&mut self, wanted: &Matrix3<T>, reached: &Matrix3<T>) {
         self.rotation_gap = log(&(inverse(wanted) * reached));
         self.rot_wb = reached * exp(&-self.rotation_gap);
     }

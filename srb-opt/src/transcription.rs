@@ -62,7 +62,8 @@ where
             Some(((before, _), (phase, data))) => {
                 let duration = before.durations.get(phase).copied().unwrap_or(T::ZERO);
                 let dt = duration * (T::ONE / T::of(data.intervals.max(1) as f64));
-                out.attach(&wanted, &before.rot_wb, &(before.omega_b * dt));
+                let turn = self.exponential.step(&(before.omega_b * dt));
+                out.attach(&wanted, &(before.rot_wb * turn));
             }
             None => out.rot_wb = wanted,
         }

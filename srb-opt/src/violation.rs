@@ -2,7 +2,7 @@
 
 use crate::dynamics::force_unit;
 use crate::problem::Problem;
-use crate::rotation::{LogError, about_axis, exp4, vee_skew};
+use crate::rotation::{LogError, about_axis, vee_skew};
 use crate::state::State;
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
@@ -160,10 +160,8 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
             above,
         );
         norm(&(to.omega_b - from.omega_b - sample.alpha_b * dt), above);
-        entries(
-            &(to.rot_wb - from.rot_wb * exp4(&(from.omega_b * dt))),
-            above,
-        );
+        let turn = self.exponential.step(&(from.omega_b * dt));
+        entries(&(to.rot_wb - from.rot_wb * turn), above);
         for (a, b) in from
             .durations
             .iter()

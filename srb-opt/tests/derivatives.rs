@@ -6,7 +6,7 @@ mod common;
 use common::{NI, NU, NX, jump};
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Stage, Values, derivative_errors};
 use proptest::prelude::*;
-use srb_opt::State;
+use srb_opt::{Exponential, State};
 
 type Node = Stage<f64, State<f64, 4>, NX, NU, NI>;
 
@@ -26,8 +26,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..24) {
-        let problem = jump();
+    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..24, exact: bool) {
+        let mut problem = jump();
+        if exact {
+            problem.exponential = Exponential::Exact;
+        }
         let mut stages = nodes(seed, 0.3);
         // The Jacobian of the rotation gap is exact where the gap is zero.
         let (x, u) = (stages[k].state, stages[k].control);
@@ -35,12 +38,12 @@ proptest! {
         let dt = x.durations[problem.phase_of(k).unwrap().0] / problem.phase_of(k).unwrap().1.intervals as f64;
         let w = x.omega_b * dt;
         let a = nalgebra::Matrix3::new(0.0, -w.z, w.y, w.z, 0.0, -w.x, -w.y, w.x, 0.0);
-        next.rot_wb = x.rot_wb
-            * (nalgebra::Matrix3::identity() + a + a * a / 2.0 + a * a * a / 6.0 + a * a * a * a / 24.0);
+        let taylor = nalgebra::Matrix3::identity() + a + a * a / 2.0 + a * a * a / 6.0 + a * a * a * a / 24.0;
+        next.rot_wb = x.rot_wb * if exact { so3::exp(&w).into_inner() } else { taylor };
         stages[k + 1].state = next;
         let errors = derivative_errors::<f64, _, NX, NU, NI>(&problem, k, &x, &u, Some(&next), 1e-6);
         // Rotation rows carry the fourth-order defect of the Taylor exponential.
-        let defect = w.norm_squared() * w.norm_squared() / 24.0;
+        let defect = if exact { 0.0 } else { w.norm_squared() * w.norm_squared() / 24.0 };
         prop_assert!(errors.cost < 1e-6 && errors.rows < 1e-6, "{errors:?}");
         prop_assert!(errors.dynamics < 2e-6 + 2.0 * defect, "{errors:?} {defect}");
     }

@@ -6,10 +6,10 @@ use a1_model::{A1Reference, a1_reference::frame};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Stage, Status};
-use wb_opt::{BASE, Foot, Phase, Pose, Problem, Robot, State, Weights, row_capacity};
+use wb_opt::{BASE, Foot, Friction, Phase, Pose, Problem, Robot, State, Weights, row_capacity};
 
 const N: usize = 18;
-const NI: usize = row_capacity(N, 4, 0, false);
+const NI: usize = row_capacity(N, 4, 4, 0, false);
 
 fn main() -> Result<(), wb_opt::Error> {
     // A hop on the spot: 0.25 s on four feet, 0.15 s in the air.
@@ -61,7 +61,7 @@ fn main() -> Result<(), wb_opt::Error> {
         least_force: 0.0,
         landing_intervals: 5,
         friction_smoothing: 0.5,
-        friction: 0.6,
+        friction: Friction::pyramid(0.6),
         drift: 0.01,
         weights: Weights {
             position: 1.0,

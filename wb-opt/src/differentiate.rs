@@ -8,6 +8,7 @@ use crate::moments::{at_point, moment_of};
 use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
 use crate::state::Units;
+use crate::stretch::Stretch;
 use crate::sweep::{Contacts, EffortJacobian, Sweep};
 use nalgebra::Vector3;
 use ocp_solver::Derivatives;
@@ -25,6 +26,10 @@ pub(crate) struct Interval<'a, 'p, T: Scalar, const N: usize, const FEET: usize>
     pub(crate) row: usize,
     /// Gradient of the Lagrangian so far in the angles, rates and accelerations that turn the base.
     pub(crate) turning: [Vector3<T>; 3],
+    /// Where the duration of the phase is free.
+    pub(crate) stretch: Option<Stretch<T, N>>,
+    /// Gradient of the Lagrangian so far, if so.
+    pub(crate) whole: Gradient<T, N, FEET>,
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> {
@@ -43,6 +48,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let scale = T::ONE / unit;
         if let (Some(x), Some(u)) = (d.rows_x.get_mut(i), d.rows_u.get_mut(i)) {
             self.map.sparse(scale, gradient, support, x, u);
+            if let Some(stretch) = &self.stretch
+                && let Some(slot) = x.get_mut(stretch.column)
+            {
+                *slot = scale * stretch.along(gradient);
+            }
         }
         let multiplier = y.get(i).copied().unwrap_or(T::ZERO) * scale;
         self.count(multiplier, gradient);
@@ -54,6 +64,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
     fn count(&mut self, multiplier: T, gradient: &Gradient<T, N, FEET>) {
         for (sum, part) in self.turning.iter_mut().zip(gradient.turning()) {
             *sum += part * multiplier;
+        }
+        if self.stretch.is_some() {
+            self.whole.add(multiplier, gradient);
         }
     }
 
@@ -71,6 +84,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let mut jacobian = EffortJacobian::<T, N, FEET>::zero();
         self.sweep.differentiate(self.contacts, &mut jacobian);
         let mut bends = [T::ZERO; N];
+        let mut explicit = [T::ZERO; N];
         for (i, bent) in bends.iter_mut().enumerate().skip(BASE) {
             let (limit, v) = (&self.problem.robot.limits[i], self.mid.v[i]);
             let smoothing = self.problem.friction_smoothing;
@@ -116,7 +130,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
                     gradient.a[i] += slope * offset;
                     let end = self.sweep.bodies[i].subtree_end;
                     let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
-                    *multiplier += self.push(units.moment, &gradient, support, y, d);
+                    let y = self.push(units.moment, &gradient, support, y, d);
+                    *multiplier += y;
+                    // The speed at an end of the interval knows its length besides.
+                    if let Some(stretch) = &self.stretch {
+                        let side = stretch.rate * if offset < T::ZERO { -T::HALF } else { T::HALF };
+                        explicit[i] += y * slope * side;
+                        let row = self.row.checked_sub(1).and_then(|i| d.rows_x.get_mut(i));
+                        if let Some(slot) = row.and_then(|row| row.get_mut(stretch.column)) {
+                            *slot += slope * side * self.mid.a[i] / units.moment;
+                        }
+                    }
                 }
             }
         }
@@ -124,6 +148,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             hessian.vv[i][i] += multipliers[i] * bends[i];
         }
         let mut positions = self.positions(y, d, &mut hessian);
+        self.limits(y, d);
         self.distance(&mut cost, &mut hessian, &mut positions);
         self.count(T::ONE, &cost);
 
@@ -137,6 +162,35 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         self.map
             .gradient(T::ONE, &cost, &mut d.cost_x, &mut d.cost_u);
         self.map.hessian(&hessian, d);
+        if let Some(stretch) = &self.stretch {
+            if let Some(slot) = d.cost_x.get_mut(stretch.column) {
+                *slot = stretch.along(&cost);
+            }
+            stretch.bend((&hessian, &self.whole), &explicit, &self.map, d);
+        }
+    }
+
+    /// Positions and speeds of the joints, as far as the length of the interval moves them.
+    fn limits<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let groups = self.problem.groups(self.k);
+        if self.stretch.is_none() || groups.limited == 0 {
+            return;
+        }
+        let speed = Units::<T>::new().speed;
+        for joint in BASE..N {
+            let mut gradient = Gradient::zero();
+            gradient.q[joint] = T::ONE;
+            self.push(T::ONE, &gradient, core::iter::once(joint), y, d);
+        }
+        for joint in BASE..N {
+            let mut gradient = Gradient::zero();
+            gradient.v[joint] = T::ONE;
+            self.push(speed, &gradient, core::iter::once(joint), y, d);
+        }
     }
 
     /// On SO(3) the moments on the base are about its axes, m = B⁻ᵀ τ, where the chain has them about its joints:

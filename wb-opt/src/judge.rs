@@ -210,8 +210,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 for (x, place) in point.pos.iter().zip(&foot.pos_wf) {
                     above(abs(*x - *place) - self.drift);
                 }
-                above(abs(f.x) - self.friction * f.z);
-                above(abs(f.y) - self.friction * f.z);
+                let rows = self.friction.gradients();
+                let sides = rows.map(|row| -Vector3::from(row).dot(f));
+                sides.take(self.friction.sides()).for_each(&mut *above);
                 above(self.least_force - f.z);
             } else {
                 above(self.swing_height - self.over_ground(&point.pos).height);

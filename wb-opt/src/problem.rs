@@ -1,6 +1,7 @@
 //! Whole-body dynamics, contacts and cost, paper A eq. (4), eq. (5) and eq. (6), as plain data: robot, contacts, reference, limits and weights.
 
 use crate::error::Error;
+use crate::friction::Friction;
 use crate::robot::{BASE, Point, Robot, TURN};
 use crate::state::Pose;
 use nalgebra::{Rotation3, Vector3};
@@ -83,8 +84,8 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     /// Speed below which the Coulomb friction of a joint fades, rad/s: τ_f = d q̇ + f tanh(q̇/this), with damping d
     /// and friction f of the robot's limits.
     pub friction_smoothing: T,
-    /// Coulomb coefficient of the friction pyramid.
-    pub friction: T,
+    /// Friction of the feet.
+    pub friction: Friction<T>,
     /// Least normal force of a foot in contact, N: above 0, it still pushes where the true force leaves the interval's constant one.
     pub least_force: T,
     /// How far a foot in contact may be from its place, per axis, m.
@@ -191,7 +192,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             N >= BASE,
             "N: a robot has at least the six coordinates of its base",
         )?;
-        require(positive(self.friction), "friction: must be positive")?;
+        let diagonals = self.friction.diagonals.unwrap_or(T::ONE);
+        require(
+            positive(self.friction.axes) && positive(diagonals),
+            "friction: must be positive",
+        )?;
         require(
             self.least_force >= T::ZERO && finite(&self.least_force),
             "least_force: must not be negative",

@@ -129,6 +129,8 @@ pub(crate) struct Turn<T: Scalar> {
     /// Derivatives of (a, ȧ, ä) by rows in (θ, ω, α) of the node.
     blocks: [[Matrix3<T>; 3]; 3],
     by_theta: [Matrix3<T>; 2],
+    /// Derivative of ä in ω_m.
+    by_omega: Matrix3<T>,
 }
 
 impl<T: Scalar> Turn<T> {
@@ -161,12 +163,67 @@ impl<T: Scalar> Turn<T> {
                 row(by_theta, by_omega, one),
             ],
             by_theta: [rate_by_theta, by_theta],
+            by_omega,
         }
     }
 
     /// ω_m.
     pub(crate) const fn omega(&self) -> &Vector3<T> {
         &self.omega
+    }
+
+    /// α.
+    pub(crate) const fn alpha(&self) -> &Vector3<T> {
+        &self.alpha
+    }
+
+    /// ω at the end of the interval: how ξ = h ω_m grows with h.
+    pub(crate) fn end_omega(&self) -> Vector3<T> {
+        self.omega + self.alpha * self.half
+    }
+
+    /// Derivatives of (a, ȧ, ä) in h, half the length of the interval.
+    pub(crate) fn by_half(&self) -> [Vector3<T>; 3] {
+        let moved = self.to_middle.jacobian * self.end_omega();
+        let [rate_by_theta, by_theta] = &self.by_theta;
+        [
+            moved,
+            rate_by_theta * moved + self.alpha,
+            by_theta * moved + self.by_omega * self.alpha,
+        ]
+    }
+
+    /// What the Lagrangian bends in h and (θ, ω, α), and in h twice; arguments as of [`Self::add_curvature`].
+    ///
+    /// In θ, ξ = h ω + h² α and ω_m = ω + h α the middle does not know h; the whole interval's step is 2 ξ.
+    pub(crate) fn half_curvature(
+        &self,
+        g: &[Vector3<T>; 3],
+        (step, reach): (&Step<T>, &Vector3<T>),
+    ) -> ([Vector3<T>; 3], T) {
+        let h = self.half;
+        let [tt, tw, ta, ww] = self.joint_curvature(g);
+        let g_theta = self.pull_on_theta(g);
+        let g_omega = g[1] + self.by_omega.tr_mul(&g[2]);
+        let [bent, square] = self.to_middle.curvature(&g_theta);
+        let [far_bent, far_square] = step.curvature(reach);
+        let jacobian = &self.to_middle.jacobian;
+        let (by_xi, by_omega) = (self.end_omega(), self.alpha);
+        let pull = jacobian.tr_mul(&g_theta) + step.jacobian.tr_mul(reach) * T::TWO;
+        let moved = jacobian * by_xi;
+        let on_theta = tt * moved + tw * by_omega;
+        let theta = self.to_middle.exp * on_theta + bent * by_xi + far_bent * (by_xi * T::TWO);
+        let xi = jacobian.tr_mul(&on_theta) + (square + far_square * T::of(4.0)) * by_xi;
+        let omega = tw.tr_mul(&moved) + ww * by_omega;
+        let alpha = ta.tr_mul(&moved) + g_omega + (omega + xi * h + pull * T::TWO) * h;
+        let twice = by_xi.dot(&xi) + by_omega.dot(&omega) + by_omega.dot(&pull) * T::TWO;
+        ([theta, xi * h + omega + pull, alpha], twice)
+    }
+
+    /// Gradient of g · (a, ȧ, ä) in θ at the middle.
+    fn pull_on_theta(&self, g: &[Vector3<T>; 3]) -> Vector3<T> {
+        let [rate_by_theta, by_theta] = &self.by_theta;
+        g[0] + rate_by_theta.tr_mul(&g[1]) + by_theta.tr_mul(&g[2])
     }
 
     /// A₁, A₂, W, D of the module documentation.
@@ -236,9 +293,7 @@ impl<T: Scalar> Turn<T> {
     ) {
         let h = self.half;
         let [tt, tw, ta, ww] = self.joint_curvature(g);
-        let [rate_by_theta, by_theta] = &self.by_theta;
-        let g_theta = g[0] + rate_by_theta.tr_mul(&g[1]) + by_theta.tr_mul(&g[2]);
-        let [bent, square] = self.to_middle.curvature(&g_theta);
+        let [bent, square] = self.to_middle.curvature(&self.pull_on_theta(g));
         let [far_bent, far_square] = step.curvature(reach);
         let dt = h * T::TWO;
         let (exp, jacobian) = (self.to_middle.exp, self.to_middle.jacobian * h);

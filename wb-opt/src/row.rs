@@ -87,8 +87,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         if within(groups.landing).is_some() {
             return Some((Row::Landing, T::ONE));
         }
-        if let Some(i) = within(groups.feet.saturating_mul(5)) {
-            return foot(true, i / 5).map(|foot| (Row::Friction { foot }, units.force));
+        if let Some(i) = within(groups.forces()) {
+            return foot(true, i / groups.per_foot.max(1))
+                .map(|foot| (Row::Friction { foot }, units.force));
         }
         if let Some(i) = within(BASE) {
             return Some((Row::Dynamics, units.effort(i)));

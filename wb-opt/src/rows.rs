@@ -1,7 +1,7 @@
 //! Which constraint rows a node has, in which order, and their bounds.
 //!
 //! State rows: at the first landing node, joints at the goal and their speeds zero; at the last node, the
-//! base near the goal. Control rows: per foot in contact four sides of the friction pyramid and the normal
+//! base near the goal. Control rows: per foot in contact the sides of the friction pyramid and the normal
 //! force. Mixed rows, at the midpoint: effort on the base (zero), acceleration of the feet in contact
 //! (zero), joint efforts, torque-speed lines at the speeds of the interval's start and end if any joint has a motor (the effort is held,
 //! and light legs change their speed much over an interval), drift of the feet in contact, clearances, heights of the other feet, and, where
@@ -14,18 +14,19 @@ use crate::state::Units;
 use ocp_solver::Dims;
 use so3::Scalar;
 
-/// Rows a node can have at most: the least `NI` for `coordinates` coordinates, `feet` feet and a number of
-/// clearances, with or without torque-speed lines.
+/// Rows a node can have at most: the least `NI` for `coordinates` coordinates, `feet` feet with friction pyramids of `sides`
+/// sides ([`crate::Friction::sides`]) and a number of clearances, with or without torque-speed lines.
 #[must_use]
 pub const fn row_capacity(
     coordinates: usize,
     feet: usize,
+    sides: usize,
     clearances: usize,
     lines: bool,
 ) -> usize {
     let joints = coordinates.saturating_sub(BASE);
     // Contact: pyramid and normal force, acceleration, drift. The landing rows come instead of limits.
-    let contacts = feet.saturating_mul(5 + 3 + 3);
+    let contacts = feet.saturating_mul(sides.saturating_add(1 + 3 + 3));
     let middle = BASE
         .saturating_add(contacts)
         .saturating_add(joints.saturating_mul(if lines { 5 } else { 3 }));
@@ -39,6 +40,8 @@ pub(crate) struct Groups {
     pub(crate) landing: usize,
     /// Feet in contact.
     pub(crate) feet: usize,
+    /// Rows of the force of each.
+    pub(crate) per_foot: usize,
     /// Joints.
     pub(crate) joints: usize,
     /// Torque-speed lines, at both ends of the interval.
@@ -53,7 +56,7 @@ pub(crate) struct Groups {
 impl Groups {
     /// First mixed row.
     pub(crate) const fn first_mixed(&self) -> usize {
-        self.landing.saturating_add(self.feet.saturating_mul(5))
+        self.landing.saturating_add(self.forces())
     }
 
     /// First row of the joint positions; those of the speeds follow.
@@ -61,6 +64,11 @@ impl Groups {
         self.first_mixed()
             .saturating_add(self.mixed())
             .saturating_sub(self.limited.saturating_mul(2))
+    }
+
+    /// Rows of the forces.
+    pub(crate) const fn forces(&self) -> usize {
+        self.feet.saturating_mul(self.per_foot)
     }
 
     const fn mixed(&self) -> usize {
@@ -84,6 +92,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 0
             },
             feet: layout.feet,
+            per_foot: self.friction.rows(),
             joints,
             lines: if self.robot.motors.iter().any(Option::is_some) {
                 joints.saturating_mul(2)
@@ -107,7 +116,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         Dims {
             controls: self.layout(k).controls(),
             state_rows: groups.landing,
-            control_rows: groups.feet.saturating_mul(5),
+            control_rows: groups.forces(),
             mixed_rows: groups.mixed(),
         }
     }
@@ -141,7 +150,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         }
         for _ in 0..groups.feet {
-            for _ in 0..4 {
+            for _ in 0..self.friction.sides() {
                 push(T::ZERO, T::INFINITY, T::ONE);
             }
             push(self.least_force, T::INFINITY, units.force);

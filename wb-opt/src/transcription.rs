@@ -6,18 +6,17 @@ use crate::map::{Gradient, Map};
 use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::{BASE, Point, TURN};
-use crate::rotation::{Step, Turn, set_block, set_triple, triple, vee_skew};
-use crate::state::{State, Units};
+use crate::rotation::{Step, set_block, set_triple, triple, vee_skew};
+use crate::state::{Layout, State, Units};
+use crate::stretch::{Stretch, Turning};
 use crate::sweep::{Contacts, Sweep};
 use nalgebra::{Matrix3, Vector3};
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem as Ocp, Values};
 use so3::{Scalar, hat};
 
-/// Sides of the friction pyramid and the normal force, over the force of a foot in its own unit.
-fn pyramid<T: Scalar>(friction: T) -> [[T; 3]; 5] {
-    let (o, i, mu) = (T::ZERO, T::ONE, friction);
-    [[-i, o, mu], [i, o, mu], [o, -i, mu], [o, i, mu], [o, o, i]]
-}
+/// A node: its index, state, control, and the next state unless it is the last.
+pub(crate) type Node<'a, T, const N: usize, const NU: usize> =
+    (usize, &'a State<T, N>, &'a [T; NU], Option<&'a State<T, N>>);
 
 impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// Points whose height over the ground is a row of interval `k`, in the order of the rows.
@@ -162,7 +161,7 @@ where
             speeds.for_each(|v| push(*v / units.speed));
         }
         for force in mid.forces.iter().take(contacts.count) {
-            for side in pyramid(self.friction) {
+            for side in self.friction.gradients() {
                 push(Vector3::from(side).dot(force) / units.force);
             }
         }
@@ -178,12 +177,28 @@ where
         at: Evaluated<'_, T, NX, NI>,
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
+        self.differentiate_with((k, state, control, next), None, at, d);
+    }
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
+    /// The derivatives of a node; `free` is the coordinate of the duration of its phase and its share of an interval's length, if the
+    /// duration is free.
+    pub(crate) fn differentiate_with<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        (k, state, control, next): Node<'_, T, N, NU>,
+        free: Option<(usize, T)>,
+        at: Evaluated<'_, T, NX, NI>,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
         let Some(next) = next else {
             self.differentiate_end(state, at.row_multipliers, d);
             return;
         };
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
         let map = Map::new(self.dt(k), mid.layout, self.turn(k, &mid));
+        let stretch =
+            free.map(|(column, rate)| Stretch::new(column, rate, self.dt(k), &mid, map.turn()));
         self.differentiate_linear(k, &mid, d);
         let sweep = Sweep::new(&self.robot.bodies, &mid);
         let contacts = self.contact_motions(k, &sweep, &mid);
@@ -196,16 +211,33 @@ where
             map,
             row: self.groups(k).first_mixed(),
             turning: [Vector3::zeros(); 3],
+            stretch,
+            whole: Gradient::zero(),
         };
         interval.differentiate(at.row_multipliers, d);
-        if let Some(turn) = interval.map.turn() {
-            let turning = interval.turning;
-            self.differentiate_turn((k, state, next), &turning, turn, at.dynamics_multiplier, d);
+        let (map, turning) = (interval.map, interval.turning);
+        let Some(turn) = map.turn() else {
+            if let Some(stretch) = &stretch {
+                stretch.gap(at.dynamics_multiplier, None, d);
+            }
+            return;
+        };
+        let step = Step::new(turn.omega() * self.dt(k));
+        let next_from_start = next.rot_wc.matrix().tr_mul(state.rot_wc.matrix());
+        let next_from_end = next_from_start * step.exp;
+        let turning = Turning {
+            turn,
+            step: &step,
+            next_from_end: &next_from_end,
+            reach: &next_from_end.tr_mul(&triple(at.dynamics_multiplier, TURN)),
+            gradient: &turning,
+        };
+        self.differentiate_turn(k, &next_from_start, &turning, d);
+        if let Some(stretch) = &stretch {
+            stretch.gap(at.dynamics_multiplier, Some(turning), d);
         }
     }
-}
 
-impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// A state moved by a step in the solver's units.
     #[inline(always)]
     pub(crate) fn moved(
@@ -279,26 +311,24 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// The gap of a rotation, and what bends because rotations do.
     fn differentiate_turn<const NX: usize, const NU: usize, const NI: usize>(
         &self,
-        (k, state, next): (usize, &State<T, N>, &State<T, N>),
-        turning: &[Vector3<T>; 3],
-        turn: &Turn<T>,
-        multiplier: &[T; NX],
+        k: usize,
+        next_from_start: &Matrix3<T>,
+        turning: &Turning<'_, T>,
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
         let units = Units::<T>::new();
         let dt = self.dt(k);
-        let step = Step::new(turn.omega() * dt);
-        let next_from_start = next.rot_wc.matrix().tr_mul(state.rot_wc.matrix());
-        let next_from_end = next_from_start * step.exp;
+        let (step, next_from_end) = (turning.step, turning.next_from_end);
         // Seen from the next node, where the gap is a step: exact up to the gap's square.
         let by_speed = next_from_end * step.jacobian * dt;
         let speeds = N.saturating_add(TURN);
-        set_block(&mut d.dynamics_x, TURN, TURN, &next_from_start);
+        set_block(&mut d.dynamics_x, TURN, TURN, next_from_start);
         set_block(&mut d.dynamics_x, TURN, speeds, &(by_speed * units.speed));
         let by_control = by_speed * (dt * T::HALF * units.acceleration);
         set_block(&mut d.dynamics_u, TURN, TURN, &by_control);
-        let reach = next_from_end.tr_mul(&triple(multiplier, TURN));
-        turn.add_curvature(turning, (&step, &reach), N, d);
+        turning
+            .turn
+            .add_curvature(turning.gradient, (step, turning.reach), N, d);
     }
 
     /// What does not depend on the point: dynamics, landing rows, friction rows, joint positions and speeds.
@@ -356,16 +386,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 joint,
             );
         }
-        let sides = pyramid(self.friction);
-        let rows = d.rows_u.iter_mut().skip(groups.landing);
-        for (i, row) in rows
-            .enumerate()
-            .take(groups.feet.saturating_mul(sides.len()))
-        {
-            let first = crate::state::Layout::force(i / sides.len());
-            let slots = row.iter_mut().skip(first);
-            for (slot, value) in slots.zip(sides.get(i % sides.len()).into_iter().flatten()) {
-                *slot = *value;
+        let mut rows = d.rows_u.iter_mut().skip(groups.landing);
+        for foot in 0..groups.feet {
+            for side in self.friction.gradients() {
+                if let Some(row) = rows.next() {
+                    set_triple(row, Layout::force(foot), &Vector3::from(side));
+                }
             }
         }
     }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
 use proptest::prelude::*;
 use srb_opt::Edge;
-use wb_opt::{BASE, BaseCoordinates, EulerOrder, Problem, State};
+use wb_opt::{BASE, BaseCoordinates, EulerOrder, Friction, Problem, State};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
@@ -38,11 +38,12 @@ proptest! {
     }
 
     #[test]
-    fn of_the_geared_robot_on_rolling_feet(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
+    fn of_the_geared_robot_on_rolling_feet_and_eight_sides(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
         let data = data();
         let mut problem = jump(&data, BASES[base]);
         problem.robot = robot(&A1Geared, BASES[base]);
         problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
+        problem.friction = Friction::within_cone(0.45, 0.57);
         let mut noise = Noise(seed);
         let (state, control) = anywhere(&mut noise, BASES[base]);
         let next = reached(&problem, k, (&state, &control), &mut noise);

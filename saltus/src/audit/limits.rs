@@ -87,7 +87,7 @@ impl<'a> Limits<'a> {
         let kinematics = self.robot.poses(q);
         for (leg, f) in forces_w.iter().enumerate() {
             if held.contacts[leg] {
-                let side = f64::max(f.x.abs(), f.y.abs());
+                let side = f.xy().norm();
                 values.push((self.friction * f.z - side) / (self.friction * self.force_range));
                 values.push(f.z / self.force_range);
                 values.push(f64::NAN);

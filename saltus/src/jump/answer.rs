@@ -6,7 +6,7 @@
 
 use super::bounds::Impossible;
 use super::task::{SrbPlan, Task};
-use super::whole_body::{self, Blocked, WholeBodyPlan};
+use super::whole_body::{self, Blocked, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Settings, Status, blocking_rows};
@@ -306,7 +306,7 @@ fn stronger(task: &Task, srb: &SrbPlan) -> Option<String> {
     let mut strong = task.clone();
     strong.limits.torque_shares = [10.0; 3];
     strong.limits.speed_share *= 10.0;
-    let plan = whole_body::plan(&strong, srb, |_| ControlFlow::Continue(())).ok()?;
+    let plan = whole_body::plan(&strong, srb, Timing::Given, |_| ControlFlow::Continue(())).ok()?;
     if plan.outcome.status != Status::Solved {
         return None;
     }

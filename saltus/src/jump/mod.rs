@@ -17,6 +17,7 @@ pub(crate) mod programs;
 pub(crate) mod reference;
 pub(crate) mod report;
 mod sensors;
+mod setup;
 pub(crate) mod stored;
 pub(crate) mod strip;
 pub(crate) mod task;

@@ -2,7 +2,7 @@
 
 use super::reference::{self, Reference, standing};
 use super::task::{SrbPlan, Task};
-use super::whole_body::{self, Interval, N, WholeBodyPlan};
+use super::whole_body::{self, Interval, N, Timing, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
@@ -74,7 +74,9 @@ impl Planner {
         if self == Self::Kinematics {
             return reference::build(task, srb);
         }
-        let whole = whole_body::audited(task, srb, false, |_| ControlFlow::Continue(()))?;
+        let whole = whole_body::audited(task, srb, Timing::Given, false, |_| {
+            ControlFlow::Continue(())
+        })?;
         let plan = whole.plan;
         if plan.outcome.status != Status::Solved {
             return Err(format!(
@@ -136,7 +138,7 @@ pub(crate) fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
             .iter()
             .fold(torque, |m, t| f64::max(m, t.abs()));
         for f in node.forces_w.iter().filter(|f| f.z > 5.0) {
-            friction = f64::max(friction, f.x.abs().max(f.y.abs()) / f.z);
+            friction = f64::max(friction, f.xy().norm() / f.z);
         }
     }
     [torque, friction]

@@ -243,7 +243,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
             .iter()
             .fold(peak_torque, |m, t| f64::max(m, t.abs()));
         for f in load.forces_w.iter().filter(|f| f.z > 5.0) {
-            peak_friction = f64::max(peak_friction, f.x.abs().max(f.y.abs()) / f.z);
+            peak_friction = f64::max(peak_friction, f.xy().norm() / f.z);
         }
         nodes.push(Node {
             time: interval.start,

@@ -9,7 +9,7 @@ use crate::robot::{PLACES, Quadruped, State};
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Solver, Stage, Status};
 use rbd_core::Transform;
-use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
+use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::path::Path;
 
 /// Most contact phases of a task.
@@ -192,6 +192,7 @@ impl Task {
                 force: file.weights.force,
                 rotation: file.weights.rotation,
             },
+            exponential: Exponential::Taylor4,
             log_epsilon: 1e-6,
         };
         Ok(Self {
@@ -252,6 +253,24 @@ impl Task {
         }
     }
 
+    /// The guess of the single-rigid-body problem, not solved: where planning straight on the whole body starts.
+    pub(crate) fn guess(&self) -> Result<SrbPlan, String> {
+        let problem = &self.problem;
+        problem
+            .check()
+            .map_err(|error| format!("task {}: {error}", self.name))?;
+        let mut stages = vec![Stage::new(srb_opt::State::new()); problem.intervals() + 1];
+        problem.write_guess(&mut stages, || 0.0);
+        Ok(SrbPlan {
+            stages,
+            status: Status::IterationLimit,
+            iterations: 0,
+            wall_ms: 0.0,
+            cost: f64::NAN,
+            max_violation: f64::NAN,
+        })
+    }
+
     /// Tries to solve the single-rigid-body problem.
     pub(crate) fn attempt(
         &self,
@@ -259,12 +278,8 @@ impl Task {
         observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
     ) -> Result<SrbPlan, String> {
         let problem = &self.problem;
-        problem
-            .check()
-            .map_err(|error| format!("task {}: {error}", self.name))?;
-        let mut stages = vec![Stage::new(srb_opt::State::new()); problem.intervals() + 1];
         let clock = std::time::Instant::now();
-        problem.write_guess(&mut stages, || 0.0);
+        let mut stages = self.guess()?.stages;
         let solution = Solver::new(*settings)
             .solve(problem, &mut stages, observer)
             .map_err(|error| error.to_string())?;

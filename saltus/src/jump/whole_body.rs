@@ -1,47 +1,28 @@
-//! The whole-body plan of a task as it is to be executed: the geared A1 on rolling ball feet, with margins.
+//! The whole-body plan of a task as it is to be executed: timings from the single rigid body, or found on the whole body itself.
 
+use super::FOOT_COUNT;
 use super::pace::Pace;
+pub(crate) use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
+use super::setup::{NI, NU, NX, Setup, times};
 use super::stored::{open, store};
-use super::task::{SrbPlan, Task};
-use super::{FOOT_COUNT, JOINTS};
+use super::task::{PHASES, SrbPlan, Task};
 use crate::audit::Audit;
-use crate::track::Track;
 use core::ops::ControlFlow;
-use nalgebra::Vector3;
 use ocp_solver::{Progress, Solution, Stage, Status, blocking_rows};
-use rbd_core::Transform;
 use std::time::Instant;
-use wb_opt::{
-    BASE, Clearance, Foot, Gains, Judgement, Phase, Point, Pose, Problem, Robot, Row, Sample,
-    State, Weights,
-};
+use wb_opt::{BASE, FreeTiming, Gains, Judgement, Phase, Problem, Row, Sample, State, TimedState};
 
-/// Coordinates of the robot.
-pub(crate) const N: usize = BASE + JOINTS;
-const NX: usize = 2 * N;
-const NU: usize = N + 3 * FOOT_COUNT;
-/// Trunk corners and knees.
-const CLEARANCES: usize = 12;
-const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, CLEARANCES, true);
-
-/// Longest interval in contact, s. At twice the length the audit finds limits exceeded between nodes.
-const CONTACT_DT: f64 = 0.005;
-/// Longest interval in flight, s: no forces change, but the turn must be right.
-const FLIGHT_DT: f64 = 0.005;
-/// Time before touchdown in which the legs rest in the landing posture, s.
-pub(crate) const POSED: f64 = 0.05;
 /// Most iterations; tasks that are solved take 15 to 130.
 const PATIENCE: usize = 150;
-/// How much farther than it is a box edge is taken to be, m.
-const EDGE_MARGIN: f64 = 0.12;
-/// How far a ball may roll from where it stood, per axis, m.
-const ROLL: f64 = 0.03;
-const KNEE_CLEARANCE: f64 = 0.03;
-/// Least normal force of a foot that stands, in weights of the robot.
-const LEAST_FORCE: f64 = 0.04;
-/// Speed at which planned Coulomb friction of the joints fades, rad/s.
-pub(crate) const FRICTION_SMOOTHING: f64 = 0.3;
-pub(crate) const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
+
+/// Where the durations of the phases come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Timing {
+    /// From the rigid body's plan: the two-stage way of paper A.
+    Given,
+    /// They are unknowns of the whole body's problem, and start from the given ones.
+    Free,
+}
 
 /// A solved whole-body plan.
 pub(crate) struct WholeBodyPlan {
@@ -94,13 +75,14 @@ pub(crate) struct Audited {
 pub(crate) fn audited(
     task: &Task,
     srb: &SrbPlan,
+    timing: Timing,
     with_gains: bool,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
     let mut wall_ms = 0.0;
     let mut on_intervals = |share: f64| {
         let clock = Instant::now();
-        let plan = plan_on(task, srb, share, &mut observer)?;
+        let plan = plan_on(task, srb, timing, share, &mut observer)?;
         wall_ms += clock.elapsed().as_secs_f64() * 1e3;
         let (mut bytes, mut audit) = (Vec::new(), None);
         if plan.outcome.status == Status::Solved {
@@ -130,145 +112,28 @@ pub(crate) fn audited(
 pub(crate) fn plan(
     task: &Task,
     srb: &SrbPlan,
+    timing: Timing,
     observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
-    plan_on(task, srb, 1.0, observer)
+    plan_on(task, srb, timing, 1.0, observer)
 }
 
 /// Plans on intervals of a share of their usual length.
 fn plan_on(
     task: &Task,
     srb: &SrbPlan,
+    timing: Timing,
     share: f64,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
-    let rigid = &task.problem;
-    let landing_joints = task.robot.landing_joints(&task.start)?;
-    let pose = |base: &Transform<f64>, joints: &[f64; JOINTS]| Pose {
-        q: core::array::from_fn(|i| match i {
-            0..3 => base.translation[i],
-            3..BASE => 0.0,
-            _ => joints[i - BASE],
-        }),
-        rot_wc: base.rotation,
-    };
-    let start = pose(&task.start.base, &task.start.joints);
-
-    let mut phases = Vec::new();
-    for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
-        let longest = if phase.contacts.contains(&true) {
-            CONTACT_DT
-        } else {
-            FLIGHT_DT
-        };
-        let intervals = (duration / (share * longest)).ceil().max(1.0);
-        phases.push(Phase {
-            contacts: phase.contacts,
-            intervals: intervals as usize,
-            dt: duration / intervals,
-        });
-    }
-    let track = track(task, srb);
-    let mut times = vec![0.0];
-    for phase in &phases {
-        let begin = times[times.len() - 1];
-        times.extend((1..=phase.intervals).map(|i| begin + phase.dt * i as f64));
-    }
-    let flight = phases.last().map_or(0, |phase| phase.intervals);
-    let take_off = times.len() - 1 - flight;
-    let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
-    for (k, time) in times.iter().enumerate() {
-        let joints = if k <= take_off {
-            &task.start.joints
-        } else {
-            &landing_joints
-        };
-        nodes.push(pose(&track.at(*time), joints));
-    }
-    let moved = rigid.goal_w - rigid.start_w;
-    let goal = Transform::new(
-        so3::exp(&(rigid.axis * rigid.angle)),
-        task.start.base.translation + moved,
-    );
-    let goal = pose(&goal, &landing_joints);
-    let middle = |pair: &[Pose<f64, N>]| {
-        let turn = so3::Geodesic::shortest(&pair[0].rot_wc, &pair[1].rot_wc);
-        Pose {
-            q: core::array::from_fn(|i| 0.5 * (pair[0].q[i] + pair[1].q[i])),
-            rot_wc: turn.at(0.5),
-        }
-    };
-    let reference: Vec<_> = nodes.windows(2).map(middle).collect();
-
-    let com_b = task.robot.com(&task.start) - task.start.base.translation;
-    let corner = |corner: &Vector3<f64>| Clearance {
-        point: Point {
-            link: BASE - 1,
-            // The single rigid body's corners are seen from its centre of mass.
-            offset_l: corner + com_b,
-        },
-        height: rigid.clearance,
-    };
-    let knee = |leg: usize| Clearance {
-        point: Point {
-            link: BASE + 3 * leg + 2,
-            offset_l: Vector3::zeros(),
-        },
-        height: KNEE_CLEARANCE,
-    };
-    let clearances: Vec<_> = rigid
-        .corners
-        .iter()
-        .map(corner)
-        .chain((0..FOOT_COUNT).map(knee))
-        .collect();
-    let edge = rigid.edge.map(|mut edge| {
-        edge.distance += EDGE_MARGIN;
-        edge
-    });
-    let mut problem = Problem {
-        robot: Robot::on_free_base(&task.robot),
-        feet: core::array::from_fn(|i| Foot {
-            point: Robot::<f64, N>::point(&task.robot.feet[i]),
-            pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, task.robot.foot_radius),
-            radius: task.robot.foot_radius,
-        }),
-        clearances: &clearances,
-        // A foot that grazes the edge of a box turns the robot over.
-        swing_height: task.robot.foot_radius,
-        edge,
-        phases: &phases,
-        reference: &reference,
-        start,
-        goal,
-        goal_tolerance: GOAL_TOLERANCE,
-        least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
-        landing_intervals: (POSED / (share * FLIGHT_DT)) as usize,
-        friction_smoothing: FRICTION_SMOOTHING,
-        friction: rigid.friction,
-        drift: ROLL,
-        weights: Weights {
-            position: task.weights.position,
-            effort: task.weights.torque,
-            goal: task.weights.goal,
-        },
-    };
-    for (motor, limit) in problem
-        .robot
-        .motors
-        .iter_mut()
-        .zip(&mut problem.robot.limits)
-    {
-        match motor {
-            Some(motor) => {
-                motor.corner_speed *= task.limits.speed_share;
-                motor.no_load_speed *= task.limits.speed_share;
-            }
-            None => limit.speed *= task.limits.speed_share,
-        }
-    }
+    let setup = Setup::new(task, srb, share)?;
+    let mut problem = setup.problem();
     let mut stages: Vec<Stage<f64, State<f64, N>, NX, NU, NI>> =
-        vec![Stage::new(State::at_rest(start)); problem.intervals() + 1];
+        vec![Stage::new(State::at_rest(problem.start)); problem.intervals() + 1];
+    let mut timed = match timing {
+        Timing::Given => Vec::new(),
+        Timing::Free => timed_stages(&problem),
+    };
     let mut settings = wb_opt::settings();
     (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
     let mut solved = None;
@@ -278,12 +143,12 @@ fn plan_on(
         for (limit, given) in problem.robot.limits.iter_mut().zip(&given).skip(BASE) {
             limit.effort = share * given.effort;
         }
-        let force = |k: usize, foot: usize| {
-            let k = track.interval(times[k]);
-            let stage = &srb.stages[k];
-            rigid.sample(k, &stage.state, &stage.control).forces_w[foot]
-        };
-        problem.write_guess(&mut stages, &nodes, force, || 0.0);
+        problem.write_guess(
+            &mut stages,
+            &setup.nodes,
+            |k, foot| setup.force(k, foot),
+            || 0.0,
+        );
         let (mut pace, mut cancelled) = (Pace::default(), false);
         let watch = |progress: &Progress<f64>| {
             cancelled = observer(progress).is_break();
@@ -296,66 +161,116 @@ fn plan_on(
                 ControlFlow::Break(())
             }
         };
-        let outcome = problem
-            .plan(&settings, &mut stages, watch)
-            .map_err(|error| format!("task {}: {error}", task.name))?;
+        let outcome = match timing {
+            Timing::Given => problem.plan(&settings, &mut stages, watch),
+            Timing::Free => {
+                let free = free_timing(task, problem);
+                free.write_guess(&stages, &mut timed);
+                free.plan(&settings, &mut timed, watch)
+            }
+        };
+        let outcome = outcome.map_err(|error| format!("task {}: {error}", task.name))?;
         solved = Some((outcome, share));
         if cancelled || outcome.status == Status::Solved {
             break;
         }
     }
-    let (outcome, torque_share) = solved.ok_or("no torque to plan with")?;
-    let strongest = given.iter().skip(BASE).map(|limit| limit.effort);
-    let torque_limit = torque_share * strongest.fold(0.0, f64::max);
-    let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
-    let intervals = stages[..problem.intervals()].iter().enumerate();
-    let intervals = intervals.map(|(k, stage)| Interval {
-        start: times[k],
-        dt: problem.dt(k),
-        state: stage.state,
-        sample: problem.sample(k, &stage.state, &stage.control),
-        gains: problem.gains(k, &stage.state, &stage.control, stage.gain()),
+    let outcome = solved.ok_or("no torque to plan with")?;
+    match timing {
+        Timing::Given => finish(&problem, outcome, &stages, |state| state),
+        Timing::Free => {
+            let found = timed
+                .first()
+                .map_or([0.0; PHASES], |stage| stage.state.durations);
+            let mut phases = setup.phases.clone();
+            for (phase, duration) in phases.iter_mut().zip(found) {
+                phase.dt = duration / phase.intervals as f64;
+            }
+            let problem = Problem {
+                phases: &phases,
+                ..problem
+            };
+            finish(&problem, outcome, &timed, |state| &state.state)
+        }
+    }
+}
+
+/// Coordinates of a state with durations.
+const TIMED: usize = NX + PHASES;
+
+type TimedStages = Vec<Stage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>;
+
+fn timed_stages(problem: &Problem<'_, f64, N, FOOT_COUNT>) -> TimedStages {
+    let start = TimedState {
+        state: State::at_rest(problem.start),
+        durations: [0.0; PHASES],
+    };
+    vec![Stage::new(start); problem.intervals() + 1]
+}
+
+/// The problem with the task's bounds on its durations.
+fn free_timing<'a>(
+    task: &Task,
+    problem: Problem<'a, f64, N, FOOT_COUNT>,
+) -> FreeTiming<'a, f64, N, FOOT_COUNT, PHASES> {
+    let rigid = &task.problem;
+    FreeTiming {
+        problem,
+        durations: rigid
+            .phases
+            .map(|phase| [phase.min_duration, phase.max_duration]),
+        total: [rigid.min_total, rigid.max_total],
+    }
+}
+
+/// What the stages hold, in physical units.
+fn finish<S: Copy, const X: usize>(
+    problem: &Problem<'_, f64, N, FOOT_COUNT>,
+    (outcome, torque_share): (Solution<f64>, f64),
+    stages: &[Stage<f64, S, X, NU, NI>],
+    state: impl Fn(&S) -> &State<f64, N>,
+) -> Result<WholeBodyPlan, String> {
+    let strongest = problem
+        .robot
+        .limits
+        .iter()
+        .skip(BASE)
+        .map(|limit| limit.effort);
+    let nodes = stages
+        .iter()
+        .map(|stage| (state(&stage.state), &stage.control));
+    let starts = times(problem.phases);
+    let intervals = stages[..problem.intervals()]
+        .iter()
+        .zip(&starts)
+        .enumerate();
+    let intervals = intervals.map(|(k, (stage, start))| {
+        let at = state(&stage.state);
+        Interval {
+            start: *start,
+            dt: problem.dt(k),
+            state: *at,
+            sample: problem.sample(k, at, &stage.control),
+            gains: problem.gains(k, at, &stage.control, stage.gain()),
+        }
     });
-    let blocking = blocking_rows::<4, _, _, _, _, _, _>(&stages);
+    let blocking = blocking_rows::<4, _, _, _, _, _, _>(stages);
     let blocked = blocking.iter().flatten().filter_map(|found| {
         let (row, unit) = problem.row(found.stage, found.row)?;
         let violation = (found.violation * unit).abs();
         Some(Blocked { row, violation })
     });
-    let blocked = match outcome.status {
-        Status::Solved => Vec::new(),
-        _ => blocked.collect(),
-    };
-    let end = stages.last().map(|stage| stage.state);
     Ok(WholeBodyPlan {
-        end: end.ok_or("no nodes")?,
+        end: *state(&stages.last().ok_or("no nodes")?.state),
         torque_share,
-        blocked,
+        blocked: match outcome.status {
+            Status::Solved => Vec::new(),
+            _ => blocked.collect(),
+        },
         outcome,
-        judged,
-        torque_limit,
+        judged: problem.judge(nodes),
+        torque_limit: strongest.fold(0.0, f64::max),
         intervals: intervals.collect(),
-        phases,
+        phases: problem.phases.to_vec(),
     })
-}
-
-fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
-    let state = srb.stages.first().map(|stage| stage.state.durations);
-    state.into_iter().flatten()
-}
-
-/// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
-fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
-    let com_b = task.robot.com(&task.start) - task.start.base.translation;
-    let mut time = 0.0;
-    let mut times = Vec::new();
-    for (k, stage) in srb.stages.iter().enumerate() {
-        times.push(time);
-        if let Some((i, phase)) = task.problem.phase_of(k) {
-            time += stage.state.durations[i] / phase.intervals as f64;
-        }
-    }
-    let states = srb.stages.iter().map(|stage| &stage.state);
-    let poses = states.map(|state| (state.pos_w - state.rot_wb * com_b, state.rot_wb));
-    Track::new(times, poses)
 }

@@ -4,7 +4,7 @@ pub(crate) mod whole_body;
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
-use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
+use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::collections::BTreeMap;
 
 /// Feet of the reference robot.
@@ -205,6 +205,7 @@ impl File {
                 force: c.eps_f,
                 rotation: c.eps_r,
             },
+            exponential: Exponential::Taylor4,
             log_epsilon: c.eps_log,
         };
         problem

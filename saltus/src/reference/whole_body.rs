@@ -5,7 +5,9 @@ use crate::track::Track;
 use a1_model::{A1Reference, a1_reference::frame};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
-use wb_opt::{BASE, Clearance, EulerOrder, Foot, Phase, Point, Pose, Problem, Robot, Weights};
+use wb_opt::{
+    BASE, Clearance, EulerOrder, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights,
+};
 
 /// Coordinates of the reference robot.
 pub(crate) const N: usize = 18;
@@ -141,7 +143,7 @@ impl Data {
             least_force: 0.0,
             landing_intervals: LANDING_INTERVALS,
             friction_smoothing: FRICTION_SMOOTHING,
-            friction: self.friction,
+            friction: Friction::pyramid(self.friction),
             drift: DRIFT,
             weights: WEIGHTS,
         }

@@ -1,5 +1,7 @@
 //! Both papers, item by item: what they report, what comes out here, and whether their claim holds.
 
+mod direct;
+mod exponential;
 pub(crate) mod humanoid;
 pub(crate) mod page;
 pub(crate) mod quadruped;

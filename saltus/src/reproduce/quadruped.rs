@@ -1,6 +1,6 @@
 //! Paper A: the jumps of A1.
 
-use super::{Row, write_report};
+use super::{Row, direct, exponential, write_report};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::{self, Run};
@@ -10,7 +10,8 @@ use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
 use crate::jump::reference::Reference;
 use crate::jump::task::{SrbPlan, Task};
-use crate::jump::{FOOT_COUNT, report, whole_body};
+use crate::jump::whole_body::{self, Timing};
+use crate::jump::{FOOT_COUNT, report};
 use core::ops::ControlFlow;
 use ocp_solver::Status;
 use std::collections::BTreeMap;
@@ -197,15 +198,12 @@ pub(crate) fn rows(
         "V-B: forward 0.6 m, flight of 0.10 s",
         "unsolvable",
     ));
-    rows.push(taylor(&mut plans));
-    rows.push(
-        Row::new(
-            'A',
-            "III: timings optimised on the whole body directly",
-            "too complex to solve",
-        )
-        .unjudged("not built", "wb-opt takes the durations as given"),
-    );
+    rows.push(match plans.get("a1/double-backflip") {
+        Ok(Planned { task, srb, .. }) => exponential::row(task, srb),
+        Err(error) => exponential::failed(error),
+    });
+    tell("timings on the whole body directly")?;
+    rows.push(direct::row());
     ControlFlow::Continue(())
 }
 
@@ -300,7 +298,7 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
         if srb.status != Status::Solved {
             return Ok(Some(Answer::no_body_plan(&task, &srb)));
         }
-        let plan = whole_body::plan(&task, &srb, |_| ControlFlow::Continue(()))?;
+        let plan = whole_body::plan(&task, &srb, Timing::Given, |_| ControlFlow::Continue(()))?;
         Ok((plan.outcome.status != Status::Solved)
             .then(|| Answer::no_whole_body_plan(&task, &srb, &plan)))
     };
@@ -311,36 +309,6 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
             "holds when no plan inside the limits is found",
         ),
         Ok(None) => row.ours("planned inside all limits", false, ""),
-        Err(error) => row.failed(error),
-    }
-}
-
-/// Remark 1: how far Taylor's exponential strays over the turns of a whole plan.
-fn taylor(plans: &mut Plans) -> Row {
-    let row = Row::new(
-        'A',
-        "Remark 1: exponential to degree 4 in place of the exact one, double backflip",
-        "stays on SO(3) at reasonable accuracy, fast",
-    );
-    match plans.get("a1/double-backflip") {
-        Ok(Planned { task, srb, .. }) => {
-            let (mut largest, mut sum) = (0.0, 0.0);
-            for (k, stage) in srb.stages.iter().enumerate() {
-                let Some((phase, data)) = task.problem.phase_of(k) else {
-                    continue;
-                };
-                let dt = stage.state.durations[phase] / data.intervals as f64;
-                let turn = stage.state.omega_b * dt;
-                let strays = (so3::exp_taylor4(&turn) - so3::exp(&turn).matrix()).norm();
-                largest = f64::max(largest, strays);
-                sum += strays;
-            }
-            row.ours(
-                format!("at most {largest:.1e} per interval, {sum:.1e} over the plan"),
-                sum < 0.017,
-                "holds when the whole plan strays by less than a degree; the time of the exact one is not measured",
-            )
-        }
         Err(error) => row.failed(error),
     }
 }

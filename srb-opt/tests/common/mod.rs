@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
-use srb_opt::{Edge, Foot, Phase, Problem, Reference, Weights};
+use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 
 pub(crate) const NX: usize = 16;
 pub(crate) const NU: usize = 12;
@@ -71,6 +71,7 @@ pub(crate) fn jump_in<T: Scalar>() -> Problem<T, 4, 4> {
             force: s(1e-5),
             rotation: s(1.0),
         },
+        exponential: Exponential::Taylor4,
         log_epsilon: s(1e-6),
     }
 }

@@ -3,15 +3,16 @@
 use a1_model::{A1Reference, a1_reference::frame};
 use nalgebra::Vector3;
 use wb_opt::{
-    BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Phase, Point, Pose, Problem, Robot, State,
-    Weights,
+    BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Friction, Phase, Point, Pose, Problem,
+    Robot, State, Weights,
 };
 
 pub(crate) const N: usize = 18;
 pub(crate) const FEET: usize = 4;
+#[allow(dead_code, reason = "with free durations a state has more coordinates")]
 pub(crate) const NX: usize = 36;
 pub(crate) const NU: usize = 30;
-pub(crate) const NI: usize = 110;
+pub(crate) const NI: usize = 140;
 
 /// Numbers from a small generator, uniform in ±1.
 pub(crate) struct Noise(pub(crate) u32);
@@ -122,7 +123,7 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
         least_force: 0.0,
         landing_intervals: 5,
         friction_smoothing: 0.5,
-        friction: 0.6,
+        friction: Friction::pyramid(0.6),
         drift: 0.01,
         weights: Weights {
             position: 1.0,

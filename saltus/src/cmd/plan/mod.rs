@@ -30,6 +30,10 @@ pub(crate) struct Args {
         allow_hyphen_values = true
     )]
     timing: Option<Vec<f64>>,
+    /// Find the durations on the whole body directly, from the guess and without the rigid body's plan: the one-stage way that paper A
+    /// rules out (III).
+    #[arg(long, requires = "task", conflicts_with = "timing")]
+    direct: bool,
     /// Plan for the quadruped of this URDF instead of the task's robot: twelve joints, four legs of three below a floating base, one per
     /// quadrant, with effort and speed limits.
     #[arg(long, requires = "task")]

@@ -9,7 +9,7 @@ use crate::cmd::folder::{describe, must_be_new, publish};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::task::{SrbPlan, Task};
-use crate::jump::whole_body::{self, WholeBodyPlan};
+use crate::jump::whole_body::{self, Timing, WholeBodyPlan};
 use indicatif::ProgressBar;
 use ocp_solver::{Progress, Settings, Status};
 use serde_json::{Value, json};
@@ -67,15 +67,22 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         ));
         args.observe(progress)
     };
-    let srb = task.attempt(&Settings::new(), |progress| observe("body", progress))?;
-    let srb = report.srb.insert(srb);
-    if srb.status != Status::Solved {
+    let (guess, timing);
+    let srb = if args.direct {
+        (guess, timing) = (task.guess()?, Timing::Free);
+        &guess
+    } else {
+        let srb = task.attempt(&Settings::new(), |progress| observe("body", progress))?;
+        timing = Timing::Given;
+        report.srb.insert(srb)
+    };
+    if !args.direct && srb.status != Status::Solved {
         bar.set_message("looking for what would have to change");
         report.answer = Some(Answer::no_body_plan(task, srb));
         return Ok(());
     }
     let gains = !args.no_gains;
-    let whole = whole_body::audited(task, srb, gains, |p| observe("whole body", p))?;
+    let whole = whole_body::audited(task, srb, timing, gains, |p| observe("whole body", p))?;
     report.bytes = whole.bytes;
     let (plan, _) = report.whole_body.insert((whole.plan, whole.wall_ms));
     let Some(audit) = whole.audit else {
@@ -129,12 +136,20 @@ impl Report {
 
     /// Durations of the phases, s: none before the body's motion is planned.
     fn phases(&self) -> Vec<(String, f64)> {
-        let (Some(task), Some(srb)) = (&self.task, &self.srb) else {
+        let Some(task) = &self.task else {
             return Vec::new();
         };
-        let durations = srb.stages.first().map(|stage| stage.state.durations);
         let phases = task.problem.used_phases().iter();
         let names = phases.map(|phase| task.phase_name(&phase.contacts));
+        if let Some((plan, _)) = &self.whole_body {
+            let durations = plan
+                .phases
+                .iter()
+                .map(|phase| phase.dt * phase.intervals as f64);
+            return names.zip(durations).collect();
+        }
+        let first = self.srb.as_ref().and_then(|srb| srb.stages.first());
+        let durations = first.map(|stage| stage.state.durations);
         names.zip(durations.into_iter().flatten()).collect()
     }
 

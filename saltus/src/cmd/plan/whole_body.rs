@@ -12,7 +12,7 @@ use wb_opt::{BASE, EulerOrder, Pose, Sample, State};
 /// Controls and rows: 18 accelerations, 12 forces; 98 rows on four feet with 12 clearances.
 const NX: usize = 2 * N;
 const NU: usize = N + 3 * FEET;
-const NI: usize = wb_opt::row_capacity(N, FEET, 12, false);
+const NI: usize = wb_opt::row_capacity(N, FEET, 4, 12, false);
 
 type Node = Stage<f64, State<f64, N>, NX, NU, NI>;
 

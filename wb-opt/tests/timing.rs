@@ -1,0 +1,192 @@
+//! Free durations: derivatives against differences of the values, and a jump that finds its own timing.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use a1_model::A1Geared;
+use common::{BASES, FEET, N, NI, NU, Noise, anywhere, data, jump, robot};
+use core::ops::ControlFlow;
+use nalgebra::Vector3;
+use ocp_solver::{
+    Derivatives, Evaluated, Problem as Ocp, Stage, Status, Values, derivative_errors,
+};
+use wb_opt::{BaseCoordinates, FreeTiming, Problem, State, TimedState};
+
+const PHASES: usize = 3;
+const NX: usize = 2 * N + PHASES;
+const DURATIONS: [f64; PHASES] = [0.13, 0.09, 0.08];
+
+fn free<'a>(problem: Problem<'a, f64, N, FEET>) -> FreeTiming<'a, f64, N, FEET, PHASES> {
+    FreeTiming {
+        problem,
+        durations: [[0.05, 0.5]; PHASES],
+        total: [0.2, 0.8],
+    }
+}
+
+/// A node, and the next where its interval leads, so that the derivative of the rotation's gap is exact.
+fn nodes(
+    timed: &FreeTiming<'_, f64, N, FEET, PHASES>,
+    k: usize,
+    noise: &mut Noise,
+) -> ([TimedState<f64, N, PHASES>; 2], [f64; NU]) {
+    let base = timed.problem.robot.base;
+    let (state, control) = anywhere(noise, base);
+    let (mut next, _) = anywhere(noise, base);
+    let phase = [0..12, 12..20, 20..34].iter().position(|p| p.contains(&k));
+    if base == BaseCoordinates::Rotation
+        && let Some(phase) = phase
+    {
+        let dt = DURATIONS[phase] / timed.problem.phases[phase].intervals as f64;
+        // The unit of accelerations is 100 rad/s².
+        let omega = Vector3::from_fn(|i, _| state.v[3 + i] + 50.0 * dt * control[3 + i]);
+        next.rot_wc = state.rot_wc * so3::exp(&(omega * dt));
+    }
+    let at = |state| TimedState {
+        state,
+        durations: DURATIONS,
+    };
+    ([at(state), at(next)], control)
+}
+
+#[test]
+fn first_derivatives() {
+    let data = data();
+    let mut noise = Noise(7);
+    for base in BASES {
+        let mut problem = jump(&data, base);
+        problem.robot = robot(&A1Geared, base);
+        problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
+        let timed = free(problem);
+        for k in [3, 15, 22, 31, 34] {
+            let ([x, next], u) = nodes(&timed, k, &mut noise);
+            let next = (k < 34).then_some(&next);
+            let errors = derivative_errors::<f64, _, NX, NU, NI>(&timed, k, &x, &u, next, 1e-6);
+            assert!(errors.worst() < 3e-6, "{base:?} {k}: {errors:?}");
+        }
+    }
+}
+
+/// The row of a duration in the Hessian, against second differences of the Lagrangian, its gap included.
+#[test]
+fn second_derivatives() {
+    let data = data();
+    let mut noise = Noise(3);
+    for base in BASES {
+        let mut problem = jump(&data, base);
+        problem.robot = robot(&A1Geared, base);
+        problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
+        let timed = free(problem);
+        for (k, phase) in [(3, 0), (15, 1), (22, 2), (31, 2)] {
+            let ([x, next], control) = nodes(&timed, k, &mut noise);
+            let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
+            let y: [f64; NI] = core::array::from_fn(|_| noise.next());
+            let dims = Ocp::<f64, NX, NU, NI>::dims(&timed, k);
+            let lagrangian = |steps: [(usize, f64); 2]| {
+                let (mut step, mut control) = ([0.0; NX], control);
+                for (j, h) in steps {
+                    match j.checked_sub(NX) {
+                        None => step[j] += h,
+                        Some(u) => control[u] += h,
+                    }
+                }
+                let moved = Ocp::<f64, NX, NU, NI>::retract(&timed, k, &x, &step, None);
+                let mut values = Values::<f64, NX, NI>::new();
+                timed.evaluate(k, &moved, &control, Some(&next), &mut values);
+                let rows = values.rows.iter().zip(&y).take(dims.rows());
+                let gap = values.gap.iter().zip(&lambda);
+                values.cost + rows.chain(gap).map(|(a, b)| a * b).sum::<f64>()
+            };
+            let mut d = Derivatives::<f64, NX, NU, NI>::new();
+            let values = Values::<f64, NX, NI>::new();
+            let at = Evaluated {
+                values: &values,
+                dynamics_multiplier: &lambda,
+                row_multipliers: &y,
+            };
+            timed.differentiate(k, &x, &control, Some(&next), at, &mut d);
+            let time = 2 * N + phase;
+            let (h, short) = (1e-3, 1e-4);
+            let mut size = 1.0f64;
+            let mut worst = (0.0f64, 0, 0.0, 0.0);
+            for j in 0..NX + dims.controls {
+                let corner = |a: f64, b: f64| lagrangian([(time, a * short), (j, b * h)]);
+                let found =
+                    corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0);
+                let found = found / (4.0 * h * short);
+                let wanted = match j.checked_sub(NX) {
+                    None => d.hessian_xx[time][j],
+                    Some(u) => d.hessian_xu[u][time],
+                };
+                if let Some(mirrored) = d.hessian_xx.get(j) {
+                    assert!((mirrored[time] - wanted).abs() < 1e-9 * (1.0 + wanted.abs()));
+                }
+                size = size.max(wanted.abs());
+                if (found - wanted).abs() > worst.0 {
+                    worst = ((found - wanted).abs(), j, found, wanted);
+                }
+            }
+            assert!(worst.0 < 2e-4 * size, "{base:?} {k}: {worst:?} of {size}");
+        }
+    }
+}
+
+#[test]
+fn a_jump_finds_its_timing() {
+    let data = data();
+    let problem = jump(&data, BaseCoordinates::Rotation);
+    let nodes = vec![problem.start; problem.intervals() + 1];
+    let mut given =
+        vec![
+            Stage::<f64, State<f64, N>, { 2 * N }, NU, NI>::new(State::at_rest(problem.start));
+            problem.intervals() + 1
+        ];
+    let stand = Vector3::new(0.0, 0.0, 30.0);
+    problem.write_guess(&mut given, &nodes, |_, _| stand, || 0.0);
+    let mut timed = free(problem);
+    let start = TimedState {
+        state: State::at_rest(problem.start),
+        durations: timed.guessed(),
+    };
+    let mut guess = vec![Stage::<f64, _, NX, NU, NI>::new(start); given.len()];
+    timed.write_guess(&given, &mut guess);
+    let plan = |timed: &FreeTiming<'_, f64, N, FEET, PHASES>, guess: &[Stage<_, _, NX, NU, NI>]| {
+        let mut stages = guess.to_vec();
+        let go = |_: &_| ControlFlow::Continue(());
+        let solution = timed.plan(&wb_opt::settings(), &mut stages, go).unwrap();
+        assert_eq!(solution.status, Status::Solved, "{solution:?}");
+        let judged = timed.judge(stages.iter().map(|s| (&s.state, &s.control)));
+        assert!(judged.max_violation < 2e-6, "{judged:?}");
+        (judged.cost, stages)
+    };
+    let (cost, found) = plan(&timed, &guess);
+    let durations = found[0].state.durations;
+    assert!(
+        durations.iter().all(|t| (0.05..0.5).contains(t)),
+        "{durations:?}"
+    );
+    // No timing nearby and within the bounds is cheaper: solved from the solution, since there are other minima.
+    let mut tried = 0;
+    for (phase, factor) in [
+        (0, 0.99),
+        (0, 1.01),
+        (1, 0.99),
+        (1, 1.01),
+        (2, 0.99),
+        (2, 1.01),
+    ] {
+        let moved = durations[phase] * factor;
+        if !(0.05..=0.5).contains(&moved) {
+            continue;
+        }
+        tried += 1;
+        timed.durations = durations.map(|t| [t, t]);
+        timed.durations[phase] = [moved; 2];
+        let (other, _) = plan(&timed, &found);
+        assert!(
+            other >= cost * (1.0 - 1e-6),
+            "{durations:?}, phase {phase} times {factor}: {other} {cost}"
+        );
+    }
+    assert!(tried >= 3, "{durations:?}");
+}
