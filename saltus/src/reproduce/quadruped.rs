@@ -277,7 +277,7 @@ fn spin(plans: &mut Plans, sim: Sim, folder: &Path) -> Row {
                 if fails {
                     ""
                 } else {
-                    "our baseline follows the plan's angular momentum instead of the trunk's angular velocity, so it turns"
+                    "the kinematic plan turns here too, nominal and disturbed; why the paper's did not is not known"
                 },
             )
         }
