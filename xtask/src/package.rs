@@ -4,7 +4,9 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fs};
 
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
@@ -63,8 +65,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let [oldest] = versions.iter().copied().collect::<Vec<_>>()[..] else {
         bail!("the crates promise several compilers: {versions:?}");
     };
+    let target = run::root().join("target/archives");
+    forget_archives(&target, &published)?;
     let mut cargo = run::cargo();
     cargo.args(["package", "--workspace", "--allow-dirty", "--quiet"]);
+    cargo.arg("--target-dir").arg(&target);
     for package in private {
         cargo.args(["--exclude", package["name"].as_str().context("no name")?]);
     }
@@ -80,6 +85,43 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     run::succeed(&mut cargo)?;
     println!("{} archives build, {with}", published.len());
     Ok(())
+}
+
+/// Removes what earlier runs unpacked and built of `packages`.
+///
+/// Cargo takes a version for something that never changes: it would build today's crates against the sources
+/// that an earlier run left in its home under the same version.
+fn forget_archives(target: &Path, packages: &[&Value]) -> Result<()> {
+    remove(target)?;
+    let home = match env::var_os("CARGO_HOME") {
+        Some(home) => PathBuf::from(home),
+        None => env::home_dir().context("no home folder")?.join(".cargo"),
+    };
+    let Ok(registries) = fs::read_dir(home.join("registry/src")) else {
+        return Ok(()); // nothing was ever unpacked
+    };
+    for registry in registries {
+        let registry = registry?;
+        // A registry in a folder has no host before its hash.
+        if !registry.file_name().to_string_lossy().starts_with('-') {
+            continue;
+        }
+        for package in packages {
+            let text = |key: &str| package[key].as_str().context("no name or version");
+            remove(&(registry.path()).join(format!("{}-{}", text("name")?, text("version")?)))?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes a folder, if it is there.
+fn remove(folder: &Path) -> Result<()> {
+    match fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", folder.display()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What the registry asks of a manifest.
