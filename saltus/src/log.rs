@@ -1,6 +1,7 @@
 //! The log of a run, one row per millisecond, whatever the robot.
 
 use core::fmt::Write;
+use jump_control::Phase;
 
 /// One row.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,22 @@ pub(crate) struct Log {
 }
 
 impl Log {
+    /// The table of these samples: of each time, phase and numbers.
+    pub(crate) fn new<'a, N: IntoIterator<Item = &'a f64>>(
+        columns: Vec<String>,
+        samples: impl IntoIterator<Item = (f64, Phase, N)>,
+    ) -> Self {
+        let rows = samples.into_iter().map(|(time, phase, numbers)| Row {
+            time,
+            phase: format!("{phase:?}"),
+            numbers: numbers.into_iter().copied().collect(),
+        });
+        Self {
+            rows: rows.collect(),
+            columns,
+        }
+    }
+
     /// As text: time and phase, then the columns.
     pub(crate) fn csv(&self) -> String {
         let mut out = format!("time,phase,{}\n", self.columns.join(","));

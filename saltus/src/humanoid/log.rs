@@ -1,7 +1,7 @@
 //! What is kept of a run: one sample per millisecond.
 
 use super::{JOINTS, ROBOT};
-use crate::log::{Log, Row};
+use crate::log::Log;
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
 use rbd_core::{Model, Motion};
@@ -96,14 +96,7 @@ pub(crate) fn table(samples: &[Sample]) -> Log {
             .chain(&s.torques)
             .chain(s.forces_w.iter().flat_map(|f| f.iter()))
             .chain(core::iter::once(&s.clearance));
-        Row {
-            time: s.time,
-            phase: format!("{:?}", s.phase),
-            numbers: numbers.copied().collect(),
-        }
+        (s.time, s.phase, numbers)
     });
-    Log {
-        rows: rows.collect(),
-        columns,
-    }
+    Log::new(columns, rows)
 }

@@ -1,7 +1,7 @@
 //! What is kept of a run: one sample per millisecond.
 
 use super::{FOOT_COUNT, JOINTS, SPHERES};
-use crate::log::{Log, Row};
+use crate::log::Log;
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
 use rbd_core::Model;
@@ -63,14 +63,7 @@ pub(crate) fn table(samples: &[Sample]) -> Log {
             .chain(&s.planned_joints)
             .chain(s.forces_w.iter().take(FOOT_COUNT).flat_map(|f| f.iter()))
             .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()));
-        Row {
-            time: s.time,
-            phase: format!("{:?}", s.phase),
-            numbers: numbers.copied().collect(),
-        }
+        (s.time, s.phase, numbers)
     });
-    Log {
-        rows: rows.collect(),
-        columns,
-    }
+    Log::new(columns, rows)
 }
