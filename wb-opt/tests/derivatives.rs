@@ -2,9 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod common;
+#[path = "common/differences.rs"]
+mod differences;
 
 use a1_model::A1Geared;
 use common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump, robot};
+use differences::{entry, mixed, moved, reached};
 use nalgebra::Vector3;
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
 use proptest::prelude::*;
@@ -21,7 +24,7 @@ proptest! {
         problem.edge = Some(Edge { drop: 0.3, axis: 1, sign: -1.0, distance: 0.18, width: 0.3 });
         let mut noise = Noise(seed);
         let (state, control) = anywhere(&mut noise, BASES[base]);
-        let next = reached(&problem, k, (&state, &control), &mut noise);
+        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
             &problem, k, &state, &control, Some(&next), 1e-6,
         );
@@ -46,7 +49,7 @@ proptest! {
         problem.friction = Friction::within_cone(0.45, 0.57);
         let mut noise = Noise(seed);
         let (state, control) = anywhere(&mut noise, BASES[base]);
-        let next = reached(&problem, k, (&state, &control), &mut noise);
+        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
             &problem, k, &state, &control, Some(&next), 1e-6,
         );
@@ -77,7 +80,7 @@ fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
     let mut noise = Noise(3);
     for k in [3, 15, 22] {
         let (state, control) = anywhere(&mut noise, problem.robot.base);
-        let next = reached(&problem, k, (&state, &control), &mut noise);
+        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
         let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
         let at = |lambda: &[f64; NX]| {
             let values = Values::<f64, NX, NI>::new();
@@ -91,17 +94,11 @@ fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
             d
         };
         let (with, without) = (at(&lambda), at(&[0.0; NX]));
-        let gap = |steps: [(usize, f64); 2]| {
-            let (mut step, mut control) = ([0.0; NX], control);
-            for (j, h) in steps {
-                match j.checked_sub(NX) {
-                    None => step[j] += h,
-                    Some(u) => control[u] += h,
-                }
-            }
-            let moved = Ocp::<f64, NX, NU, NI>::retract(&problem, k, &state, &step, None);
+        let gap = |steps: &[(usize, f64)]| {
+            let (step, control) = moved(&control, steps);
+            let x = Ocp::<f64, NX, NU, NI>::retract(&problem, k, &state, &step, None);
             let mut values = Values::<f64, NX, NI>::new();
-            problem.evaluate(k, &moved, &control, Some(&next), &mut values);
+            problem.evaluate(k, &x, &control, Some(&next), &mut values);
             values
                 .gap
                 .iter()
@@ -114,18 +111,8 @@ fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
         let turning = || (3..BASE).chain(N + 3..N + BASE).chain(NX + 3..NX + BASE);
         for i in turning() {
             for j in turning() {
-                let corner = |a: f64, b: f64| gap([(i, a * h), (j, b * h)]);
-                let found =
-                    corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0);
-                let of =
-                    |d: &Derivatives<f64, NX, NU, NI>| match (i.checked_sub(NX), j.checked_sub(NX))
-                    {
-                        (None, None) => d.hessian_xx[i][j],
-                        (None, Some(u)) => d.hessian_xu[u][i],
-                        (Some(u), None) => d.hessian_xu[u][j],
-                        (Some(u), Some(w)) => d.hessian_uu[u][w],
-                    };
-                let (found, wanted) = (found / (4.0 * h * h), of(&with) - of(&without));
+                let found = mixed(gap, (i, h), (j, h));
+                let wanted = entry(&with, i, j) - entry(&without, i, j);
                 assert!((found - wanted).abs() < 1e-6, "{i} {j}: {found} {wanted}");
             }
         }
@@ -173,31 +160,13 @@ fn the_same_motion_takes_the_same_efforts() {
     }
 }
 
-/// Some next state, whose base is turned as the interval turns it: there the derivative of the gap is exact.
-fn reached(
-    problem: &Problem<'_, f64, N, FEET>,
-    k: usize,
-    (state, control): (&State<f64, N>, &[f64; NU]),
-    noise: &mut Noise,
-) -> State<f64, N> {
-    let (mut next, _) = anywhere(noise, problem.robot.base);
-    if problem.robot.base == BaseCoordinates::Rotation {
-        let dt = problem.dt(k);
-        // The unit of accelerations is 100 rad/s².
-        let omega = |i: usize| state.v[3 + i] + 50.0 * dt * control[3 + i];
-        let turn = Vector3::from_fn(|i, _| omega(i) * dt);
-        next.rot_wc = state.rot_wc * so3::exp(&turn);
-    }
-    next
-}
-
 /// Largest relative difference between the Hessian and differences of the Lagrangian's gradient, less the
 /// part of the cost that is Gauss–Newton by construction: with the multipliers of the effort rows the
 /// Hessian is exact.
 fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f64 {
     let mut noise = Noise(seed);
     let (state, control) = anywhere(&mut noise, problem.robot.base);
-    let next = reached(problem, k, (&state, &control), &mut noise);
+    let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
     let y: [f64; NI] = core::array::from_fn(|_| noise.next());
     let rows = Ocp::<f64, NX, NU, NI>::dims(problem, k).rows();
     let controls = Ocp::<f64, NX, NU, NI>::dims(problem, k).controls;
@@ -237,12 +206,7 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
     let mut found = vec![vec![0.0; all]; all];
     for (j, column) in found.iter_mut().enumerate() {
         let moved = |h: f64| {
-            let mut step = [0.0; NX];
-            let mut control = control;
-            match j.checked_sub(NX) {
-                None => step[j] = h,
-                Some(u) => control[u] += h,
-            }
+            let (step, control) = moved(&control, &[(j, h)]);
             let retract = Ocp::<f64, NX, NU, NI>::retract(problem, k, &state, &step, None);
             gradient(&at(&retract, &control))
         };
@@ -252,20 +216,14 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
             *slot = (plus - minus) / (2.0 * h);
         }
     }
-    let exact = |i: usize, j: usize| match (i.checked_sub(NX), j.checked_sub(NX)) {
-        (None, None) => base.hessian_xx[i][j],
-        (None, Some(u)) => base.hessian_xu[u][i],
-        (Some(u), None) => base.hessian_xu[u][j],
-        (Some(u), Some(w)) => base.hessian_uu[u][w],
-    };
     let mut worst = 0.0_f64;
     for i in 0..all {
         for j in 0..all {
             // Gradients at different rotations are seen from different axes: the symmetric part is the Hessian.
             let found = 0.5 * (found[i][j] + found[j][i]);
-            let error = (found - exact(i, j)).abs() / size;
+            let error = (found - entry(&base, i, j)).abs() / size;
             if error > 2e-5 {
-                eprintln!("{i} {j}: {found} {}", exact(i, j));
+                eprintln!("{i} {j}: {found} {}", entry(&base, i, j));
             }
             worst = worst.max(error);
         }

@@ -2,10 +2,13 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod common;
+#[path = "common/differences.rs"]
+mod differences;
 
 use a1_model::A1Geared;
 use common::{BASES, FEET, N, NI, NU, Noise, anywhere, data, jump, robot};
 use core::ops::ControlFlow;
+use differences::{entry, mixed, moved, reached};
 use nalgebra::Vector3;
 use ocp_solver::{
     Derivatives, Evaluated, Problem as Ocp, Stage, Status, Values, derivative_errors,
@@ -24,7 +27,7 @@ fn free<'a>(problem: Problem<'a, f64, N, FEET>) -> FreeTiming<'a, f64, N, FEET, 
     }
 }
 
-/// A node, and the next where its interval leads, so that the derivative of the rotation's gap is exact.
+/// A node and the next.
 fn nodes(
     timed: &FreeTiming<'_, f64, N, FEET, PHASES>,
     k: usize,
@@ -32,16 +35,11 @@ fn nodes(
 ) -> ([TimedState<f64, N, PHASES>; 2], [f64; NU]) {
     let base = timed.problem.robot.base;
     let (state, control) = anywhere(noise, base);
-    let (mut next, _) = anywhere(noise, base);
     let phase = [0..12, 12..20, 20..34].iter().position(|p| p.contains(&k));
-    if base == BaseCoordinates::Rotation
-        && let Some(phase) = phase
-    {
-        let dt = DURATIONS[phase] / timed.problem.phases[phase].intervals as f64;
-        // The unit of accelerations is 100 rad/s².
-        let omega = Vector3::from_fn(|i, _| state.v[3 + i] + 50.0 * dt * control[3 + i]);
-        next.rot_wc = state.rot_wc * so3::exp(&(omega * dt));
-    }
+    let dt = phase.map_or(0.0, |phase| {
+        DURATIONS[phase] / timed.problem.phases[phase].intervals as f64
+    });
+    let next = reached(base, dt, (&state, &control), noise);
     let at = |state| TimedState {
         state,
         durations: DURATIONS,
@@ -82,17 +80,11 @@ fn second_derivatives() {
             let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
             let y: [f64; NI] = core::array::from_fn(|_| noise.next());
             let dims = Ocp::<f64, NX, NU, NI>::dims(&timed, k);
-            let lagrangian = |steps: [(usize, f64); 2]| {
-                let (mut step, mut control) = ([0.0; NX], control);
-                for (j, h) in steps {
-                    match j.checked_sub(NX) {
-                        None => step[j] += h,
-                        Some(u) => control[u] += h,
-                    }
-                }
-                let moved = Ocp::<f64, NX, NU, NI>::retract(&timed, k, &x, &step, None);
+            let lagrangian = |steps: &[(usize, f64)]| {
+                let (step, control) = moved(&control, steps);
+                let x = Ocp::<f64, NX, NU, NI>::retract(&timed, k, &x, &step, None);
                 let mut values = Values::<f64, NX, NI>::new();
-                timed.evaluate(k, &moved, &control, Some(&next), &mut values);
+                timed.evaluate(k, &x, &control, Some(&next), &mut values);
                 let rows = values.rows.iter().zip(&y).take(dims.rows());
                 let gap = values.gap.iter().zip(&lambda);
                 values.cost + rows.chain(gap).map(|(a, b)| a * b).sum::<f64>()
@@ -110,14 +102,8 @@ fn second_derivatives() {
             let mut size = 1.0f64;
             let mut worst = (0.0f64, 0, 0.0, 0.0);
             for j in 0..NX + dims.controls {
-                let corner = |a: f64, b: f64| lagrangian([(time, a * short), (j, b * h)]);
-                let found =
-                    corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0);
-                let found = found / (4.0 * h * short);
-                let wanted = match j.checked_sub(NX) {
-                    None => d.hessian_xx[time][j],
-                    Some(u) => d.hessian_xu[u][time],
-                };
+                let found = mixed(lagrangian, (time, short), (j, h));
+                let wanted = entry(&d, time, j);
                 if let Some(mirrored) = d.hessian_xx.get(j) {
                     assert!((mirrored[time] - wanted).abs() < 1e-9 * (1.0 + wanted.abs()));
                 }
