@@ -1,8 +1,10 @@
 //! `cargo xtask examples`: the examples that a user would copy, run. Each fails by itself when it is not true any more.
 
-use std::process::Stdio;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result};
+use serde_json::Value;
 
 use crate::run;
 
@@ -28,12 +30,31 @@ const EXAMPLES: [(&str, &str); 13] = [
 pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
+    let built = build()?;
     for (package, example) in EXAMPLES {
-        let mut cargo = run::cargo();
-        cargo.args(["run", "--quiet", "--package", package]);
-        cargo.args(["--example", example]).stdout(Stdio::null());
-        run::succeed(&mut cargo).with_context(|| format!("{package}/examples/{example}.rs"))?;
-        println!("{package}/examples/{example}.rs");
+        let file = format!("{package}/examples/{example}.rs");
+        let program = built
+            .iter()
+            .find(|path| path.file_stem() == Some(example.as_ref()));
+        let mut command = Command::new(program.with_context(|| format!("{file} was not built"))?);
+        command.current_dir(run::root());
+        run::succeed(command.stdout(Stdio::null())).with_context(|| file.clone())?;
+        println!("{file}");
     }
     Ok(())
+}
+
+/// Builds the examples of the whole workspace at once, as its tests do, so that a crate has the features that it has there and is
+/// not compiled again; returns the programs.
+fn build() -> Result<Vec<PathBuf>> {
+    let mut cargo = run::cargo();
+    cargo.args(["build", "--quiet", "--workspace", "--examples"]);
+    cargo.arg("--message-format=json-render-diagnostics");
+    let messages = run::stdout(&mut cargo)?;
+    let messages = messages
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    Ok(messages
+        .filter_map(|m| m["executable"].as_str().map(PathBuf::from))
+        .collect())
 }

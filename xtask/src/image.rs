@@ -17,6 +17,18 @@ pub(crate) struct Image<'a> {
     pub(crate) bare: &'a Bare,
 }
 
+/// Builds images side by side: linking takes most of the time, and uses one core. Errors come back from [`Image::command`].
+pub(crate) fn build_ahead(board: &Board, bare: &Bare, names: &[&str]) -> Result<()> {
+    let mut build = bare.build_with(board.rustflags);
+    build
+        .current_dir(run::root().join("firmware"))
+        .args(["--locked", "--keep-going", "--package", "saltus-smoke"])
+        .args(names.iter().flat_map(|name| ["--bin", name]))
+        .env("SALTUS_BOARD", board.name);
+    run::output(&mut build)?;
+    Ok(())
+}
+
 impl Image<'_> {
     /// The command that builds the image.
     pub(crate) fn command(&self) -> Command {

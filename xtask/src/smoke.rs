@@ -9,7 +9,7 @@ use object::{Object, ObjectSymbol};
 
 use crate::bare::Bare;
 use crate::board::{SMALLEST, Selection};
-use crate::image::Image;
+use crate::image::{Image, build_ahead};
 use crate::{panics, run};
 
 /// The function the panic handler calls.
@@ -31,7 +31,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             name: SMALLEST,
             bare: &bare,
         })?;
-        for name in args.selection.images(board) {
+        let names: Vec<_> = args.selection.images(board).collect();
+        build_ahead(board, &bare, &names)?;
+        for name in names {
             links_without_panic(&Image {
                 board,
                 name,
