@@ -54,8 +54,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if crates.exists() {
         fs::remove_dir_all(&crates)?;
     }
+    // Of the whole workspace, as its tests build it: nothing is compiled again.
     let mut build = run::cargo();
-    run::succeed(build.args(["build", "--quiet", "--package", "saltus"]))?;
+    run::succeed(build.args(["build", "--quiet", "--workspace", "--bin", "saltus"]))?;
     let saltus = target(&root).join("debug/saltus");
     let imported = robots
         .iter()
