@@ -18,6 +18,9 @@ pub(crate) struct Args {
 /// A name, and the arguments of cargo.
 type Step = (&'static str, &'static [&'static str]);
 
+/// With MuJoCo; of the whole workspace, so that what does not use it is not compiled again.
+const JUDGE: &str = "contact-sim/mujoco,saltus/mujoco";
+
 const STEPS: &[Step] = &[
     ("format", &["fmt", "--all", "--check"]),
     (
@@ -51,10 +54,9 @@ const STEPS: &[Step] = &[
             "xtask",
             "mujoco",
             "test",
-            "--package",
-            "contact-sim",
+            "--workspace",
             "--features",
-            "mujoco",
+            JUDGE,
             "--test",
             "mujoco",
         ],
@@ -65,10 +67,11 @@ const STEPS: &[Step] = &[
             "xtask",
             "mujoco",
             "test",
-            "--package",
-            "saltus",
+            "--workspace",
             "--features",
-            "mujoco",
+            JUDGE,
+            "--bin",
+            "saltus",
             "humanoid::tests::mujoco",
         ],
     ),
