@@ -22,14 +22,14 @@ pub(crate) struct Log {
 
 impl Log {
     /// The table of these samples: of each time, phase and numbers.
-    pub(crate) fn new<'a, N: IntoIterator<Item = &'a f64>>(
+    pub(crate) fn new(
         columns: Vec<String>,
-        samples: impl IntoIterator<Item = (f64, Phase, N)>,
+        samples: impl IntoIterator<Item = (f64, Phase, Vec<f64>)>,
     ) -> Self {
         let rows = samples.into_iter().map(|(time, phase, numbers)| Row {
             time,
             phase: format!("{phase:?}"),
-            numbers: numbers.into_iter().copied().collect(),
+            numbers,
         });
         Self {
             rows: rows.collect(),

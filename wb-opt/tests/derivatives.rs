@@ -80,7 +80,12 @@ fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
     let mut noise = Noise(3);
     for k in [3, 15, 22] {
         let (state, control) = anywhere(&mut noise, problem.robot.base);
-        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
+        let next = reached(
+            problem.robot.base,
+            problem.dt(k),
+            (&state, &control),
+            &mut noise,
+        );
         let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
         let at = |lambda: &[f64; NX]| {
             let values = Values::<f64, NX, NI>::new();
@@ -166,7 +171,12 @@ fn the_same_motion_takes_the_same_efforts() {
 fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f64 {
     let mut noise = Noise(seed);
     let (state, control) = anywhere(&mut noise, problem.robot.base);
-    let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
+    let next = reached(
+        problem.robot.base,
+        problem.dt(k),
+        (&state, &control),
+        &mut noise,
+    );
     let y: [f64; NI] = core::array::from_fn(|_| noise.next());
     let rows = Ocp::<f64, NX, NU, NI>::dims(problem, k).rows();
     let controls = Ocp::<f64, NX, NU, NI>::dims(problem, k).controls;

@@ -96,7 +96,7 @@ pub(crate) fn table(samples: &[Sample]) -> Log {
             .chain(&s.torques)
             .chain(s.forces_w.iter().flat_map(|f| f.iter()))
             .chain(core::iter::once(&s.clearance));
-        (s.time, s.phase, numbers)
+        (s.time, s.phase, numbers.copied().collect())
     });
     Log::new(columns, rows)
 }

@@ -63,7 +63,7 @@ pub(crate) fn table(samples: &[Sample]) -> Log {
             .chain(&s.planned_joints)
             .chain(s.forces_w.iter().take(FOOT_COUNT).flat_map(|f| f.iter()))
             .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()));
-        (s.time, s.phase, numbers)
+        (s.time, s.phase, numbers.copied().collect())
     });
     Log::new(columns, rows)
 }

@@ -32,11 +32,7 @@ pub(crate) fn mixed(
 }
 
 /// ∂²L/∂aᵢ∂aⱼ as the Hessian says it.
-pub(crate) fn entry<const NX: usize>(
-    d: &Derivatives<f64, NX, NU, NI>,
-    i: usize,
-    j: usize,
-) -> f64 {
+pub(crate) fn entry<const NX: usize>(d: &Derivatives<f64, NX, NU, NI>, i: usize, j: usize) -> f64 {
     match (i.checked_sub(NX), j.checked_sub(NX)) {
         (None, None) => d.hessian_xx[i][j],
         (None, Some(u)) => d.hessian_xu[u][i],
