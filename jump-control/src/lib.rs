@@ -19,7 +19,7 @@ pub use com_profile::{ComPoint, ComProfile, Curve, takeoff_speed};
 pub use joint::{JointCommand, JointGains};
 pub use minimum_jerk::MinimumJerk;
 pub use phase::{Event, Phase, TRANSITIONS, next_phase};
-pub use plan::{Node, Plan, PlanError};
+pub use plan::{Node, Plan, PlanError, PlannedBase};
 pub use sample::{Reference, Torques, sample};
 pub use slew::Slew;
 pub use steady::Steady;

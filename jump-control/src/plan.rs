@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Motion, Transform};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use crate::sample::Torques;
 
@@ -47,6 +47,19 @@ impl<T: Scalar, const N: usize, const F: usize> Node<T, N, F> {
             .chain(&self.torques);
         numbers.chain([&self.time]).all(|x| x.is_finite_number())
     }
+}
+
+/// The base of a plan at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedBase<T: Scalar> {
+    /// Position of the base's origin, world, m.
+    pub pos_w: Vector3<T>,
+    /// Its velocity, world axes, m/s.
+    pub vel_w: Vector3<T>,
+    /// Rotation.
+    pub rot_wb: Rotation3<T>,
+    /// Angular velocity, base axes, rad/s.
+    pub omega_b: Vector3<T>,
 }
 
 /// A plan: nodes in order of time, and when its phases end.
@@ -122,6 +135,51 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
             touchdown,
             torques,
         })
+    }
+
+    /// The base at `time`, between `node` and the next: positions and velocities linear, the rotation turned on from the node by the
+    /// mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
+    #[must_use]
+    pub fn base(&self, (node, time): (usize, T)) -> Option<PlannedBase<T>> {
+        let mut following = self.nodes.iter().skip(node);
+        let (from, to) = following.next().zip(following.next())?;
+        // Also false for NaN.
+        let begun = time >= from.time;
+        if !begun {
+            return None;
+        }
+        let dt = to.time - from.time;
+        let s = math::min((time - from.time) / dt, T::ONE);
+        let blend = |a: Vector3<T>, b: Vector3<T>| a + (b - a) * s;
+        let vel_w = |node: &Node<T, N, F>| node.base.rotation * node.base_velocity.linear;
+        let rate = from.base_velocity.angular;
+        let omega_b = blend(rate, to.base_velocity.angular);
+        Some(PlannedBase {
+            pos_w: blend(from.base.translation, to.base.translation),
+            vel_w: blend(vel_w(from), vel_w(to)),
+            rot_wb: from.base.rotation * so3::exp(&((rate + omega_b) * (T::HALF * s * dt))),
+            omega_b,
+        })
+    }
+
+    /// By how much later than planned a body in free fall will be where the plan ends, s: (δz + δż T) over the planned speed
+    /// there, with δ what `measured` at `time` differs by from the plan and T the time left. `None` where the plan does not
+    /// end in a fall, or a number is not finite.
+    #[must_use]
+    pub fn lateness(
+        &self,
+        (node, time): (usize, T),
+        base: &Transform<T>,
+        vel_w: &Vector3<T>,
+    ) -> Option<T> {
+        let last = self.nodes.last()?;
+        let planned = self.base((node, time))?;
+        let falling = -(last.base.rotation * last.base_velocity.linear).z;
+        let left = last.time - time;
+        let late =
+            (base.translation.z - planned.pos_w.z + (vel_w.z - planned.vel_w.z) * left) / falling;
+        // Slower than this is no fall: its time is anybody's guess.
+        (falling > T::HALF && left >= T::ZERO && late.is_finite_number()).then_some(late)
     }
 
     /// The nodes.

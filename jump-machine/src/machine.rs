@@ -1,10 +1,10 @@
 //! The machine: memory, and one method per rate.
 
 use jump_control::{
-    Event, Fault, JointCommand, JointGains, Measurement, Phase, Scales, Slew, Watch, next_phase,
-    sample,
+    Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, Slew, Watch,
+    next_phase, sample,
 };
-use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Workspace};
+use landing::{DetectorState, Grip, Landing, Outcome, PreLanding, Target, Turning, Workspace};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
@@ -72,6 +72,10 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     start: T,
     /// Node of the plan's last sample.
     node: usize,
+    /// By how much the plan's clock is behind the caller's in this flight, s.
+    late: T,
+    /// Share of their distance from the axis of turning by which the feet are drawn in.
+    tucked: T,
     heard: Option<Inputs<T, N, F>>,
     last_tick: Option<T>,
     command: JointCommand<T, N>,
@@ -107,6 +111,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             scales: Scales::new(),
             start: T::ZERO,
             node: 0,
+            late: T::ZERO,
+            tucked: T::ZERO,
             heard: None,
             last_tick: None,
             command: JointCommand::damp(settings.safe_damping),
@@ -137,6 +143,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.legs = jump.landing_joints;
         self.jump = Some(jump);
         (self.start, self.node, self.refusal) = (start, 0, None);
+        (self.late, self.tucked) = (T::ZERO, T::ZERO);
         self.scales = Scales::new();
         self.phase = next_phase(self.phase, Event::Armed);
         Ok(())
@@ -269,12 +276,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &measured.foot_forces,
             dt,
         );
+        let t = self.plan_time(t, measured);
         if let Some(event) = self.event(t, measured) {
             self.phase = next_phase(self.phase, event);
         }
         let (command, work) = match (self.phase, self.jump) {
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
-                (self.follow(&jump, t, measured), Work::Cartesian)
+                (self.follow(&jump, t, measured, dt), Work::Cartesian)
             }
             (Phase::Landing | Phase::Stand, _) => self.stand(&v),
             _ => (
@@ -289,12 +297,33 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         work
     }
 
+    /// What the plan's clock shows: in flight it is shifted, little by little, so that it shows the planned touchdown when the
+    /// ground comes.
+    fn plan_time(&mut self, t: T, measured: &Measurement<T, N, F>) -> T {
+        let (Some(jump), Phase::Flight | Phase::PreLanding) = (&self.jump, self.phase) else {
+            return t;
+        };
+        let plan = &jump.plan;
+        let base = &measured.base;
+        let vel_w = base.rotation * measured.base_velocity.linear;
+        let moment = (self.node, t - self.late - measured.age);
+        if let Some(late) = plan.lateness(moment, base, &vel_w) {
+            // Whole from the middle of the way to the landing posture on.
+            let share = T::TWO * (t - plan.takeoff) / (plan.posing - plan.takeoff);
+            let late = (self.late + late) * math::clamp(share, T::ZERO, T::ONE);
+            let most = self.settings.max_late;
+            self.late = math::clamp(late, -most, most);
+        }
+        t - self.late
+    }
+
     /// Push-off and flight: feet along the plan.
     fn follow(
         &mut self,
         jump: &Jump<'a, T, N, F>,
         t: T,
         measured: &Measurement<T, N, F>,
+        dt: T,
     ) -> JointCommand<T, N> {
         let s = &self.settings;
         let mut then = sample(&jump.plan, t - measured.age, self.node);
@@ -314,14 +343,40 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 for (end, force) in self.limbs.ends.iter().zip(&forces) {
                     end.add_tr_mul(&-force, &mut reference.torques);
                 }
+                let share = s.steady.grip(&jump.plan, then.node);
+                if let Some(planned) = jump.plan.base(moment).filter(|_| share > T::ZERO) {
+                    let grip = Grip {
+                        turn: measured.base.rotation.inverse() * planned.rot_wb,
+                        rate_b: planned.omega_b - measured.base_velocity.angular,
+                    };
+                    let (moved, speeds) = grip.joints(share, &self.wanted, &then.joint_velocities);
+                    add(&mut then.joints, &moved);
+                    add(&mut reference.joints, &moved);
+                    add(&mut then.joint_velocities, &speeds);
+                    add(&mut reference.joint_velocities, &speeds);
+                }
+            }
+            Phase::Flight => {
+                let moment = (then.node, t - measured.age);
+                if let Some(turning) = turning(&jump.plan, moment, measured) {
+                    self.tucked = s.tuck.share(self.tucked, &turning, dt);
+                    let moved = s.tuck.joints(self.tucked, &turning, &self.wanted);
+                    add(&mut then.joints, &moved);
+                    add(&mut reference.joints, &moved);
+                }
             }
             Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
-                let up_b = measured.base.rotation.inverse() * Vector3::z();
-                let velocity_b = &measured.base_velocity.linear;
+                let left = jump.plan.touchdown - t;
+                let turn = so3::exp(
+                    &(measured.base_velocity.angular * math::clamp(left, T::ZERO, s.foresight)),
+                )
+                .inverse();
+                let up_b = turn * (measured.base.rotation.inverse() * Vector3::z());
+                let velocity_b = turn * measured.base_velocity.linear;
                 self.legs = self.posture.follow(
                     self.model,
                     &self.level_feet,
-                    (&up_b, velocity_b),
+                    (&up_b, &velocity_b),
                     &self.legs,
                     &mut self.wanted,
                 );
@@ -383,6 +438,29 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         };
         (command, Work::Landing(c.outcome))
     }
+}
+
+fn add<T: Scalar, const N: usize>(to: &mut [T; N], more: &[T; N]) {
+    for (to, more) in to.iter_mut().zip(more) {
+        *to += *more;
+    }
+}
+
+/// How the body turns beside how the plan turns at `moment`.
+fn turning<T: Scalar, const N: usize, const F: usize>(
+    plan: &Plan<'_, T, N, F>,
+    moment: (usize, T),
+    measured: &Measurement<T, N, F>,
+) -> Option<Turning<T>> {
+    let planned = plan.base(moment)?;
+    let missing = measured.base.rotation.inverse() * planned.rot_wb;
+    Some(Turning {
+        missing_b: so3::log(&missing),
+        planned_b: planned.omega_b,
+        omega_b: measured.base_velocity.angular,
+        since: moment.1 - plan.takeoff,
+        left: plan.posing - moment.1,
+    })
 }
 
 /// Configuration and velocity as measured.

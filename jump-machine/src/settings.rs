@@ -1,7 +1,7 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
 use jump_control::{CartesianPd, Steady};
-use landing::{Detector, PreLanding};
+use landing::{Detector, PreLanding, Tuck};
 use rbd_core::{Frame, Motor};
 use so3::Scalar;
 
@@ -20,8 +20,12 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_payload: T,
     /// Farthest that a joint may be from the plan's first node at the start, rad.
     pub start_tolerance: T,
-    /// Time before the planned touchdown from which the landing posture follows tilt and speed, s.
+    /// Time before the touchdown from which the landing posture follows tilt and speed, s.
     pub levelling: T,
+    /// Longest time ahead, before the touchdown, for which tilt and speed are predicted, s.
+    pub foresight: T,
+    /// Most by which the plan's clock is shifted in flight so that it shows the planned touchdown when the ground comes, s.
+    pub max_late: T,
     /// Time after the planned touchdown at which the robot gives up waiting for the ground, s.
     pub patience: T,
     /// Base speeds below which the robot is at rest, m/s and rad/s.
@@ -40,6 +44,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub pd: CartesianPd<T, N, F>,
     /// The base in the push-off.
     pub steady: Steady<T>,
+    /// Legs in flight.
+    pub tuck: Tuck<T>,
     /// Touchdown.
     pub detector: Detector<T, N, F>,
     /// Legs before touchdown; its joints are those of legs without ground while no jump is armed.
@@ -65,15 +71,18 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             max_payload: of(0.15),
             start_tolerance: of(0.15),
             levelling: of(0.12),
+            foresight: of(0.12),
+            max_late: of(0.05),
             patience: T::HALF,
             rest: (of(0.05), of(0.2)),
             settling: of(0.2),
             stand_height: of(0.25),
-            lean: of(0.06),
+            lean: of(0.10),
             safe_damping: T::TWO,
             slew: of(1e4),
             pd: CartesianPd::a1(feet),
             steady: Steady::a1(),
+            tuck: Tuck::a1(),
             detector: Detector::new(feet),
             posture: PreLanding {
                 // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the

@@ -8,8 +8,12 @@ use so3::Scalar;
 pub struct Settings<T> {
     /// Gains on height: s⁻², s⁻¹.
     pub height: (T, T),
-    /// Gains on the horizontal position over the feet.
+    /// Gains on the horizontal position over the feet of a body that moves. Stiffer ones tip over after 1.2 m/s.
     pub horizontal: (T, T),
+    /// The same for a body at rest, whose joints' friction holds it off its target.
+    pub resting: (T, T),
+    /// Speed of the centre of mass, m/s, from which a body counts as moving; below, the gains are blended.
+    pub moving: T,
     /// Gains on the rotation.
     pub rotation: (T, T),
     /// Composite inertia of the landing posture about the centre of mass, diagonal, base axes, kg m².
@@ -40,6 +44,8 @@ impl<T: Scalar> Settings<T> {
         Self {
             height: (of(120.0), of(14.0)),
             horizontal: (of(20.0), of(8.0)),
+            resting: (of(80.0), of(14.0)),
+            moving: of(0.2),
             rotation: (of(250.0), of(28.0)),
             inertia_b: [of(0.141), of(0.379), of(0.410)],
             force_weight: T::ONE,

@@ -5,9 +5,7 @@
 //! the height that the joints' energy allows.
 #![allow(missing_docs, reason = "a program")]
 
-use core::sync::atomic::{AtomicU64, Ordering};
-use std::sync::Mutex;
-
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use saltus_tests::drops::{Drop, End, Plant, Wrong, drawn, energy_bound, native, run, with_fault};
 
 type Make = fn() -> Result<Plant, String>;
@@ -18,33 +16,15 @@ fn all(
     count: u64,
     drop: impl Fn(u64) -> Drop + Sync,
 ) -> Result<Vec<(Drop, End)>, String> {
-    let next = AtomicU64::new(0);
-    let ends = Mutex::new(Vec::new());
-    let work = || -> Result<(), String> {
-        let mut plant = make()?;
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= count {
-                return Ok(());
-            }
+    (0..count)
+        .into_par_iter()
+        .map_init(make, |plant, index| {
+            let plant = plant.as_mut().map_err(|error| error.clone())?;
             let drop = drop(index);
-            let end = run(&mut plant, &drop).map_err(|error| error.to_string())?;
-            ends.lock()
-                .map_err(|error| error.to_string())?
-                .push((drop, end));
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .try_for_each(|worker| match worker.join() {
-                Ok(result) => result,
-                Err(_) => Err("a worker panicked".to_owned()),
-            })
-    })?;
-    ends.into_inner().map_err(|error| error.to_string())
+            let end = run(plant, &drop).map_err(|error| error.to_string())?;
+            Ok((drop, end))
+        })
+        .collect()
 }
 
 /// Prints a row, and the drops that went wrong; the number of good ones.

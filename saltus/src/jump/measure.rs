@@ -26,11 +26,21 @@ pub(crate) enum Measure {
     Posture,
     /// Forces of the feet against a wrong turning rate.
     Steady,
+    /// Plan forces that keep their direction in the world, however the body leans.
+    Direction,
+    /// Feet pulled to their places in the world, however the body leans, while fewer than all push.
+    Grip,
+    /// A touchdown and an attitude there that are predicted, not taken from the plan and from now.
+    Retiming,
+    /// Legs drawn in or stretched in flight, so that the body turns on time.
+    Tuck,
+    /// Stiffer gains of a body that rests off its target.
+    Resting,
 }
 
 impl Measure {
     /// All of them.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Weighing,
         Self::Drives,
         Self::Margins,
@@ -38,6 +48,11 @@ impl Measure {
         Self::Lookahead,
         Self::Posture,
         Self::Steady,
+        Self::Direction,
+        Self::Grip,
+        Self::Retiming,
+        Self::Tuck,
+        Self::Resting,
     ];
 
     /// Its name on the command line and in results.
@@ -50,6 +65,11 @@ impl Measure {
             Self::Lookahead => "lookahead",
             Self::Posture => "posture",
             Self::Steady => "steady",
+            Self::Direction => "direction",
+            Self::Grip => "grip",
+            Self::Retiming => "retiming",
+            Self::Tuck => "tuck",
+            Self::Resting => "resting",
         }
     }
 
@@ -93,6 +113,11 @@ impl Measure {
                 let steady = &mut settings.steady;
                 (steady.stiffness, steady.damping, steady.turning) = (0.0, 0.0, 0.0);
             }
+            Self::Direction => settings.steady.direction = 0.0,
+            Self::Grip => settings.steady.grip = 0.0,
+            Self::Retiming => (settings.max_late, settings.foresight) = (0.0, 0.0),
+            Self::Tuck => settings.tuck.gain = 0.0,
+            Self::Resting => settings.landing.resting = settings.landing.horizontal,
             Self::Drives | Self::Margins | Self::Delay => {}
         }
     }

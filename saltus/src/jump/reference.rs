@@ -326,8 +326,12 @@ fn fly(
         return;
     };
     let end = flight.last().map_or(takeoff, |last| last.start + last.dt);
+    let (rate, left) = (last.base_velocity, end - last.time);
+    let turned = last.base.rotation * so3::exp(&(rate.angular * left));
+    let fallen = last.base.rotation * rate.linear * left;
     nodes.push(Node {
         time: end,
+        base: Transform::new(turned, last.base.translation + fallen),
         joints: *landing_joints,
         joint_velocities: [0.0; JOINTS],
         torques: [0.0; JOINTS],

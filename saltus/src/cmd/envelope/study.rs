@@ -13,8 +13,8 @@ use crate::jump::planned::Planner;
 use crate::jump::plant::{Disturbance, Sim};
 use crate::jump::reference::Reference;
 use crate::jump::task::Task;
-use core::sync::atomic::{AtomicUsize, Ordering};
 use indicatif::ProgressBar;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -101,31 +101,18 @@ impl Study<'_> {
         let file = Mutex::new(self.open(&path).map_err(|e| describe(&path, &e))?);
         bar.set_length(todo.len() as u64);
         bar.set_position(0);
-        let next = AtomicUsize::new(0);
-        let work = || -> Result<(), String> {
-            while let Some(index) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
-                if interrupt::asked() {
-                    return Ok(());
-                }
-                let sample = self.sample(reference, *index)?;
-                // One write per line: what is there is whole.
-                let line = format!("{}\n", sample.line());
-                let mut file = file.lock().map_err(|e| e.to_string())?;
-                file.write_all(line.as_bytes())
-                    .map_err(|e| describe(&path, &e))?;
-                bar.inc(1);
+        todo.par_iter().try_for_each(|index| {
+            if interrupt::asked() {
+                return Ok(());
             }
-            Ok(())
-        };
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            workers
-                .into_iter()
-                .try_for_each(|worker| match worker.join() {
-                    Ok(result) => result,
-                    Err(_) => Err("a worker panicked".to_owned()),
-                })
+            let sample = self.sample(reference, *index)?;
+            // One write per line: what is there is whole.
+            let line = format!("{}\n", sample.line());
+            let mut file = file.lock().map_err(|e| e.to_string())?;
+            file.write_all(line.as_bytes())
+                .map_err(|e| describe(&path, &e))?;
+            bar.inc(1);
+            Ok::<_, String>(())
         })?;
         let samples = self.merge()?;
         write(&self.folder, "table.csv", table(&samples).as_bytes())?;

@@ -1,0 +1,222 @@
+//! What the robot does about a flight that is not the planned one: later or earlier ground, another turn.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use a1_model::{A1Geared, FEET, MOTORS};
+use jump_control::{Measurement, Node, Phase, Plan, Torques};
+use jump_machine::{Inputs, Jump, Machine, Settings};
+use landing::{PreLanding, Workspace};
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
+use rbd_core::{Configuration, Frame, GRAVITY, Limbs, Motion, Transform};
+
+const TAKEOFF: f64 = 0.2;
+const TOUCHDOWN: f64 = 0.8;
+/// Time in the landing posture before the touchdown.
+const POSED: f64 = 0.05;
+const MASS: f64 = 13.741;
+
+fn crouch() -> [f64; 12] {
+    core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3])
+}
+
+fn feet() -> [Frame<f64>; 4] {
+    FEET.map(|foot| foot.frame)
+}
+
+/// Where the base is `time` after take-off, and how fast it rises.
+fn ballistic(height: f64, speed: f64, time: f64) -> (f64, f64) {
+    let g = -GRAVITY[2];
+    (height + (speed - 0.5 * g * time) * time, speed - g * time)
+}
+
+/// A plan that rises with 2.5 m/s from 0.35 m and turns with `rate` about y in flight.
+fn nodes(rate: f64) -> Vec<Node<f64, 12, 4>> {
+    let node = |time: f64| {
+        let flown = (time - TAKEOFF).max(0.0);
+        let (height, speed) = match flown {
+            0.0 => (0.35, 2.5),
+            _ => ballistic(0.35, 2.5, flown),
+        };
+        let rotation = so3::exp(&(Vector3::y() * (rate * flown)));
+        let speed_b = rotation.inverse() * Vector3::new(0.0, 0.0, speed);
+        Node {
+            time,
+            base: Transform::new(rotation, Vector3::new(0.0, 0.0, height)),
+            base_velocity: Motion::new(speed_b, Vector3::y() * rate),
+            joints: crouch(),
+            ..Node::ZERO
+        }
+    };
+    let flight = (0..=120).map(|k| node(TAKEOFF + 0.005 * f64::from(k)));
+    [node(-0.001), node(0.0)]
+        .into_iter()
+        .chain(flight)
+        .collect()
+}
+
+fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
+    Jump {
+        plan: Plan::new(nodes, TAKEOFF, TOUCHDOWN - POSED, TOUCHDOWN, Torques::Hold).unwrap(),
+        weight: MASS * 9.81,
+        goal_w: Vector3::zeros(),
+        rot_goal: Rotation3::identity(),
+        landing_joints: crouch(),
+    }
+}
+
+/// The robot in the air, as the world has it.
+fn flying(base: Transform<f64>, vel_w: Vector3<f64>, omega_b: Vector3<f64>) -> Inputs<f64, 12, 4> {
+    Inputs {
+        measured: Measurement {
+            base,
+            base_velocity: Motion::new(base.rotation.inverse() * vel_w, omega_b),
+            joints: crouch(),
+            joint_velocities: [0.0; 12],
+            foot_forces: [0.0; 4],
+            age: 0.0,
+        },
+        felt: [0.0; 12],
+    }
+}
+
+/// A flight from `height` with `speed` that turns with `rate`, to the `end` on the caller's clock; what `watch` makes of each
+/// millisecond in the air.
+fn fly<R>(
+    settings: &Settings<f64, 12, 4>,
+    nodes: &[Node<f64, 12, 4>],
+    (height, speed, rate): (f64, f64, f64),
+    end: f64,
+    mut watch: impl FnMut(f64, &Machine<'_, f64, A1Geared, 12, 4>) -> Option<R>,
+) -> Option<R> {
+    let mut workspace = Workspace::new();
+    let mut machine = Machine::new(&A1Geared, *settings, &mut workspace);
+    machine.arm(jump(nodes), 0.0).unwrap();
+    for k in -300.. {
+        let t = f64::from(k) * 1e-3;
+        if t > end {
+            break;
+        }
+        let flown = (t - TAKEOFF).max(0.0);
+        let (z, vz) = ballistic(height, speed, flown);
+        let rotation = so3::exp(&(Vector3::y() * (rate * flown)));
+        let base = Transform::new(rotation, Vector3::new(0.0, 0.0, z));
+        let omega = Vector3::y() * if t < TAKEOFF { 0.0 } else { rate };
+        let heard = flying(base, Vector3::new(0.0, 0.0, vz), omega);
+        machine.tick(t, Some(&heard));
+        machine.joint_tick(&crouch(), &[0.0; 12], 1e-4);
+        if t >= TAKEOFF
+            && let Some(found) = watch(t, &machine)
+        {
+            return Some(found);
+        }
+    }
+    None
+}
+
+/// When a body thrown from `height` with `speed` comes down to where the plan ends.
+fn ground(height: f64, speed: f64) -> f64 {
+    let (end, _) = ballistic(0.35, 2.5, TOUCHDOWN - TAKEOFF);
+    let g = -GRAVITY[2];
+    TAKEOFF + (speed + so3::math::sqrt(speed * speed + 2.0 * g * (height - end))) / g
+}
+
+proptest! {
+    /// The legs take up the landing posture as long before the ground comes as the plan wants it, whatever the take-off was; a
+    /// flight that is too far from the plan is met as far as the clock may be shifted.
+    #[test]
+    fn the_landing_posture_is_taken_up_in_time_for_the_ground(
+        height in 0.31..0.39,
+        speed in 2.2..2.8,
+    ) {
+        let settings = Settings::a1(feet(), MOTORS, crouch());
+        let posing = |settings: &Settings<f64, 12, 4>| {
+            fly(settings, &nodes(0.0), (height, speed, 0.0), 1.0, |t, machine| {
+                (machine.phase() == Phase::PreLanding).then_some(t)
+            })
+            .unwrap()
+        };
+        let late = ground(height, speed) - TOUCHDOWN;
+        let shift = late.clamp(-settings.max_late, settings.max_late);
+        let expected = TOUCHDOWN - POSED + shift;
+        // A millisecond of the tick, and the second order of a shift.
+        let allowed = 1.5e-3 + 2.0 * shift * shift;
+        prop_assert!((posing(&settings) - expected).abs() < allowed, "{} {expected}", posing(&settings));
+        let fixed = Settings { max_late: 0.0, ..settings };
+        prop_assert!((posing(&fixed) - (TOUCHDOWN - POSED)).abs() < 1.5e-3);
+    }
+
+    /// Before the ground, feet are where the tilt at the touchdown wants them, not the tilt of now.
+    #[test]
+    fn feet_are_set_for_the_attitude_in_which_they_will_land(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
+        let settings = Settings::a1(feet(), MOTORS, crouch());
+        let nodes = nodes(rate);
+        // The plan's rotation is shifted by the tilt with which the body will arrive.
+        let nodes: Vec<_> = nodes
+            .into_iter()
+            .map(|mut node| {
+                let end = so3::exp(&(Vector3::y() * (tilt - rate * (TOUCHDOWN - TAKEOFF))));
+                let speed_w = node.base.rotation * node.base_velocity.linear;
+                node.base.rotation = end * node.base.rotation;
+                node.base_velocity.linear = node.base.rotation.inverse() * speed_w;
+                node
+            })
+            .collect();
+        let mut workspace = Workspace::new();
+        let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
+        machine.arm(jump(&nodes), 0.0).unwrap();
+        let (mut k, mut time) = (-300_i32, -0.3_f64);
+        while time < TOUCHDOWN - 0.002 {
+            let node = nodes.iter().rfind(|node| node.time <= time).unwrap_or(&nodes[0]);
+            let ahead = time - node.time;
+            let turn = so3::exp(&(node.base_velocity.angular * if time < TAKEOFF { 0.0 } else { ahead }));
+            let vel_w = node.base.rotation * node.base_velocity.linear;
+            let flown = if time < TAKEOFF { 0.0 } else { ahead };
+            let (z, vz) = ballistic(node.base.translation.z, vel_w.z, flown);
+            let base = Transform::new(node.base.rotation * turn, Vector3::new(0.0, 0.0, z));
+            machine.tick(time, Some(&flying(base, Vector3::new(0.0, 0.0, vz), node.base_velocity.angular)));
+            machine.joint_tick(&crouch(), &[0.0; 12], 1e-4);
+            k += 1;
+            time = f64::from(k) * 1e-3;
+        }
+        prop_assert_eq!(machine.phase(), Phase::PreLanding);
+        let posture = PreLanding { joints: crouch(), ..settings.posture };
+        let up_b: Vector3<f64> = so3::exp(&(Vector3::y() * -tilt)) * Vector3::z();
+        let expected = place(&posture.joints(&A1Geared, &up_b, &Vector3::zeros()));
+        let found = place(&machine.command().position);
+        for (found, expected) in found.iter().zip(&expected) {
+            prop_assert!((found - expected).norm() < 5e-3, "{found} {expected}");
+        }
+    }
+
+    /// A body that is behind its plan draws its legs in, one that is ahead stretches them, and both let go before the touchdown.
+    #[test]
+    fn legs_are_drawn_in_when_the_turn_is_late_and_stretched_when_it_is_early(rate in 5.0..12.0, off in 0.03..0.1) {
+        let settings = Settings::a1(feet(), MOTORS, crouch());
+        for sign in [-1.0, 1.0] {
+            let nodes = nodes(rate);
+            let flight = (0.35, 2.5, rate * (1.0 + sign * off));
+            let mut longest = 0.0_f64;
+            let mut last = 0.0;
+            fly(&settings, &nodes, flight, TOUCHDOWN - POSED - 0.001, |_, machine| {
+                let reach = |joints: &[f64; 12]| place(joints)[0].xz().norm();
+                last = reach(&machine.command().position) - reach(&crouch());
+                if last.abs() > longest.abs() {
+                    longest = last;
+                }
+                None::<()>
+            });
+            prop_assert!(longest * sign > 0.01, "{longest}");
+            prop_assert!(last.abs() < 2e-3, "{last}");
+        }
+    }
+}
+
+fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
+    let q = Configuration {
+        joints: *joints,
+        ..Configuration::NEUTRAL
+    };
+    Limbs::new(&A1Geared, &q, &feet())
+        .ends
+        .map(|end| end.position)
+}
