@@ -10,7 +10,7 @@
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
 use crate::kernels::{at, ceil4, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
-use crate::kernels::{copy, sub_scaled, sub_scaled_pair};
+use crate::kernels::{copy, sub_all, sub_scaled, sub_scaled_pair};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
@@ -207,16 +207,18 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 break;
             };
             let Some(r) = upper.last_mut() else { break };
+            let Some((left, right)) = r.split_at_mut_checked(rank) else {
+                break;
+            };
+            let shares = span(left, k + 1, rank);
+            let below = shares.iter().zip(lower.iter());
+            sub_all(right, below.map(|(f, below)| (*f, span(below, rank, N))));
             let mut p = at(&self.rhs, k);
-            for (m, below) in lower.iter().take(rank - k - 1).enumerate() {
-                let f = at(r.as_slice(), k + 1 + m);
-                if f != T::ZERO {
-                    sub_scaled(span_mut(r, rank, N), f, span(below, rank, N));
-                    p -= f * at(&self.rhs, k + 1 + m);
-                }
+            for (f, known) in shares.iter().zip(span(&self.rhs, k + 1, rank)) {
+                p -= *f * *known;
             }
             let inverse = at(&self.inverse, k);
-            for w in span_mut(r, rank, N) {
+            for w in right {
                 *w *= inverse;
             }
             put(&mut self.rhs, k, p * inverse);
@@ -345,12 +347,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 *c = at(hv, *f);
             }
             let others = self.lu.iter().zip(&self.perm).take(rank).skip(self.fixed);
-            for (w2, v2) in others {
-                let f = at(hv, *v2) * T::HALF;
-                if f != T::ZERO {
-                    sub_scaled(head_mut(scratch, free), f, span(w2, rank, N));
-                }
-            }
+            let others = others.map(|(w2, v2)| (at(hv, *v2) * T::HALF, span(w2, rank, N)));
+            sub_all(head_mut(scratch, free), others);
             let w = span(w, rank, N);
             for (i, o) in out.iter_mut().take(free).enumerate() {
                 let (wi, ci) = (at(w, i), at(scratch.as_slice(), i));
