@@ -16,5 +16,5 @@ pub use error::Error;
 pub use problem::Problem;
 pub use residual::{Infeasibility, Residual, infeasibility, kkt_residual};
 pub use settings::Settings;
-pub use solver::{solve, solve_warm};
+pub use solver::{resume, solve, solve_warm};
 pub use workspace::{Constraint, Side, Solution, Status, Workspace};

@@ -42,27 +42,28 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    let mut search = Search {
-        p: problem,
-        s: settings,
-        w: workspace,
-        iterations: 0,
-        tolerance: T::ZERO,
-        primal: T::ZERO,
-    };
-    // A solved problem has passed through finite arithmetic entry by entry. Only otherwise is it
-    // worth asking whether the data can be at fault.
-    let status = match search.run() {
-        Ok(Status::Solved) => Status::Solved,
-        outcome => {
-            if let Err(error) = problem.validate() {
-                search.w.forget();
-                return Err(error);
-            }
-            outcome.inspect_err(|_| search.w.forget())?
-        }
-    };
-    Ok(search.finish(status))
+    Search::new(problem, settings, workspace).conclude(Search::run)
+}
+
+/// Goes on where the workspace's last solve ended, for the same problem with other limits of inequalities: rows may have lost
+/// their limits or moved them. Nothing is factorised again, so this costs only the rows that change.
+///
+/// H, g, the rows and the equalities must be those of the last solve; where they are not, the status is at worst
+/// [`Status::Numerical`], since it is found from the problem given. Without a last solve this is [`solve_warm`].
+///
+/// # Errors
+/// As [`solve`].
+pub fn resume<'w, T: Scalar, const N: usize, const M: usize>(
+    problem: &Problem<'_, T, N, M>,
+    settings: &Settings<T>,
+    workspace: &'w mut Workspace<T, N, M>,
+) -> Result<Solution<'w, T, N, M>, Error> {
+    let search = Search::new(problem, settings, workspace);
+    if search.w.is_factorised {
+        search.conclude(Search::resume)
+    } else {
+        search.conclude(Search::run)
+    }
 }
 
 struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
@@ -70,6 +71,8 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     s: &'a Settings<T>,
     w: &'w mut Workspace<T, N, M>,
     iterations: u32,
+    /// Iterations, and remembered rows that entered or left.
+    steps: u32,
     /// Distance outside a row that counts as violated, at the present x.
     tolerance: T,
     /// Largest violation of any row in its own units, at the last look and measure of drift.
@@ -79,11 +82,48 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
 /// State of a row that is eliminated; ±1 when it is active on a side, 0 otherwise.
 const EQUALITY: i8 = 2;
 
-impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
+impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T, N, M> {
+    fn new(
+        problem: &'a Problem<'p, T, N, M>,
+        settings: &'a Settings<T>,
+        workspace: &'w mut Workspace<T, N, M>,
+    ) -> Self {
+        Self {
+            p: problem,
+            s: settings,
+            w: workspace,
+            iterations: 0,
+            steps: 0,
+            tolerance: T::ZERO,
+            primal: T::ZERO,
+        }
+    }
+
+    /// Searches, and says what came of it.
+    fn conclude(
+        mut self,
+        search: impl FnOnce(&mut Self) -> Result<Status, Error>,
+    ) -> Result<Solution<'w, T, N, M>, Error> {
+        // A solved problem has passed through finite arithmetic entry by entry. Only otherwise is it
+        // worth asking whether the data can be at fault.
+        let status = match search(&mut self) {
+            Ok(Status::Solved) => Status::Solved,
+            outcome => {
+                if let Err(error) = self.p.validate() {
+                    self.w.forget();
+                    return Err(error);
+                }
+                outcome.inspect_err(|_| self.w.forget())?
+            }
+        };
+        Ok(self.finish(status))
+    }
+
     fn run(&mut self) -> Result<Status, Error> {
         self.s.validate()?;
         let w = &mut *self.w;
         let seeds = w.basis.len.min(N);
+        w.is_factorised = false;
         w.basis.clear();
         w.row_scale_inverse.fill(T::ZERO);
         w.row_state.fill(0);
@@ -117,6 +157,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             &mut w.vec_a,
         );
         w.factor.factorise(max_abs(self.p.gradient))?;
+        w.is_factorised = true;
         w.elimination.particular(&mut w.x);
         if w.elimination.rank == 0 {
             // x is zero.
@@ -129,15 +170,43 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         self.outer(known)
     }
 
+    /// [`Search::run`] without the equalities, the factor and the active set: they are there.
+    fn resume(&mut self) -> Result<Status, Error> {
+        self.s.validate()?;
+        self.w.previous.fill(T::ZERO);
+        for k in (0..self.w.basis.len).rev() {
+            let (l, u) = self.p.limits(at(&self.w.id, k));
+            let limit = if at(&self.w.side, k) > 0 { u } else { l };
+            if !limit.is_finite_number() {
+                self.steps += 1;
+                self.leave(k);
+            }
+        }
+        // Multipliers are found anew, as those of remembered rows are.
+        self.w.lambda.fill(T::ZERO);
+        self.evaluate_gradient();
+        let known = self.drop_unfit();
+        self.outer(known)
+    }
+
+    /// Whether the search has taken all the time that it may.
+    fn is_at_cap(&self) -> bool {
+        self.iterations >= self.s.max_iterations || self.steps >= self.s.max_steps
+    }
+
     /// Re-enters the remembered active set, without multipliers yet.
     fn seed(&mut self, seeds: usize) {
         for k in 0..seeds {
+            if self.steps >= self.s.max_steps {
+                return;
+            }
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
             let (l, u) = self.p.limits(id);
             let limit = if side > 0 { u } else { l };
             if self.w.state(id) != 0 || !(is_range(l, u) && limit.is_finite_number()) {
                 continue;
             }
+            self.steps += 1;
             self.prepare(id, side);
             if self.w.candidate.free > T::ZERO {
                 self.turn();
@@ -152,12 +221,18 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let mut last = T::INFINITY;
         let mut stalls = 0;
         loop {
-            if self.iterations >= self.s.max_iterations {
+            if self.is_at_cap() {
                 return Ok(Status::Limit);
             }
             self.iterations += 1;
+            self.steps += 1;
             self.correct(known);
             known = false;
+            // A row that pulls was not let go any more.
+            let mut multipliers = self.w.lambda.iter().take(self.w.basis.len);
+            if self.steps >= self.s.max_steps && multipliers.any(|l| *l < T::ZERO) {
+                return Ok(Status::Limit);
+            }
             match self.search() {
                 Pass::Feasible => {}
                 // A contradiction that the data do not confirm comes from round-off in x: correct

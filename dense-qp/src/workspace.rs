@@ -38,6 +38,8 @@ pub struct Workspace<T, const N: usize, const M: usize> {
     pub(crate) vec_a: [T; N],
     pub(crate) vec_b: [T; N],
     pub(crate) previous: [T; N],
+    /// Whether elimination, factor and basis are those of the last solve.
+    pub(crate) is_factorised: bool,
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
@@ -65,12 +67,14 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             vec_a: [T::ZERO; N],
             vec_b: [T::ZERO; N],
             previous: [T::ZERO; N],
+            is_factorised: false,
         }
     }
 
     /// Forgets the active set: the next [`crate::solve_warm`] starts cold.
     pub fn forget(&mut self) {
         self.basis.len = 0;
+        self.is_factorised = false;
     }
 
     /// The inequalities that are active at the solution, in no particular order.
@@ -171,6 +175,8 @@ pub struct Solution<'w, T, const N: usize, const M: usize> {
     pub bound_multipliers: &'w [T; N],
     /// Rows that entered or left the active set, plus corrections of the point.
     pub iterations: u32,
+    /// These, and remembered rows that entered or left: what [`crate::Settings::max_steps`] caps.
+    pub steps: u32,
     /// KKT residual at `x` and the multipliers found (not those of a proof of infeasibility).
     pub residual: Residual<T>,
     pub(crate) ray: &'w [T; N],

@@ -10,7 +10,7 @@ mod common;
 use common::{Qp, Rng};
 use dense_qp::{
     Constraint, Error, Problem, Settings, Side, Status, Workspace, infeasibility, kkt_residual,
-    solve, solve_warm,
+    resume, solve, solve_warm,
 };
 
 const INF: f64 = f64::INFINITY;
@@ -319,6 +319,86 @@ fn cap() {
         assert!(s.status == Status::Limit || s.residual.max() < 1e-8);
         assert!(s.x.iter().all(|v| v.is_finite()));
     }
+}
+
+/// The cap on steps holds for remembered rows as well, cold, warm and resumed, and what it ends is never called solved.
+#[test]
+fn cap_on_steps() {
+    let mut r = Rng(10);
+    let mut w = Box::new(Workspace::<f64, 20, 40>::new());
+    let (mut limits, mut others) = (0, 0);
+    for _ in 0..40 {
+        let mut q = Qp::<20, 40>::zero();
+        q.set_hessian(&mut r, 20, 0.1);
+        q.set_rows(&mut r, 4, false);
+        for max_steps in [0, 1, 3, 6, 10, 15, 25, 40] {
+            let settings = Settings {
+                max_steps,
+                ..Settings::default()
+            };
+            for again in [solve, solve_warm, resume] {
+                let s = again(&q.problem(), &settings, &mut w).unwrap();
+                // Rows that pull leave together, at most all of them.
+                assert!(s.steps <= max_steps + 20 && s.iterations <= s.steps);
+                assert!(s.x.iter().all(|v| v.is_finite()));
+                match s.status {
+                    Status::Limit => limits += 1,
+                    status => {
+                        assert_eq!(status, Status::Solved);
+                        assert!(s.residual.max() < 1e-7, "{:?}", s.residual);
+                        others += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(limits > 300 && others > 100, "{limits} {others}");
+}
+
+/// Limits that go, or move, after a search, infeasible or not: [`resume`] finds what a fresh solve finds, in fewer steps.
+#[test]
+fn resumed_is_solved() {
+    let mut r = Rng(11);
+    let (mut w, mut fresh) = (
+        Box::new(Workspace::<f64, 20, 40>::new()),
+        Box::new(Workspace::<f64, 20, 40>::new()),
+    );
+    let settings = Settings::default();
+    let (mut infeasible, mut saved) = (0, 0);
+    for k in 0..200 {
+        let mut q = Qp::<20, 40>::zero();
+        q.set_hessian(&mut r, 20, 0.1);
+        q.set_rows(&mut r, 4, false);
+        // Sums that bounds do not allow.
+        let mut tight = q.clone();
+        for i in 0..20 {
+            let x = if k % 2 == 0 { 0.01 } else { 20.0 };
+            (tight.lb[i], tight.ub[i]) = (-x, x);
+        }
+        let before = solve(&tight.problem(), &settings, &mut w).unwrap();
+        infeasible += u32::from(before.status == Status::Infeasible);
+        let resumed = resume(&q.problem(), &settings, &mut w).unwrap();
+        let truth = solve(&q.problem(), &settings, &mut fresh).unwrap();
+        assert_eq!(
+            (resumed.status, truth.status),
+            (Status::Solved, Status::Solved)
+        );
+        for (a, b) in resumed.x.iter().zip(truth.x) {
+            assert!((a - b).abs() < 1e-7, "{a} {b}");
+        }
+        saved += i64::from(truth.steps) - i64::from(resumed.steps);
+    }
+    assert!(infeasible > 20 && infeasible < 200, "{infeasible}");
+    assert!(saved > 0, "{saved}");
+    // Without a last solve it is a solve; after another program it is none that lies.
+    let mut q = Qp::<20, 40>::zero();
+    q.set_hessian(&mut r, 20, 0.1);
+    q.set_rows(&mut r, 4, false);
+    let mut new = Box::new(Workspace::<f64, 20, 40>::new());
+    let s = resume(&q.problem(), &settings, &mut new).unwrap();
+    assert_eq!(s.status, Status::Solved);
+    let s = resume(&q.problem(), &settings, &mut w).unwrap();
+    assert!(s.status != Status::Solved || s.residual.max() < 1e-7);
 }
 
 /// f32 against f64 on the same problems, scaled residual.

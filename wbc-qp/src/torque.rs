@@ -15,13 +15,21 @@
 //! contacts become costs as well. The last program always has a solution: no force, no torque, free fall. The answer says which
 //! one it comes from and by how much the rows that yielded were missed.
 //!
+//! # Time
+//! A program that is impossible is only known to be so after a search, and up to three more follow. [`TorqueQp::max_steps`] caps all
+//! searches of a tick together, so that a tick has a longest time. What the cap ends is a command all the same: the last
+//! iterate's torques, cut to their ranges; the answer says so ([`TorqueAnswer::capped`]), and the next tick begins where this one
+//! ended, with the rows that had yielded and the active set. It begins with the whole program again once nothing that yielded
+//! is missed. Rows yield without another factorisation where that is possible, and those are passed over that the proof of
+//! infeasibility does not contain, since without them it is a proof as well.
+//!
 //! # Priorities
 //! A task is held ([`TorqueQp::hold`]: an equality, eliminated before the solve, so that what is left is well scaled and single
 //! precision is enough) or weighed ([`TorqueQp::minimise`]). Held tasks come strictly first; the weighed solution tends to the
 //! held one as its weight grows. Any number of levels: solve the first, hold its tasks at what they reached, go on with the
 //! costs of the next ([`TorqueQp::next_level`]).
 
-use dense_qp::{Settings, Status, Workspace, solve_warm};
+use dense_qp::{Constraint, Problem, Settings, Solution, Status, Workspace, resume, solve_warm};
 use rbd_core::linear::{ldl_back_substitute, ldl_factor};
 use rbd_core::{
     Effort, Force, JointLimits, MassMatrix, Motion, Tangent, Tree, crba, nonlinear_effects,
@@ -64,6 +72,8 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     load: [T; K],
     /// Bounds on q̈.
     range: [[T; 2]; N],
+    /// Bounds on τ.
+    torque_range: [[T; 2]; N],
     /// One force coordinate, N or N m.
     unit: T,
     /// Tolerances and iteration cap of the solver.
@@ -74,9 +84,28 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     pub contact_weight: T,
     /// Weight of a held task's row that has yielded.
     pub task_weight: T,
+    /// Most steps of all searches of a tick together, as [`Settings::max_steps`] counts them; one of the last relaxation, in which the
+    /// contacts' rows are no longer eliminated, counts twice, and so do ten for its factorisation.
+    pub max_steps: u32,
     /// Which rows are those of held tasks.
     held: [bool; M],
+    /// What yields before the first search: more than nothing only after a tick that the cap ended.
+    start: Yielded,
 }
+
+/// Steps that another factorisation costs: elimination, the reduced Hessian and its factor.
+const REFACTORISATION: u32 = 10;
+
+/// Misses of what had yielded, m/s² and rad/s², below which the whole program is tried again after a tick at the cap.
+const KEPT: f64 = 0.1;
+
+/// How a search begins.
+type Solver<T, const V: usize, const M: usize> =
+    for<'p, 'w> fn(
+        &Problem<'p, T, V, M>,
+        &Settings<T>,
+        &'w mut Workspace<T, V, M>,
+    ) -> Result<Solution<'w, T, V, M>, dense_qp::Error>;
 
 /// What a torque program found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,12 +124,15 @@ pub struct TorqueAnswer<T, const N: usize, const K: usize> {
     pub contact_violation: T,
     /// Iterations of all solves.
     pub iterations: u32,
+    /// Whether the cap ended the search: torques are the last iterate's, cut to their ranges; accelerations and forces are those of
+    /// before the cut, and may be outside of their limits.
+    pub capped: bool,
 }
 
 impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     TorqueQp<T, N, K, V, M>
 {
-    /// An empty program; iterations are capped at 200 per solve.
+    /// An empty program; iterations are capped at 200 per solve, steps not at all.
     #[must_use]
     pub fn new() -> Self {
         const { assert!(V == N + K, "a torque program has N + K variables") };
@@ -116,6 +148,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             wanted: [T::ZERO; K],
             load: [T::ZERO; K],
             range: [[T::NEG_INFINITY, T::INFINITY]; N],
+            torque_range: [[T::NEG_INFINITY, T::INFINITY]; N],
             unit: T::ONE,
             settings: Settings {
                 max_iterations: 200,
@@ -124,7 +157,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             contact_damping: T::of(20.0),
             contact_weight: T::of(1e5),
             task_weight: T::of(1e3),
+            max_steps: u32::MAX,
             held: [false; M],
+            start: Yielded::Nothing,
         }
     }
 
@@ -148,6 +183,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         }
         self.program.clear();
         self.range = [[T::NEG_INFINITY, T::INFINITY]; N];
+        self.torque_range = self.range;
         self.unit = snapshot.centroidal.mass * T::of(0.981);
         let mut rows = [Effort::ZERO; K];
         let mut slots = rows.iter_mut().zip(&mut self.wanted).zip(&mut self.load);
@@ -350,6 +386,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// # Errors
     /// [`Error::NoRoomForRows`].
     pub fn limit_torques(&mut self, ranges: &[[T; 2]; N]) -> Result<(), Error> {
+        self.torque_range = *ranges;
         let rows = self.effort.iter().zip(&self.effort_constant);
         for ((row, constant), [low, high]) in rows.zip(ranges) {
             self.program
@@ -387,51 +424,103 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// Solves the program, letting rows yield in the order of [`Yielded`] where it must.
     ///
     /// # Errors
-    /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if the iteration cap or round-off ended even the
+    /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if 200 iterations or round-off ended even the
     /// last search.
     pub fn solve(&mut self) -> Result<TorqueAnswer<T, N, K>, Error> {
-        let mut iterations = 0;
-        let mut last = Status::Infeasible;
-        for yielded in [
-            Yielded::Nothing,
-            Yielded::Tasks,
-            Yielded::MotionLimits,
-            Yielded::Contacts,
-        ] {
-            match yielded {
-                Yielded::Nothing => {}
-                Yielded::Tasks if !self.held.contains(&true) => continue,
-                Yielded::Tasks => {
-                    for i in 0..M {
-                        if self.held.get(i) == Some(&true) {
-                            self.soften(i, self.task_weight);
-                        }
-                    }
-                }
-                Yielded::MotionLimits => {
-                    for i in 0..N {
-                        self.program.bound(i, -T::INFINITY, T::INFINITY);
-                    }
-                }
-                Yielded::Contacts => {
-                    for k in 0..K {
-                        if get(&self.load, k) >= T::ONE {
-                            self.soften(k, self.contact_weight);
-                        }
-                    }
-                }
+        let (mut iterations, mut left) = (0, self.max_steps);
+        let mut yielded = self.start;
+        for before in [Yielded::Tasks, Yielded::MotionLimits, Yielded::Contacts] {
+            if before <= yielded {
+                self.relax(before);
             }
-            let solution = solve_warm(&self.program.problem(), &self.settings, &mut self.workspace)
+        }
+        let mut solver: Solver<T, V, M> = solve_warm;
+        loop {
+            let price = if yielded == Yielded::Contacts { 2 } else { 1 };
+            self.settings.max_steps = left / price;
+            let solution = solver(&self.program.problem(), &self.settings, &mut self.workspace)
                 .map_err(Error::Data)?;
             iterations += solution.iterations;
-            last = solution.status;
-            if last == Status::Solved {
-                let z = *solution.x;
-                return Ok(self.answer(&z, yielded, iterations));
+            left = left.saturating_sub(solution.steps.saturating_mul(price));
+            let (z, status) = (*solution.x, solution.status);
+            if status == Status::Solved {
+                let answer = self.answer(&z, yielded, iterations);
+                let missed = math::max(answer.limit_violation, answer.contact_violation);
+                if missed < T::of(KEPT) {
+                    self.start = Yielded::Nothing;
+                }
+                return Ok(answer);
             }
-            self.workspace.forget();
+            let at_cap = status == Status::Limit && left < price;
+            let next = if at_cap {
+                None
+            } else {
+                next_relaxation::<T, N, V, M>(yielded, &self.held, &solution)
+            };
+            match next {
+                None if at_cap => return Ok(self.cut(&z, yielded, iterations)),
+                None => {
+                    self.workspace.forget();
+                    return Err(Error::Unsolved(status));
+                }
+                Some(next) => {
+                    // Bounds alone leave the factors as they are.
+                    let same = next == Yielded::MotionLimits && status == Status::Infeasible;
+                    solver = if same { resume } else { solve_warm };
+                    if !same {
+                        self.workspace.forget();
+                        left = left.saturating_sub(2 * REFACTORISATION);
+                    }
+                    self.relax(next);
+                    yielded = next;
+                    if left == 0 {
+                        return Ok(self.cut(&z, yielded, iterations));
+                    }
+                }
+            }
         }
-        Err(Error::Unsolved(last))
+    }
+
+    /// Lets rows yield that have not yet.
+    fn relax(&mut self, next: Yielded) {
+        match next {
+            Yielded::Nothing => {}
+            Yielded::Tasks => {
+                for i in 0..M {
+                    if self.held.get(i) == Some(&true) {
+                        self.soften(i, self.task_weight);
+                    }
+                }
+            }
+            Yielded::MotionLimits => {
+                for i in 0..N {
+                    self.program.bound(i, -T::INFINITY, T::INFINITY);
+                }
+            }
+            Yielded::Contacts => {
+                for k in 0..K {
+                    if get(&self.load, k) >= T::ONE {
+                        self.soften(k, self.contact_weight);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The command of a search that the cap ended; the next tick begins here.
+    fn cut(&mut self, z: &[T; V], yielded: Yielded, iterations: u32) -> TorqueAnswer<T, N, K> {
+        self.start = yielded;
+        let mut answer = self.answer(z, yielded, iterations);
+        answer.capped = true;
+        for (tau, [low, high]) in answer.torques.iter_mut().zip(&self.torque_range) {
+            let finite = if tau.is_finite_number() {
+                *tau
+            } else {
+                T::ZERO
+            };
+            *tau = math::clamp(finite, *low, *high);
+        }
+        answer
     }
 
     /// Makes an equality row a cost.
@@ -453,6 +542,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             limit_violation: T::ZERO,
             contact_violation: T::ZERO,
             iterations,
+            capped: false,
         };
         for (tau, row) in answer.torques.iter_mut().zip(&self.effort) {
             *tau += dot(row, z);
@@ -486,6 +576,31 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize> 
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// What has to yield after a program: the first rows of which its proof of infeasibility contains one.
+fn next_relaxation<T: Scalar, const N: usize, const V: usize, const M: usize>(
+    yielded: Yielded,
+    held: &[bool; M],
+    solution: &Solution<'_, T, V, M>,
+) -> Option<Yielded> {
+    let unproven = solution.status != Status::Infeasible;
+    let next = [Yielded::Tasks, Yielded::MotionLimits, Yielded::Contacts];
+    next.into_iter().find(|next| {
+        let mut conflict = solution.conflict().map(|(constraint, _)| constraint);
+        *next > yielded
+            && match next {
+                Yielded::Nothing => false,
+                Yielded::Tasks if unproven => held.contains(&true),
+                Yielded::Tasks => {
+                    conflict.any(|c| matches!(c, Constraint::Row(i) if held.get(i) == Some(&true)))
+                }
+                Yielded::MotionLimits => {
+                    unproven || conflict.any(|c| matches!(c, Constraint::Bound(i) if i < N))
+                }
+                Yielded::Contacts => true,
+            }
+    })
 }
 
 fn get<T: Scalar>(xs: &[T], i: usize) -> T {

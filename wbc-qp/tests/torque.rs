@@ -317,6 +317,55 @@ fn a_held_task_yields_before_limits_and_contacts() {
     assert!(reached < -5.0 && reached > -9.82, "{reached}");
 }
 
+/// States and targets far from any jump under every cap: a command inside its limits, honest about the cap, optimal where it was not
+/// needed; and the next ticks find the optimum of where they begin.
+#[test]
+fn a_capped_command_is_inside_its_limits() {
+    let mut rng = Rng(12);
+    let (mut capped, mut whole) = (0, 0);
+    let solve = |qp: &mut TorqueQp<f64, N, K, V, M>, s: &Snapshot<f64, N>, mut rng: Rng| {
+        program(qp, s, &mut rng, 0.6);
+        qp.solve().unwrap()
+    };
+    for k in 0..120 {
+        let (speed, spread) = if k % 3 == 0 { (0.3, 0.1) } else { (8.0, 0.5) };
+        let (q, v) = crouch(&mut rng, spread, speed);
+        let s = snapshot(&q, &v);
+        let seed = rng.0;
+        let mut free = TorqueQp::new();
+        let best = solve(&mut free, &s, Rng(seed));
+        assert!(!best.capped);
+        for max_steps in [0, 2, 5, 10, 20, 40, 80, 160] {
+            let mut qp = TorqueQp::new();
+            qp.max_steps = max_steps;
+            let a = solve(&mut qp, &s, Rng(seed));
+            for (i, (tau, motor)) in a.torques.iter().zip(&MOTORS).enumerate() {
+                let [low, high] = torque_range(motor, v.joints[i], f64::INFINITY);
+                assert!(tau.is_finite());
+                assert!(
+                    *tau >= 0.6 * low - 1e-6 && *tau <= 0.6 * high + 1e-6,
+                    "{tau}"
+                );
+            }
+            if a.capped {
+                capped += 1;
+                // It goes on where it ended; with time enough, to the end.
+                let start = a.yielded;
+                qp.max_steps = u32::MAX;
+                let next = solve(&mut qp, &s, Rng(seed));
+                assert!(!next.capped && next.yielded >= start);
+            } else {
+                whole += 1;
+                assert_eq!(a.yielded, best.yielded);
+                for (x, y) in a.torques.iter().zip(&best.torques) {
+                    assert!((x - y).abs() < 1e-5, "{x} {y}");
+                }
+            }
+        }
+    }
+    assert!(capped > 100 && whole > 100, "{capped} {whole}");
+}
+
 fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
     TorqueJumpSettings {
         strict: true,

@@ -26,10 +26,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.prepare(id, side);
             let mut lambda = T::ZERO;
             loop {
-                if self.iterations >= self.s.max_iterations {
+                if self.is_at_cap() {
                     return Pass::Stop(Status::Limit);
                 }
                 self.iterations += 1;
+                self.steps += 1;
                 self.answer();
                 self.turn();
                 // The first multiplier to reach zero.

@@ -104,6 +104,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let before = self.w.basis.len;
             for k in (0..before).rev() {
                 if at(&self.w.vec_b, k) < T::ZERO {
+                    self.steps += 1;
                     self.leave(k);
                 }
             }
@@ -123,6 +124,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
     fn drop_negative(&mut self) {
         for _ in 0..N {
+            if self.steps >= self.s.max_steps {
+                return;
+            }
             let mut worst = None;
             let mut value = T::ZERO;
             for (k, l) in self.w.lambda.iter().take(self.w.basis.len).enumerate() {
@@ -132,6 +136,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
             let Some(k) = worst else { break };
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            self.steps += 1;
             self.leave(k);
             // The multiplier returns to zero along the direction that leaves the other rows met.
             self.prepare(id, side);

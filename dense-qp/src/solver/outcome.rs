@@ -65,7 +65,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
     }
 
     fn solution(self, status: Status, residual: crate::Residual<T>) -> Solution<'w, T, N, M> {
-        let iterations = self.iterations;
+        let (iterations, steps) = (self.iterations, self.steps);
         let w: &'w Workspace<T, N, M> = self.w;
         Solution {
             status,
@@ -73,6 +73,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
             row_multipliers: &w.row_multipliers,
             bound_multipliers: &w.bound_multipliers,
             iterations,
+            steps,
             residual,
             ray: &w.previous,
         }

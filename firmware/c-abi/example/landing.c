@@ -116,7 +116,7 @@ static void push_off(void) {
         return;
     }
     expect("push before init", saltus_icub_push_tick(push, &icub, &target, &torques), SALTUS_STATUS_NOT_INITIALISED);
-    expect("push init", saltus_icub_push_init(push, sizeof push, SALTUS_VERSION, &posture), SALTUS_STATUS_OK);
+    expect("push init", saltus_icub_push_init(push, sizeof push, SALTUS_VERSION, &posture, 12), SALTUS_STATUS_OK);
     for (int tick = 0; tick < 3; ++tick) {
         expect("push", saltus_icub_push_tick(push, &icub, &target, &torques), SALTUS_STATUS_OK);
     }

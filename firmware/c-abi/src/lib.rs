@@ -26,7 +26,7 @@ pub use icub::{
 pub use state::{A1State, IcubState};
 
 /// Version of the interface; a controller is initialised with the version that the caller was compiled with.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What came of a call.
 #[repr(C)]

@@ -373,6 +373,8 @@ impl Controller {
             Ok(tick) => {
                 let yielded = tick.answer.yielded != Yielded::Nothing;
                 self.note(tick.answer.iterations, &tick.residuals, yielded, held);
+                // A command, but not the program's optimum.
+                self.qp.failures += u64::from(tick.answer.capped);
                 self.last_torques = tick.answer.torques;
             }
             Err(_) => self.qp.failures += 1,

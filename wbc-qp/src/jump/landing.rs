@@ -85,6 +85,8 @@ pub struct LandingSettings<T, const N: usize> {
     pub horizon: Horizon<T>,
     /// Largest mechanical power of a joint, W; ∞ for none.
     pub max_power: T,
+    /// [`TorqueQp::max_steps`]; none by default.
+    pub max_steps: u32,
 }
 
 impl<T: Scalar, const N: usize> LandingSettings<T, N> {
@@ -114,6 +116,7 @@ impl<T: Scalar, const N: usize> LandingSettings<T, N> {
                 acceleration: T::of(1000.0),
             },
             max_power: T::INFINITY,
+            max_steps: u32::MAX,
         }
     }
 }
@@ -232,6 +235,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             *range = torque_range(motor, *qd, s.max_power);
         }
         self.qp.limit_torques(&ranges)?;
+        self.qp.max_steps = s.max_steps;
         let answer = self.qp.solve()?;
         self.previous = Some(answer.torques);
         let (com, momentum) = (

@@ -41,6 +41,8 @@ pub struct TorqueJumpSettings<T, const N: usize> {
     pub horizon: Horizon<T>,
     /// Largest mechanical power of a joint, W; ∞ for none.
     pub max_power: T,
+    /// [`TorqueQp::max_steps`]; none by default.
+    pub max_steps: u32,
     /// Whether damping and friction of the joints are known to the program; the paper's did not know them.
     pub knows_friction: bool,
 }
@@ -71,6 +73,7 @@ impl<T: Scalar, const N: usize> TorqueJumpSettings<T, N> {
                 acceleration: T::of(1000.0),
             },
             max_power: T::INFINITY,
+            max_steps: u32::MAX,
             knows_friction: true,
         }
     }
@@ -174,6 +177,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             *range = torque_range(motor, *qd, s.max_power);
         }
         self.qp.limit_torques(&ranges)?;
+        self.qp.max_steps = s.max_steps;
         let answer = self.qp.solve()?;
         self.previous = Some(answer.torques);
         let (com, momentum) = (

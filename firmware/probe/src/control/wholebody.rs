@@ -18,6 +18,7 @@ impl<T: Real> Numbers for TorqueAnswer<T, 23, 12> {
         (self.torques, self.acceleration, self.forces).visit(take);
         (self.limit_violation, self.contact_violation).visit(take);
         (self.yielded == Yielded::Nothing).visit(take);
+        self.capped.visit(take);
         take(f64::from(self.iterations));
     }
 }
