@@ -1,20 +1,5 @@
 //! Puts the chosen board's memory map where the linker finds it.
 
-use std::path::PathBuf;
-use std::{env, fs};
-
 fn main() -> Result<(), Box<dyn core::error::Error>> {
-    let board = env::var("SALTUS_BOARD").unwrap_or_else(|_| "mps2-an500".into());
-    let map = PathBuf::from("../smoke/memory").join(format!("{board}.x"));
-    let out = PathBuf::from(env::var("OUT_DIR")?);
-    fs::copy(&map, out.join("memory.x")).map_err(|e| format!("{}: {e}", map.display()))?;
-    println!("cargo:rustc-link-search={}", out.display());
-    if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return Ok(());
-    }
-    println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    println!("cargo:rustc-link-arg-bins=--nmagic");
-    println!("cargo:rerun-if-env-changed=SALTUS_BOARD");
-    println!("cargo:rerun-if-changed={}", map.display());
-    Ok(())
+    saltus_memory::link("mps2-an500").map(drop)
 }

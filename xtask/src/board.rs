@@ -3,9 +3,11 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::replay::Loops;
+
 /// A board and how to build for it.
 pub(crate) struct Board {
-    /// QEMU's name of the machine, and of the memory map in `firmware/smoke/memory`.
+    /// QEMU's name of the machine, and of the memory map in `firmware/memory/maps`.
     pub(crate) name: &'static str,
     /// The processor, for people.
     pub(crate) processor: &'static str,
@@ -15,6 +17,8 @@ pub(crate) struct Board {
     pub(crate) images: &'static [&'static str],
     /// The images that fly whole jumps.
     pub(crate) jumps: &'static [&'static str],
+    /// The images that fly under interrupts.
+    pub(crate) loops: &'static [Loops],
 }
 
 impl Board {
@@ -27,6 +31,24 @@ impl Board {
             .arg("-kernel")
             .arg(image);
         qemu
+    }
+}
+
+/// Loops without a framework.
+const fn bare(image: &'static str, replay: &'static str) -> Loops {
+    Loops {
+        package: "saltus-loops",
+        image,
+        replay,
+    }
+}
+
+/// A1's loops under a framework, in double precision.
+const fn starter(image: &'static str) -> Loops {
+    Loops {
+        package: "saltus-starters",
+        image,
+        replay: "a1-f64",
     }
 }
 
@@ -54,6 +76,12 @@ pub(crate) const BOARDS: [Board; 3] = [
             "planner-f32",
         ],
         jumps: &["jump-a1-f64", "jump-icub-f64"],
+        loops: &[
+            bare("loop-a1-f64", "a1-f64"),
+            bare("loop-icub-f64", "icub-f64"),
+            starter("rtic-a1"),
+            starter("embassy-a1"),
+        ],
     },
     Board {
         name: "mps2-an386",
@@ -68,6 +96,7 @@ pub(crate) const BOARDS: [Board; 3] = [
             "control-icub-f32",
         ],
         jumps: &["jump-a1-f32"],
+        loops: &[bare("loop-a1-f32", "a1-f32")],
     },
     Board {
         // `-Ctarget-cpu=cortex-m55` crashes LLVM (2026-11) while it builds `core`: the plain target, without Helium.
@@ -78,6 +107,7 @@ pub(crate) const BOARDS: [Board; 3] = [
         // The instruction memory holds 512 KiB: the basics are larger, and run on the other two.
         images: &["a1-f32", "control-a1-f32"],
         jumps: &["jump-a1-f32"],
+        loops: &[],
     },
 ];
 
@@ -121,7 +151,12 @@ impl Selection {
         jumps.filter(|jump| self.image.as_deref().is_none_or(|only| only == *jump))
     }
 
-    /// Whether all images are called for.
+    /// Whether all images of all boards are called for.
+    pub(crate) fn names_nothing(&self) -> bool {
+        self.image.is_none() && self.board.is_none()
+    }
+
+    /// Whether all images of a board are called for.
     pub(crate) fn names_no_image(&self) -> bool {
         self.image.is_none()
     }

@@ -4,14 +4,14 @@
 //! a status is not the promised one.
 
 use core::time::Duration;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Result, bail, ensure};
 
 use crate::bare::{Bare, Choice};
 use crate::board::BOARDS;
-use crate::run;
+use crate::{image, run};
 
 const LIMIT: Duration = Duration::from_secs(120);
 const STRICT: [&str; 5] = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Werror"];
@@ -85,17 +85,6 @@ fn in_firmware(mut cargo: Command) -> Command {
     cargo
 }
 
-/// Where cargo puts what it builds.
-fn target(cargo_args: &[&str]) -> Result<PathBuf> {
-    let mut metadata = in_firmware(run::cargo());
-    metadata.args(["metadata", "--format-version=1", "--no-deps", "--locked"]);
-    let metadata: serde_json::Value = serde_json::from_str(&run::stdout(&mut metadata)?)?;
-    let folder = metadata["target_directory"].as_str().unwrap_or_default();
-    Ok(cargo_args
-        .iter()
-        .fold(PathBuf::from(folder), |path, part| path.join(part)))
-}
-
 /// Builds the example with the host's compiler, and runs it.
 fn on_host(folder: &Path) -> Result<String> {
     let mut build = in_firmware(run::cargo());
@@ -108,7 +97,7 @@ fn on_host(folder: &Path) -> Result<String> {
         "saltus-c",
     ]);
     run::succeed(&mut build)?;
-    let built = target(&["host"])?;
+    let built = image::firmware_target()?.join("host");
     let program = built.join("c-example");
     let mut compile = Command::new("gcc");
     compile.args(STRICT).arg("-I").arg(folder.join("include"));
@@ -136,7 +125,7 @@ fn on_board(folder: &Path, core: Choice) -> Result<String> {
     let mut build = in_firmware(Bare::find(board.target, core)?.build_with(board.rustflags));
     build.args(["--quiet", "--locked", "--package", "saltus-c"]);
     run::succeed(&mut build)?;
-    let built = target(&[board.target, "release"])?;
+    let built = image::firmware_target()?.join(board.target).join("release");
     let image = built.join("c-example");
     let mut compile = Command::new("arm-none-eabi-gcc");
     compile

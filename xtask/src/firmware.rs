@@ -6,16 +6,15 @@
 //! verdict names those, and the word must go once the goal is met.
 
 use core::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
-use object::{Object, ObjectSegment};
 
 use crate::bare::Bare;
-use crate::board::{BOARDS, Board, Selection};
-use crate::image::Image;
+use crate::board::{Board, Selection};
+use crate::image::{Image, Size};
 use crate::qemu::{self, Worst};
-use crate::{probe, replay, run};
+use crate::{boards, probe, replay, run};
 
 /// What may be added to a stored number before it is an error.
 const TOLERANCE: f64 = 1.05;
@@ -95,7 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             let (calls, worst) = qemu::on_board(&image).context(name)?;
             let equal = probe::compare(&qemu::on_host("jumps", name)?, &calls)
                 .with_context(|| format!("{name} on {} differs from the host", board.name))?;
-            let flash = flash(&image.build()?)?;
+            let flash = Size::of(&image.build()?)?.flash;
             println!(
                 "  {name}: {equal} digests of {} calls equal the host's; flash {flash} B",
                 calls.len()
@@ -105,9 +104,17 @@ pub(crate) fn run(args: &Args) -> Result<()> {
                 judge(board, name, worst, &mut lines, &mut wrong, &mut excused);
             }
         }
-        if board.name == BOARDS[0].name && args.selection.names_no_image() {
-            replay::run(&bare)?;
+        if args.selection.names_no_image() {
+            replay::run(board, &bare)?;
         }
+    }
+    if args.selection.names_nothing() {
+        boards::run(args.selection.core)?;
+        // The loops' own tests: frames, and jumps over a link.
+        let mut tests = run::cargo();
+        tests.current_dir(run::root().join("firmware"));
+        tests.args(["test", "--quiet", "--profile=host", "--locked"]);
+        run::succeed(tests.args(["--package", "saltus-loops"]))?;
     }
     ensure!(ticks > 0, "no such image on such a board");
     if args.overwrite {
@@ -176,13 +183,6 @@ fn judge(
         }
         budget.stored = Some(number);
     }
-}
-
-/// Bytes of the image: code, tables, and what data begin with.
-fn flash(image: &Path) -> Result<u64> {
-    let bytes = std::fs::read(image).with_context(|| image.display().to_string())?;
-    let elf = object::File::parse(&*bytes)?;
-    Ok(elf.segments().map(|segment| segment.file_range().1).sum())
 }
 
 fn read(path: &PathBuf) -> Result<Vec<Line>> {

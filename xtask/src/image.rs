@@ -1,14 +1,49 @@
 //! Building the bare-metal images of `firmware/smoke`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result};
+use object::{Object, ObjectSegment};
 use serde_json::Value;
 
 use crate::bare::Bare;
 use crate::board::Board;
 use crate::run;
+
+/// Where the boards' memory maps put data: everything from here on.
+const DATA: u64 = 0x2000_0000;
+
+/// What an image takes of memory, bytes.
+#[derive(Clone, Copy)]
+pub(crate) struct Size {
+    /// Code, tables, and what data begin with.
+    pub(crate) flash: u64,
+    /// Static data.
+    pub(crate) data: u64,
+}
+
+impl Size {
+    pub(crate) fn of(image: &Path) -> Result<Self> {
+        let bytes = std::fs::read(image).with_context(|| image.display().to_string())?;
+        let elf = object::File::parse(&*bytes)?;
+        let data = elf.segments().filter(|segment| segment.address() >= DATA);
+        Ok(Self {
+            flash: elf.segments().map(|segment| segment.file_range().1).sum(),
+            data: data.map(|segment| segment.size()).sum(),
+        })
+    }
+}
+
+/// Where cargo puts what it builds of the firmware's workspace.
+pub(crate) fn firmware_target() -> Result<PathBuf> {
+    let mut metadata = run::cargo();
+    metadata.current_dir(run::root().join("firmware"));
+    metadata.args(["metadata", "--format-version=1", "--no-deps", "--locked"]);
+    let metadata: Value = serde_json::from_str(&run::stdout(&mut metadata)?)?;
+    let folder = metadata["target_directory"].as_str();
+    folder.map(PathBuf::from).context("cargo names no folder")
+}
 
 /// An image to build.
 pub(crate) struct Image<'a> {

@@ -3,13 +3,16 @@
 mod bare;
 mod bench;
 mod board;
+mod boards;
 mod c_abi;
 mod ci;
 mod cross;
 mod devtools;
 mod examples;
 mod firmware;
+mod firmware_lints;
 mod first_hour;
+mod flash_plan;
 mod gen_model;
 mod icount;
 mod image;
@@ -54,6 +57,10 @@ enum Command {
     CAbi(c_abi::Args),
     /// Fly whole jumps on the boards and hold the costs of their control ticks against budgets.
     Firmware(firmware::Args),
+    /// Formatting and lints of the firmware's workspace, for the host and for bare targets.
+    FirmwareLints(firmware_lints::Args),
+    /// Plan the firmware's jump anew and write it where its images read it.
+    FlashPlan(flash_plan::Args),
     /// Time our code beside its pinned peers and print tables of ratios.
     Bench(bench::Args),
     /// Count the instructions of every algorithm and compare with the golden file.
@@ -84,6 +91,8 @@ fn main() -> ExitCode {
         Command::Qemu(args) => qemu::run(&args),
         Command::CAbi(args) => c_abi::run(&args),
         Command::Firmware(args) => firmware::run(&args),
+        Command::FirmwareLints(args) => firmware_lints::run(&args),
+        Command::FlashPlan(args) => flash_plan::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Icount(args) => icount::run(&args),
         Command::ImportCheck(args) => import_check::run(&args),

@@ -1,44 +1,51 @@
-//! The control loop at 1 kHz: the jump machine with A1's plan from flash.
+//! The control loop at 1 kHz.
 
-use a1_model::A1Geared;
+mod icub;
+mod jumper;
+mod pilot;
+
+pub use jumper::Jumper;
+pub use pilot::Pilot;
+
 use jump_control::JointCommand;
-use jump_machine::{Inputs, Machine, Tick};
-use landing::Workspace;
-use rbd_core::Model;
-use saltus_probe::flight::{HOLD, Planned, jump, settings};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use rbd_core::Transform;
+use saltus_probe::{Numbers, Real};
 
-/// The machine and its clock.
-#[derive(Debug)]
-pub struct Control<'a, T: Planned>
-where
-    A1Geared: Model<T, 12>,
-{
-    machine: Machine<'a, T, A1Geared, 12, 4>,
-    ticks: u32,
+use crate::joints::Joints;
+
+/// What a control loop hears: numbers that the flight recorder writes down and a replay reads again.
+pub trait Heard<T>: Numbers + Copy {
+    /// From its numbers in the order in which they were written.
+    fn read(next: impl FnMut() -> T) -> Self;
 }
 
-impl<'a, T: Planned> Control<'a, T>
-where
-    A1Geared: Model<T, 12>,
-{
-    /// Standing, with the jump armed; `None` if the plan in flash is refused.
-    #[must_use]
-    pub fn new(workspace: &'a mut Workspace<T, 12, 4>) -> Option<Self> {
-        let mut machine = Machine::new(&A1Geared, settings(), workspace);
-        machine.arm(jump()?, T::of(HOLD)).ok()?;
-        Some(Self { machine, ticks: 0 })
-    }
+/// The control loop of a robot with `N` joints.
+pub trait Control<T: Real, const N: usize>: Sized {
+    /// What it hears every millisecond.
+    type Heard: Heard<T>;
+    /// Its memory, which firmware keeps in a static.
+    type Memory: 'static;
+
+    /// The memory before it is used.
+    fn memory() -> Self::Memory;
+
+    /// Before the first tick; `None` if what stands in flash is refused.
+    fn new(memory: &'static mut Self::Memory) -> Option<Self>;
+
+    /// The joint loop that goes with it, before the first command.
+    fn joints() -> Joints<T, N>;
 
     /// One tick; the command is then [`Control::command`].
-    pub fn tick(&mut self, inputs: &Inputs<T, 12, 4>) -> Tick {
-        let now = T::of(f64::from(self.ticks)) * T::of(1e-3);
-        self.ticks = self.ticks.wrapping_add(1);
-        self.machine.tick(now, Some(inputs))
-    }
+    fn tick(&mut self, heard: &Self::Heard);
 
     /// What the joints are to do.
-    #[must_use]
-    pub const fn command(&self) -> &JointCommand<T, 12> {
-        self.machine.command()
-    }
+    fn command(&self) -> &JointCommand<T, N>;
+}
+
+/// A pose from its twelve numbers: the rotation's matrix by columns, then the place.
+fn pose<T: Real>(mut next: impl FnMut() -> T) -> Transform<T> {
+    let columns: [T; 9] = core::array::from_fn(|_| next());
+    let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&columns));
+    Transform::new(rotation, Vector3::new(next(), next(), next()))
 }

@@ -13,10 +13,10 @@
 use saltus_probe::Numbers;
 use saltus_probe::flight::digest;
 
-/// Numbers that a control tick hears: base (12), its velocity (6), joints (24), feet (4), age, torques (12).
-pub const HEARD: usize = 59;
+/// Most numbers that a tick hears: iCub's base (12), its velocity (6), and 23 joints' positions and velocities.
+const HEARD: usize = 64;
 /// Longest record in bytes: `HEARD` double-precision numbers and what stands around them.
-pub const LONGEST: usize = 1 + 4 + 8 * HEARD + 8;
+const LONGEST: usize = 1 + 4 + 8 * HEARD + 8;
 
 /// A ring of `B` bytes.
 #[derive(Debug)]

@@ -2,16 +2,10 @@
 
 use std::fmt;
 
-use a1_model::A1Geared;
-use jump_machine::Inputs;
-use landing::Workspace;
-use nalgebra::{Matrix3, Rotation3, Vector3};
-use rbd_core::{Model, Motion, Transform};
-use saltus_probe::flight::{Planned, digest};
+use saltus_probe::Real;
+use saltus_probe::flight::digest;
 
-use crate::control::Control;
-use crate::joints::Joints;
-use crate::recorder::HEARD;
+use crate::control::{Control, Heard};
 
 /// What a replay found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,7 +43,7 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {}
+impl core::error::Error for Error {}
 
 /// Reads records.
 struct Reader<'a> {
@@ -65,36 +59,20 @@ impl Reader<'_> {
         Ok(*taken)
     }
 
-    fn numbers<T: Planned, const K: usize>(&mut self) -> Result<[T; K], Error> {
-        let mut out = [T::ZERO; K];
-        for x in &mut out {
-            *x = T::of(f64::from_bits(u64::from_le_bytes(self.take()?)));
-        }
-        Ok(out)
-    }
-}
-
-fn part<T: Copy, const K: usize>(from: &[T], first: usize, zero: T) -> [T; K] {
-    let rest = from.get(first..).unwrap_or_default();
-    rest.first_chunk().copied().unwrap_or([zero; K])
-}
-
-fn inputs<T: Planned>(x: &[T; HEARD]) -> Inputs<T, 12, 4> {
-    // Matrices are listed by columns.
-    let matrix = Matrix3::from_column_slice(&part::<_, 9>(x, 0, T::ZERO));
-    Inputs {
-        measured: jump_control::Measurement {
-            base: Transform::new(
-                Rotation3::from_matrix_unchecked(matrix),
-                Vector3::from(part::<_, 3>(x, 9, T::ZERO)),
-            ),
-            base_velocity: Motion::from_array(part(x, 12, T::ZERO)),
-            joints: part(x, 18, T::ZERO),
-            joint_velocities: part(x, 30, T::ZERO),
-            foot_forces: part(x, 42, T::ZERO),
-            age: x[46],
-        },
-        felt: part(x, 47, T::ZERO),
+    /// What `make` makes of the numbers that follow.
+    fn numbers<T: Real, O>(
+        &mut self,
+        make: impl FnOnce(&mut dyn FnMut() -> T) -> O,
+    ) -> Result<O, Error> {
+        let mut failure = None;
+        let made = make(&mut || match self.take() {
+            Ok(bytes) => T::of(f64::from_bits(u64::from_le_bytes(bytes))),
+            Err(error) => {
+                failure.get_or_insert(error);
+                T::ZERO
+            }
+        });
+        failure.map_or(Ok(made), Err)
     }
 }
 
@@ -102,13 +80,9 @@ fn inputs<T: Planned>(x: &[T; HEARD]) -> Inputs<T, 12, 4> {
 ///
 /// # Errors
 /// [`Error`] names the first record that is not as on the board.
-pub fn replay<T: Planned>(bytes: &[u8]) -> Result<Replayed, Error>
-where
-    A1Geared: Model<T, 12>,
-{
-    let mut workspace = Workspace::new();
-    let mut control = Control::<T>::new(&mut workspace).ok_or(Error::Plan)?;
-    let mut joints = Joints::<T>::new();
+pub fn replay<T: Real, C: Control<T, N>, const N: usize>(bytes: &[u8]) -> Result<Replayed, Error> {
+    let mut control = C::new(Box::leak(Box::new(C::memory()))).ok_or(Error::Plan)?;
+    let mut joints = C::joints();
     let mut reader = Reader { bytes, at: 0 };
     let mut found = Replayed::default();
     loop {
@@ -118,7 +92,7 @@ where
         let [control_ticks, joint_ticks] = &mut found.ticks;
         match kind {
             b'c' => {
-                control.tick(&inputs(&reader.numbers::<T, HEARD>()?));
+                control.tick(&reader.numbers(|next| C::Heard::read(next))?);
                 let same = u64::from_le_bytes(reader.take()?) == digest(control.command());
                 if !same || number != joints.number {
                     return Err(Error::Different('c', number));
@@ -127,7 +101,8 @@ where
                 *control_ticks += 1;
             }
             b'j' => {
-                let (q, qd) = (reader.numbers()?, reader.numbers()?);
+                let mut numbers = || reader.numbers(|next| core::array::from_fn(|_| next()));
+                let (q, qd): ([T; N], [T; N]) = (numbers()?, numbers()?);
                 let same = u64::from_le_bytes(reader.take()?) == digest(&joints.tick(&q, &qd));
                 if !same || number != joints.number {
                     return Err(Error::Different('j', *joint_ticks));

@@ -16,7 +16,12 @@ pub mod device;
 #[cfg(target_os = "none")]
 #[unsafe(no_mangle)]
 extern "C" fn saltus_panic_is_reachable() -> ! {
-    loop {
-        cortex_m_semihosting::debug::exit(cortex_m_semihosting::debug::EXIT_FAILURE);
-    }
+    saltus_loops::semihosting::fail()
+}
+
+/// A processor's fault ends likewise.
+#[cfg(target_os = "none")]
+#[cortex_m_rt::exception]
+unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
+    saltus_loops::semihosting::fail()
 }

@@ -1,16 +1,19 @@
-//! Replays a flight recorder's file: `replay f64 FILE`.
+//! Replays a flight recorder's file: `replay a1-f64 FILE`.
 
+use saltus_loops::control::Jumper;
 use saltus_loops::replay::{Error, Replayed, replay};
+use saltus_probe::flight::IcubPush;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
-    let (Some(scalar), Some(path)) = (arguments.next(), arguments.next()) else {
-        return Err("replay f64|f32 FILE".into());
+    let (Some(image), Some(path)) = (arguments.next(), arguments.next()) else {
+        return Err("replay a1-f64|a1-f32|icub-f64 FILE".into());
     };
-    let run: fn(&[u8]) -> Result<Replayed, Error> = match scalar.as_str() {
-        "f64" => replay::<f64>,
-        "f32" => replay::<f32>,
-        _ => return Err("the scalar is f64 or f32".into()),
+    let run: fn(&[u8]) -> Result<Replayed, Error> = match image.as_str() {
+        "a1-f64" => replay::<f64, Jumper<f64>, 12>,
+        "a1-f32" => replay::<f32, Jumper<f32>, 12>,
+        "icub-f64" => replay::<f64, IcubPush, 23>,
+        _ => return Err("the image is a1-f64, a1-f32 or icub-f64".into()),
     };
     let mut bytes = std::fs::read(path)?;
     let [control, joints] = run(&bytes)?.ticks;

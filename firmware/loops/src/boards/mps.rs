@@ -3,15 +3,16 @@
 
 use a1_model::A1Geared;
 use rbd_core::Model;
-use saltus_probe::flight::{Flight, Planned};
+use saltus_probe::flight::{Flight, IcubFlight, Planned};
 
 use super::Board;
+use crate::semihosting;
 
 /// The board.
 #[derive(Clone, Copy, Debug)]
 pub struct Mps;
 
-impl<T: Planned> Board<T> for Mps
+impl<T: Planned> Board<T, 12> for Mps
 where
     A1Geared: Model<T, 12>,
 {
@@ -20,7 +21,34 @@ where
 
     type Robot = Flight<T>;
 
-    fn robot() -> Flight<T> {
+    fn robot(_: &mut cortex_m::Peripherals) -> Flight<T> {
         Flight::new()
+    }
+
+    fn idle(drain: impl FnMut(&mut [u8]) -> (usize, bool)) -> ! {
+        semihosting::write_out(drain)
+    }
+
+    fn fault() -> ! {
+        semihosting::fail()
+    }
+}
+
+impl Board<f64, 23> for Mps {
+    // Four times slower: simulating iCub takes longer than a joint tick's period.
+    const TIMER_HZ: u32 = 4 * 25_000_000;
+
+    type Robot = IcubFlight;
+
+    fn robot(_: &mut cortex_m::Peripherals) -> IcubFlight {
+        IcubFlight::new()
+    }
+
+    fn idle(drain: impl FnMut(&mut [u8]) -> (usize, bool)) -> ! {
+        semihosting::write_out(drain)
+    }
+
+    fn fault() -> ! {
+        semihosting::fail()
     }
 }

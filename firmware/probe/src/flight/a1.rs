@@ -141,7 +141,9 @@ impl<T: Real> Numbers for Inputs<T, 12, 4> {
     }
 }
 
-fn feet<T: Planned>() -> [Frame<T>; 4]
+/// A1's feet.
+#[must_use]
+pub fn feet<T: Planned>() -> [Frame<T>; 4]
 where
     A1Geared: Model<T, 12>,
 {
@@ -220,7 +222,69 @@ where
     let end = (*flight.plant.configuration(), *flight.plant.velocity());
     end.visit(&mut |x| recorder.value(crate::canonical_bits(x)));
     recorder.value(machine.phase() as u64);
+    wild_machine(recorder, &mut machine, k);
     wild(recorder, &A1Geared, &feet());
+}
+
+/// The machine after its landing, told of states where no jump comes, a millisecond after the other.
+fn wild_machine<T: Planned, R: Recorder>(
+    recorder: &mut R,
+    machine: &mut Machine<'_, T, A1Geared, 12, 4>,
+    first: u32,
+) where
+    A1Geared: Model<T, 12>,
+{
+    let stream = &mut Stream::new(2027);
+    for k in 0..WILD {
+        let (q, v) = wild_state(stream);
+        let on = wild_feet(k);
+        let inputs = Inputs {
+            measured: Measurement {
+                base: q.base,
+                base_velocity: v.base,
+                joints: q.joints,
+                joint_velocities: v.joints,
+                foot_forces: on.map(|on| if on { T::of(100.0) } else { T::ZERO }),
+                age: T::ZERO,
+            },
+            felt: stream.array(20.0),
+        };
+        let now = T::of(f64::from(first + k as u32)) * T::of(1e-3);
+        let input = (&mut *machine, now, &inputs);
+        digested::<T, _, _, _>(
+            recorder,
+            SUBJECT,
+            input,
+            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
+            |tick| match tick.work {
+                Work::Landing(Outcome::Failed(_)) => "capped machine tick",
+                Work::Landing(_) => "wild machine tick",
+                _ => "damping tick",
+            },
+        );
+    }
+}
+
+/// Any posture, tilt and speed.
+fn wild_state<T: Real>(stream: &mut Stream) -> (Configuration<T, 12>, Tangent<T, 12>) {
+    let base = Transform::new(
+        so3::exp(&Vector3::from(stream.array::<T, 3>(1.5))),
+        Vector3::from(stream.array::<T, 3>(0.3)),
+    );
+    let q = Configuration {
+        base,
+        joints: stream.array(1.5),
+    };
+    let v = Tangent {
+        base: Motion::from_array(stream.array(6.0)),
+        joints: stream.array(20.0),
+    };
+    (q, v)
+}
+
+/// Every set of feet in turn.
+fn wild_feet(k: usize) -> [bool; 4] {
+    core::array::from_fn(|i| (k >> i) & 1 == 0)
 }
 
 /// The robot starts on a box and lands on the floor behind it.
@@ -261,23 +325,12 @@ fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet
     let mut limbs = Limbs::ZERO;
     let stream = &mut Stream::new(2026);
     for k in 0..WILD {
-        let base = Transform::new(
-            so3::exp(&Vector3::from(stream.array::<T, 3>(1.5))),
-            Vector3::from(stream.array::<T, 3>(0.3)),
-        );
-        let q = Configuration {
-            base,
-            joints: stream.array(1.5),
-        };
-        let v = Tangent {
-            base: Motion::from_array(stream.array(6.0)),
-            joints: stream.array(20.0),
-        };
+        let (q, v) = wild_state(stream);
         let target = Target {
             height: T::of(0.25),
             ..Target::LEVEL
         };
-        let on = core::array::from_fn(|i| (k >> i) & 1 == 0);
+        let on = wild_feet(k);
         let input = (&q, &v, &mut limbs, &mut workspace);
         digested::<T, _, _, _>(
             recorder,

@@ -21,11 +21,17 @@ const N: usize = 23;
 /// Time of standing in the squat, and of the push-off, ms.
 const HOLD: usize = 100;
 const PUSH: usize = 430;
+/// Joint ticks per tick of the program.
+const RATIO: usize = 10;
 const GRAVITY: f64 = 9.81;
+/// Most steps of the solver in a tick: with them a tick takes 720,000 instructions on a Cortex-M7. The push-off needs 7.
+const STEPS: u32 = 12;
 /// States that no jump visits.
-const WILD: usize = 40;
+const WILD: usize = 200;
 
 type Program = TorqueJump<f64, N, 12, 35, 55>;
+/// Configuration and velocity.
+type State = (Configuration<f64, N>, Tangent<f64, N>);
 
 /// Legs, torso and arms of a squat.
 fn squat() -> [f64; N] {
@@ -90,6 +96,7 @@ fn balls() -> [ContactSphere<f64>; 8] {
 
 fn settings() -> TorqueJumpSettings<f64, N> {
     let mut settings = TorqueJumpSettings::icub();
+    settings.max_steps = STEPS;
     for (i, weight) in settings.posture_weight.iter_mut().enumerate() {
         *weight = match i {
             joint::L_KNEE | joint::R_KNEE => 3.0,
@@ -114,53 +121,141 @@ fn guarded() -> [JointLimits<f64>; N] {
     limits
 }
 
-/// Pushes off in closed loop with the simulator, then tries the program where no push-off comes.
-pub fn icub<R: Recorder>(recorder: &mut R) {
-    let limits = guarded();
-    let start = standing();
-    let mut plant = NativeSimulator::new(
-        Icub23,
-        balls(),
-        Terrain::FLAT,
-        Settings::new(&LIMITS, &MOTORS),
-    );
-    plant.reset(&start, &Tangent::ZERO);
-    let mut program = Program::new(settings(), start.joints);
-    let mut snapshot = Snapshot::ZERO;
-    let contacts = SOLES.each_ref().map(|sole| Contact::new(sole, 0.5, 1000.0));
-    let com = center_of_mass(&Icub23, &Posture::new(&Icub23, &start)).position_w;
-    let speed = takeoff_speed(0.04, GRAVITY);
-    let Some(profile) = ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY) else {
-        return;
-    };
-    let mut command = JointCommand::<f64, N>::damp(0.0);
-    for k in 0..HOLD + PUSH {
-        let point = profile.at(1e-3 * (k as f64 - HOLD as f64));
+/// A simulated iCub in the place of the robot: in a squat on both soles, at rest.
+#[derive(Clone, Debug)]
+pub struct IcubFlight {
+    plant: NativeSimulator<f64, Icub23, N, 8>,
+    steps: usize,
+    broken: bool,
+}
+
+impl IcubFlight {
+    /// Before the push-off.
+    #[must_use]
+    pub fn new() -> Self {
+        let mut plant = NativeSimulator::new(
+            Icub23,
+            balls(),
+            Terrain::FLAT,
+            Settings::new(&LIMITS, &MOTORS),
+        );
+        plant.reset(&standing(), &Tangent::ZERO);
+        Self {
+            plant,
+            steps: 0,
+            broken: false,
+        }
+    }
+
+    /// Joint positions and velocities of now.
+    #[must_use]
+    pub fn joints(&self) -> ([f64; N], [f64; N]) {
+        let (q, v) = (self.plant.configuration(), self.plant.velocity());
+        (q.joints, v.joints)
+    }
+
+    /// What the controller is told: the truth.
+    #[must_use]
+    pub fn hear(&self) -> State {
+        (*self.plant.configuration(), *self.plant.velocity())
+    }
+
+    /// 100 µs under these torques.
+    pub fn step(&mut self, torques: &[f64; N]) {
+        self.broken |= self.plant.step(torques).is_err();
+        self.steps += 1;
+    }
+
+    /// Whether it has taken off.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        self.broken || self.steps >= (HOLD + PUSH) * RATIO
+    }
+}
+
+impl Default for IcubFlight {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The push-off's controller, from standing in the squat to take-off.
+#[derive(Clone, Debug)]
+pub struct IcubPush {
+    program: Program,
+    snapshot: Snapshot<f64, N>,
+    contacts: [Contact<f64>; 2],
+    limits: [JointLimits<f64>; N],
+    profile: ComProfile<f64>,
+    com: Vector3<f64>,
+    ticks: u32,
+    command: JointCommand<f64, N>,
+}
+
+impl IcubPush {
+    /// Before the first tick; `None` if the push-off cannot be as wanted.
+    #[must_use]
+    pub fn new() -> Option<Self> {
+        let start = standing();
+        let speed = takeoff_speed(0.04, GRAVITY);
+        Some(Self {
+            program: Program::new(settings(), start.joints),
+            snapshot: Snapshot::ZERO,
+            contacts: SOLES.each_ref().map(|sole| Contact::new(sole, 0.5, 1000.0)),
+            limits: guarded(),
+            profile: ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY)?,
+            com: center_of_mass(&Icub23, &Posture::new(&Icub23, &start)).position_w,
+            ticks: 0,
+            command: JointCommand::damp(0.0),
+        })
+    }
+
+    /// One tick of 1 kHz: torques and the solver's iterations. Without an answer the last command stays.
+    pub fn tick(&mut self, (q, v): &State) -> Option<([f64; N], f64)> {
+        let point = self
+            .profile
+            .at(1e-3 * (f64::from(self.ticks) - HOLD as f64));
+        self.ticks = self.ticks.wrapping_add(1);
         let wanted = ComReference {
-            position_w: com + Vector3::z() * point.rise,
+            position_w: self.com + Vector3::z() * point.rise,
             velocity_w: Vector3::z() * point.speed,
             acceleration_w: Vector3::z() * point.acceleration,
         };
-        let (q, v) = (*plant.configuration(), *plant.velocity());
-        let input = (&mut program, &mut snapshot);
-        let torques = digested::<f64, _, _, _>(
+        self.snapshot.update(&Icub23, q, v);
+        let joints = (&self.limits, &MOTORS);
+        let tick = self
+            .program
+            .tick(&Icub23, &self.snapshot, &self.contacts, joints, &wanted);
+        let answer = tick.ok()?.answer;
+        self.command.feed_forward = answer.torques;
+        Some((answer.torques, f64::from(answer.iterations)))
+    }
+
+    /// What the joints are to do.
+    #[must_use]
+    pub const fn command(&self) -> &JointCommand<f64, N> {
+        &self.command
+    }
+}
+
+/// Pushes off in closed loop with the simulator, then tries the program where no push-off comes.
+pub fn icub<R: Recorder>(recorder: &mut R) {
+    let mut flight = IcubFlight::new();
+    let Some(mut push) = IcubPush::new() else {
+        return;
+    };
+    while !flight.is_over() {
+        let state = flight.hear();
+        digested::<f64, _, _, _>(
             recorder,
             SUBJECT,
-            input,
-            |(program, snapshot)| {
-                snapshot.update(&Icub23, &q, &v);
-                let tick = program.tick(&Icub23, snapshot, &contacts, (&limits, &MOTORS), &wanted);
-                tick.map(|tick| (tick.answer.torques, f64::from(tick.answer.iterations)))
-                    .ok()
-            },
+            (&mut push, &state),
+            |(push, state)| push.tick(state),
             |_| "torque tick",
         );
-        if let Some((torques, _)) = torques {
-            command.feed_forward = torques;
-        }
-        for i in 0..10 {
-            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
-            let input = (&command, &q, &v);
+        for i in 0..RATIO {
+            let (q, v) = flight.joints();
+            let input = (push.command(), &q, &v);
             let torques = if i == 0 {
                 digested::<f64, _, _, _>(
                     recorder,
@@ -170,16 +265,14 @@ pub fn icub<R: Recorder>(recorder: &mut R) {
                     |_| "joint PD tick",
                 )
             } else {
-                command.torques(&q, &v, &MOTORS)
+                push.command().torques(&q, &v, &MOTORS)
             };
-            if plant.step(&torques).is_err() {
-                return;
-            }
+            flight.step(&torques);
         }
     }
-    let end = plant.velocity().base.to_array();
+    let end = flight.plant.velocity().base.to_array();
     end.iter().for_each(|x| recorder.value(x.to_bits()));
-    wild(recorder, &contacts, &limits);
+    wild(recorder, &push.contacts, &push.limits);
 }
 
 /// The program in states far from any push-off: tilted, fast, at the ends of the joints, on one sole or none.
@@ -224,10 +317,13 @@ fn wild<R: Recorder>(
             |(program, snapshot)| {
                 snapshot.update(&Icub23, &q, &v);
                 let tick = program.tick(&Icub23, snapshot, &contacts, (limits, &MOTORS), &wanted);
-                tick.map(|tick| (tick.answer.torques, f64::from(tick.answer.iterations)))
-                    .ok()
+                let answer = tick.ok()?.answer;
+                Some((answer.torques, f64::from(answer.iterations), answer.capped))
             },
-            |_| "wild torque tick",
+            |answer| match answer {
+                Some((.., true)) => "capped torque tick",
+                _ => "wild torque tick",
+            },
         );
     }
 }

@@ -8,8 +8,8 @@ mod a1;
 mod icub;
 mod plan;
 
-pub use a1::{Flight, HOLD, a1, jump, settings};
-pub use icub::icub;
+pub use a1::{Flight, HOLD, a1, feet, jump, settings};
+pub use icub::{IcubFlight, IcubPush, icub};
 pub use plan::Planned;
 
 use crate::{Label, Numbers, Part, Real, Recorder, canonical_bits};

@@ -5,6 +5,11 @@
 //! per node its time, rotation of the base by rows, its position, its velocity (linear, angular), positions, velocities and torques
 //! of the joints, and the forces of the feet. They are those of `saltus run a1/double-backflip`.
 
+#![allow(
+    clippy::indexing_slicing,
+    reason = "all of it is evaluated by the compiler, where an index out of range is an error"
+)]
+
 use jump_control::Node;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rbd_core::{Motion, Transform};

@@ -6,7 +6,6 @@ mod app {
     use core::cell::RefCell;
 
     use cortex_m::peripheral::scb::SystemHandler;
-    use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
     use embassy_executor::{Executor, InterruptExecutor};
     use embassy_sync::blocking_mutex::Mutex;
@@ -15,21 +14,13 @@ mod app {
     use jump_machine::Inputs;
     use landing::Workspace;
     use saltus_loops::boards::{Board, Mps};
-    use saltus_loops::control::Control;
-    use saltus_loops::firmware::{RING, write_out};
-    use saltus_loops::joints::Joints;
-    use saltus_loops::recorder::Recorder;
-    use saltus_loops::robot::Robot;
+    use saltus_loops::control::{Control, Jumper};
+    use saltus_loops::firmware::start_clock;
+    use saltus_loops::semihosting::write_out;
     use saltus_starters::device::Interrupt;
     use static_cell::StaticCell;
 
-    struct Shared {
-        robot: <Mps as Board<f64>>::Robot,
-        joints: Joints<f64>,
-        recorder: Recorder<RING>,
-        ticks: u32,
-        over: bool,
-    }
+    type Shared = saltus_loops::shared::Shared<f64, <Mps as Board<f64, 12>>::Robot, 12>;
 
     static SHARED: Mutex<CriticalSectionRawMutex, RefCell<Option<&'static mut Shared>>> =
         Mutex::new(RefCell::new(None));
@@ -45,23 +36,9 @@ mod app {
     /// Every 100 µs: encoders in, torques out; every tenth time the control task is given something to hear.
     #[exception]
     fn SysTick() {
-        with(|s| {
-            if s.over {
-                return;
-            }
-            if s.ticks.is_multiple_of(10) {
-                HEARD.signal(s.robot.sensors());
-            }
-            s.ticks = s.ticks.wrapping_add(1);
-            let heard = s.robot.encoders();
-            let torques = s.joints.tick(&heard.0, &heard.1);
-            s.recorder.record(b'j', s.joints.number, &heard, &torques);
-            s.robot.drive(&torques);
-            if s.robot.is_over() {
-                s.over = true;
-                s.recorder.end();
-            }
-        });
+        if let Some(heard) = with(Shared::joint_tick).flatten() {
+            HEARD.signal(heard);
+        }
     }
 
     #[unsafe(no_mangle)]
@@ -72,49 +49,34 @@ mod app {
 
     /// A command for each thing heard.
     #[embassy_executor::task]
-    async fn control_loop(control: &'static mut Control<'static, f64>) {
+    async fn control_loop(control: &'static mut Jumper<f64>) {
         loop {
             let heard = HEARD.wait().await;
             control.tick(&heard);
-            let command = control.command();
-            with(|s| {
-                s.recorder.record(b'c', s.joints.number, &heard, command);
-                s.joints.give(command);
-            });
+            with(|shared| shared.give(&heard, control.command()));
         }
     }
 
     /// The flight recorder goes out when nothing else is to do.
     #[embassy_executor::task]
     async fn write_recording() {
-        write_out(|out| {
-            with(|s| {
-                let count = s.recorder.take(out);
-                (count, !(s.over && count < out.len()))
-            })
-            .unwrap_or((0, true))
-        })
+        write_out(|out| with(|shared| shared.drain(out)).unwrap_or((0, true)))
     }
 
     #[entry]
     fn main() -> ! {
         static WORKSPACE: StaticCell<Workspace<f64, 12, 4>> = StaticCell::new();
-        static MACHINE: StaticCell<Control<'static, f64>> = StaticCell::new();
+        static MACHINE: StaticCell<Jumper<f64>> = StaticCell::new();
         static LOOPS: StaticCell<Shared> = StaticCell::new();
         static THREAD: StaticCell<Executor> = StaticCell::new();
 
-        let shared = LOOPS.init(Shared {
-            robot: <Mps as Board<f64>>::robot(),
-            joints: Joints::new(),
-            recorder: Recorder::new(),
-            ticks: 0,
-            over: false,
-        });
-        SHARED.lock(|cell| cell.replace(Some(shared)));
         if let (Some(mut core), Some(control)) = (
             cortex_m::Peripherals::take(),
-            Control::new(WORKSPACE.init(Workspace::new())),
+            Jumper::new(WORKSPACE.init(Workspace::new())),
         ) {
+            let robot = <Mps as Board<f64, 12>>::robot(&mut core);
+            let shared = LOOPS.init(Shared::new(robot, Jumper::joints()));
+            SHARED.lock(|cell| cell.replace(Some(shared)));
             // SAFETY: no critical section relies on priorities: all of them mask every interrupt.
             unsafe {
                 core.SCB.set_priority(SystemHandler::SysTick, 0x00);
@@ -123,12 +85,7 @@ mod app {
             if let Ok(task) = control_loop(MACHINE.init(control)) {
                 CONTROL.start(Interrupt::SPARE0).spawn(task);
             }
-            core.SYST.set_clock_source(SystClkSource::Core);
-            core.SYST
-                .set_reload(<Mps as Board<f64>>::TIMER_HZ / 10_000 - 1);
-            core.SYST.clear_current();
-            core.SYST.enable_interrupt();
-            core.SYST.enable_counter();
+            start_clock(&mut core.SYST, <Mps as Board<f64, 12>>::TIMER_HZ);
         }
         THREAD.init(Executor::new()).run(|spawner| {
             if let Ok(task) = write_recording() {

@@ -1,0 +1,37 @@
+//! `cargo xtask flash-plan`: plans `a1/double-backflip` anew and writes it where the firmware's images read it from flash.
+//!
+//! The flights of the images change with it: afterwards run `cargo xtask firmware --overwrite`, and see that every goal is met.
+
+use anyhow::Result;
+
+use crate::run;
+
+/// What the firmware flies, and where it stands.
+const TASK: &str = "a1/double-backflip";
+const FILE: &str = "probe/plans/a1-double-backflip.bin";
+
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+pub(crate) fn run(_: &Args) -> Result<()> {
+    let folder = run::root().join("target/flash-plan");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder)?;
+    }
+    let mut plan = run::cargo();
+    plan.args([
+        "run",
+        "--quiet",
+        "--release",
+        "--locked",
+        "--package",
+        "saltus",
+    ]);
+    plan.args(["--", "plan", TASK, "--no-gains", "--out"]);
+    run::succeed(plan.arg(&folder))?;
+    let mut write = run::cargo();
+    write.current_dir(run::root().join("firmware"));
+    write.args(["run", "--quiet", "--profile=host", "--locked"]);
+    write.args(["--package", "saltus-probe", "--bin", "flash-plan"]);
+    run::succeed(write.arg(folder.join("plan.bin")).arg(FILE))
+}
