@@ -34,6 +34,11 @@ pub(crate) fn run(_: &Args) -> Result<()> {
     run::succeed(in_firmware("fmt").args(["--all", "--check"]))?;
     clippy("the host", &HOST, &["--profile=host", "--all-targets"])?;
     clippy(TARGET, &BARE, &target(TARGET)?)?;
+    // Without the program that replays on a host.
+    let mut images = target(TARGET)?;
+    images.extend(["--lib", "--bin", "loop-a1-f32", "--bin", "loop-a1-f64"]);
+    images.extend(["--bin", "loop-icub-f64"]);
+    clippy(TARGET, &["saltus-loops"], &images)?;
     for board in &HARDWARE {
         let mut options = target(board.target)?;
         options.extend(["--features", board.name]);

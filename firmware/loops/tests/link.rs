@@ -1,12 +1,13 @@
 //! A jump over a link: as it should be, with frames lost, repeated and damaged, and with the link cut.
 #![allow(
     clippy::unwrap_used,
+    clippy::panic,
     clippy::indexing_slicing,
     missing_docs,
     reason = "tests"
 )]
 
-use std::cell::RefCell;
+use core::cell::RefCell;
 use std::rc::Rc;
 
 use jump_control::Phase;

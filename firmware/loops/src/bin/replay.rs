@@ -4,7 +4,7 @@ use saltus_loops::control::Jumper;
 use saltus_loops::replay::{Error, Replayed, replay};
 use saltus_probe::flight::IcubPush;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), Box<dyn core::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let (Some(image), Some(path)) = (arguments.next(), arguments.next()) else {
         return Err("replay a1-f64|a1-f32|icub-f64 FILE".into());

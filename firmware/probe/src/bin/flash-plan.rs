@@ -18,22 +18,27 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let plan = Container::<12, 4>::open(&bytes, model_hash::<f64, _, 12>(&A1Geared))?;
     let header = plan.header();
     let step = header.ground.ok_or("the plan has no box to jump from")?;
-    let nodes: Vec<Node<f32, 12, 4>> = plan.nodes().map(|node| node.node()).collect();
+    let nodes: Vec<Node<f64, 12, 4>> = plan.nodes().map(|node| node.node()).collect();
     let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
         return Err("the plan has no nodes".into());
     };
     let stands = Configuration {
-        base: first.base.cast(),
-        joints: first.joints.map(f64::from),
+        base: first.base,
+        joints: first.joints,
     };
     let com = center_of_mass(&A1Geared, &Posture::new(&A1Geared, &stands)).position_w;
     let goal = com + Vector3::from(GOAL);
-    let mut out: Vec<f32> = vec![header.takeoff, header.posing, header.touchdown];
-    out.push(header.margins.weight);
-    out.extend(goal.iter().map(|x| *x as f32));
+    let head = [
+        header.takeoff,
+        header.posing,
+        header.touchdown,
+        header.margins.weight,
+    ];
+    let mut out: Vec<f64> = head.map(f64::from).to_vec();
+    out.extend(goal.iter());
     // The robot waits for the ground in this posture, and the plan ends in it.
     out.extend(last.joints);
-    out.extend([step.drop, step.distance]);
+    out.extend([step.drop, step.distance].map(f64::from));
     for node in &nodes {
         out.push(node.time);
         out.extend(node.base.rotation.matrix().transpose().iter());
@@ -43,7 +48,7 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
         out.extend(node.torques);
         out.extend(node.forces_w.iter().flatten());
     }
-    let bytes: Vec<u8> = out.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let bytes: Vec<u8> = out.iter().flat_map(|x| (*x as f32).to_le_bytes()).collect();
     std::fs::write(&to, &bytes)?;
     println!("{to}: {} nodes, {} bytes", nodes.len(), bytes.len());
     Ok(())
