@@ -34,6 +34,7 @@ const STEPS: &[Step] = &[
             "warnings",
         ],
     ),
+    ("lints of the firmware", &["xtask", "firmware-lints"]),
     ("documentation", &["doc", "--workspace", "--no-deps"]),
     ("generated tables", &["xtask", "gen-model", "--check"]),
     ("bare-metal builds", &["xtask", "cross"]),

@@ -19,12 +19,7 @@ const HOST: [&str; 5] = [
     "saltus-probe",
 ];
 /// Packages that run on emulated boards.
-const BARE: [&str; 4] = [
-    "saltus-c",
-    "saltus-loops",
-    "saltus-smoke",
-    "saltus-starters",
-];
+const BARE: [&str; 3] = ["saltus-c", "saltus-smoke", "saltus-starters"];
 const TARGET: &str = "thumbv7em-none-eabihf";
 
 #[derive(clap::Args)]

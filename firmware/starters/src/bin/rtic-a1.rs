@@ -1,5 +1,9 @@
 //! A1's loops under RTIC, in f64.
 #![cfg_attr(target_os = "none", no_std, no_main)]
+#![allow(
+    clippy::result_large_err,
+    reason = "RTIC gives back what a task that is busy was to hear"
+)]
 
 #[cfg(target_os = "none")]
 #[rtic::app(device = saltus_starters::device, peripherals = false, dispatchers = [SPARE0])]
