@@ -5,7 +5,7 @@
 
 Three take turns, ROUNDS times: `wbc-qp/examples/ticks.rs` (push-offs of iCub and A1 in the contact simulator), DAQP on the programs of
 these ticks (its own timer, set-up plus solve; bounds as its simple bounds) and, where TSID and `target/peers/*.model` (`setup.sh`) are
-there, `tsid/bench.cpp` on the same states. Each calls a tick or a program 7 times in a round; the time of a program is the least of all
+there, `tsid/bench.cpp` on the same states. A round is short, so that a change of the processor's speed meets all; the time of a program is the least of all
 its times, that of a tick the least median of a round. TSID_PREFIX is the `cmeel.prefix` folder of an environment with
 `pip install --only-binary :all: tsid==1.7.1 pin==3.4.0`. Exit code 1 where a ratio is above its limit: 0.5 for the tick against TSID,
 0.7 for the program against DAQP.
@@ -21,8 +21,8 @@ import daqp
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-REPEAT = 7
-ROUNDS = 5
+REPEAT = 3
+ROUNDS = 20
 ROBOTS = ["icub23", "a1"]
 
 
