@@ -54,8 +54,15 @@ pub fn oracle<const V: usize, const M: usize>(
 ) -> Option<f64> {
     let h: Vec<Vec<f64>> = problem.hessian.iter().map(|r| r.to_vec()).collect();
     let p = CscMatrix::from(&h).to_triu();
+    // Equalities are a cone of their own: as two opposite inequalities they would leave an interior-point method no interior.
+    let (mut equal, mut equal_to) = (Vec::new(), Vec::new());
     let (mut rows, mut b) = (Vec::new(), Vec::new());
     let mut add = |row: Vec<f64>, low: f64, high: f64| {
+        if low == high {
+            equal.push(row);
+            equal_to.push(high);
+            return;
+        }
         if high < f64::INFINITY {
             rows.push(row.clone());
             b.push(high);
@@ -84,9 +91,15 @@ pub fn oracle<const V: usize, const M: usize>(
         .tol_feas(1e-10)
         .build()
         .unwrap();
-    let cones = [SupportedConeT::NonnegativeConeT(b.len())];
-    let a = CscMatrix::from(&rows);
-    let mut solver = DefaultSolver::new(&p, problem.gradient, &a, &b, &cones, settings).unwrap();
+    let cones = [
+        SupportedConeT::ZeroConeT(equal_to.len()),
+        SupportedConeT::NonnegativeConeT(b.len()),
+    ];
+    equal.append(&mut rows);
+    equal_to.append(&mut b);
+    let a = CscMatrix::from(&equal);
+    let mut solver =
+        DefaultSolver::new(&p, problem.gradient, &a, &equal_to, &cones, settings).unwrap();
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => {
