@@ -92,6 +92,16 @@ impl Bare {
         }
         cargo
     }
+
+    /// As [`Bare::build_with`], of the firmware's workspace for a board with its memory map.
+    pub(crate) fn build_for(&self, board: &str, rustflags: &[&str]) -> Command {
+        let mut cargo = self.build_with(rustflags);
+        cargo
+            .current_dir(run::firmware())
+            .arg("--locked")
+            .env("SALTUS_BOARD", board);
+        cargo
+    }
 }
 
 impl fmt::Display for Bare {

@@ -34,11 +34,8 @@ const STACK: u64 = 32 * 1024;
 pub(crate) fn run(core: Choice) -> Result<()> {
     for board in &HARDWARE {
         let bare = Bare::find(board.target, core)?;
-        let mut build = bare.build_with(board.rustflags);
-        build
-            .current_dir(run::root().join("firmware"))
-            .env("SALTUS_BOARD", board.name);
-        build.args(["--quiet", "--locked", "--package", "saltus-boards"]);
+        let mut build = bare.build_for(board.name, board.rustflags);
+        build.args(["--quiet", "--package", "saltus-boards"]);
         build.args(["--features", board.name, "--bin", board.name]);
         run::succeed(&mut build).with_context(|| board.name)?;
         let path = image::firmware_target()?

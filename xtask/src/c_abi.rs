@@ -35,7 +35,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let mut header = in_firmware(run::cargo());
+    let mut header = run::firmware_cargo();
     header.args([
         "run",
         "--quiet",
@@ -80,14 +80,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn in_firmware(mut cargo: Command) -> Command {
-    cargo.current_dir(run::root().join("firmware"));
-    cargo
-}
-
 /// Builds the example with the host's compiler, and runs it.
 fn on_host(folder: &Path) -> Result<String> {
-    let mut build = in_firmware(run::cargo());
+    let mut build = run::firmware_cargo();
     build.args([
         "build",
         "--quiet",
@@ -122,8 +117,8 @@ fn on_board(folder: &Path, core: Choice) -> Result<String> {
             run::install_debian(&[package, "libnewlib-arm-none-eabi"])?;
         }
     }
-    let mut build = in_firmware(Bare::find(board.target, core)?.build_with(board.rustflags));
-    build.args(["--quiet", "--locked", "--package", "saltus-c"]);
+    let mut build = Bare::find(board.target, core)?.build_for(board.name, board.rustflags);
+    build.args(["--quiet", "--package", "saltus-c"]);
     run::succeed(&mut build)?;
     let built = image::firmware_target()?.join(board.target).join("release");
     let image = built.join("c-example");

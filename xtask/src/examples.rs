@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result};
-use serde_json::Value;
 
 use crate::run;
 
@@ -50,11 +49,5 @@ fn build() -> Result<Vec<PathBuf>> {
     let mut cargo = run::cargo();
     cargo.args(["build", "--quiet", "--workspace", "--examples"]);
     cargo.arg("--message-format=json-render-diagnostics");
-    let messages = run::stdout(&mut cargo)?;
-    let messages = messages
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    Ok(messages
-        .filter_map(|m| m["executable"].as_str().map(PathBuf::from))
-        .collect())
+    Ok(run::executables(&run::stdout(&mut cargo)?).collect())
 }

@@ -111,8 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if args.selection.names_nothing() {
         boards::run(args.selection.core)?;
         // The loops' own tests: frames, and jumps over a link.
-        let mut tests = run::cargo();
-        tests.current_dir(run::root().join("firmware"));
+        let mut tests = run::firmware_cargo();
         tests.args(["test", "--quiet", "--profile=host", "--locked"]);
         run::succeed(tests.args(["--package", "saltus-loops"]))?;
     }

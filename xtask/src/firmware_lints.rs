@@ -52,8 +52,8 @@ fn target(name: &'static str) -> Result<Vec<&'static str>> {
 }
 
 fn in_firmware(command: &str) -> Command {
-    let mut cargo = run::cargo();
-    cargo.current_dir(run::root().join("firmware")).arg(command);
+    let mut cargo = run::firmware_cargo();
+    cargo.arg(command);
     cargo
 }
 

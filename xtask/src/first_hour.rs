@@ -56,9 +56,7 @@ pub(crate) fn run(_: &Args) -> Result<()> {
 fn follow(script: &str, folder: &str, results: &[&str]) -> Result<()> {
     let root = run::root();
     let path = root.join(folder);
-    if path.exists() {
-        fs::remove_dir_all(&path)?;
-    }
+    run::remove_folder(&path)?;
     run::succeed(
         Command::new("bash")
             .args(["-euxo", "pipefail", "-c", script])

@@ -15,9 +15,7 @@ pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
     let folder = run::root().join("target/flash-plan");
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder)?;
-    }
+    run::remove_folder(&folder)?;
     let mut plan = run::cargo();
     plan.args([
         "run",
@@ -29,8 +27,7 @@ pub(crate) fn run(_: &Args) -> Result<()> {
     ]);
     plan.args(["--", "plan", TASK, "--no-gains", "--out"]);
     run::succeed(plan.arg(&folder))?;
-    let mut write = run::cargo();
-    write.current_dir(run::root().join("firmware"));
+    let mut write = run::firmware_cargo();
     write.args(["run", "--quiet", "--profile=host", "--locked"]);
     write.args(["--package", "saltus-probe", "--bin", "flash-plan"]);
     run::succeed(write.arg(folder.join("plan.bin")).arg(FILE))

@@ -37,8 +37,7 @@ impl Size {
 
 /// Where cargo puts what it builds of the firmware's workspace.
 pub(crate) fn firmware_target() -> Result<PathBuf> {
-    let mut metadata = run::cargo();
-    metadata.current_dir(run::root().join("firmware"));
+    let mut metadata = run::firmware_cargo();
     metadata.args(["metadata", "--format-version=1", "--no-deps", "--locked"]);
     let metadata: Value = serde_json::from_str(&run::stdout(&mut metadata)?)?;
     let folder = metadata["target_directory"].as_str();
@@ -54,13 +53,9 @@ pub(crate) struct Image<'a> {
 
 /// Builds images side by side: linking takes most of the time, and uses one core. Errors come back from [`Image::command`].
 pub(crate) fn build_ahead(board: &Board, bare: &Bare, names: &[&str]) -> Result<()> {
-    let mut build = bare.build_with(board.rustflags);
-    build
-        .current_dir(run::root().join("firmware"))
-        .args(["--locked", "--keep-going", "--package", "saltus-smoke"])
-        .args(names.iter().flat_map(|name| ["--bin", name]))
-        .env("SALTUS_BOARD", board.name);
-    run::output(&mut build)?;
+    let mut build = bare.build_for(board.name, board.rustflags);
+    build.args(["--keep-going", "--package", "saltus-smoke"]);
+    run::output(build.args(names.iter().flat_map(|name| ["--bin", name])))?;
     Ok(())
 }
 
@@ -71,11 +66,8 @@ impl Image<'_> {
     }
 
     fn command_with(&self, rustflags: &[&str]) -> Command {
-        let mut build = self.bare.build_with(rustflags);
-        build
-            .current_dir(run::root().join("firmware"))
-            .args(["--locked", "--package", "saltus-smoke", "--bin", self.name])
-            .env("SALTUS_BOARD", self.board.name);
+        let mut build = self.bare.build_for(self.board.name, rustflags);
+        build.args(["--package", "saltus-smoke", "--bin", self.name]);
         build
     }
 
@@ -94,10 +86,7 @@ impl Image<'_> {
         ]);
         build.arg(features.join(",")).stderr(Stdio::inherit());
         let messages = run::stdout(&mut build)?;
-        let executable = messages
-            .lines()
-            .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-            .find_map(|message| message["executable"].as_str().map(PathBuf::from));
+        let executable = run::executables(&messages).next();
         executable.with_context(|| format!("cargo built no executable of {}", self.name))
     }
 }

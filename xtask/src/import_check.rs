@@ -51,9 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let python = python(args, &root)?;
     let robots = robots(&python, &root, &folder, args.only.as_deref())?;
     let crates = folder.join("crates");
-    if crates.exists() {
-        fs::remove_dir_all(&crates)?;
-    }
+    run::remove_folder(&crates)?;
     // Of the whole workspace, as its tests build it: nothing is compiled again.
     let mut build = run::cargo();
     run::succeed(build.args(["build", "--quiet", "--workspace", "--bin", "saltus"]))?;

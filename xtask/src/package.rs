@@ -92,7 +92,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Cargo takes a version for something that never changes: it would build today's crates against the sources
 /// that an earlier run left in its home under the same version.
 fn forget_archives(target: &Path, packages: &[&Value]) -> Result<()> {
-    remove(target)?;
+    run::remove_folder(target)?;
     let home = match env::var_os("CARGO_HOME") {
         Some(home) => PathBuf::from(home),
         None => env::home_dir().context("no home folder")?.join(".cargo"),
@@ -108,20 +108,14 @@ fn forget_archives(target: &Path, packages: &[&Value]) -> Result<()> {
         }
         for package in packages {
             let text = |key: &str| package[key].as_str().context("no name or version");
-            remove(&(registry.path()).join(format!("{}-{}", text("name")?, text("version")?)))?;
+            run::remove_folder(&(registry.path()).join(format!(
+                "{}-{}",
+                text("name")?,
+                text("version")?
+            )))?;
         }
     }
     Ok(())
-}
-
-/// Removes a folder, if it is there.
-fn remove(folder: &Path) -> Result<()> {
-    match fs::remove_dir_all(folder) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(error).with_context(|| format!("cannot remove {}", folder.display()))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// What the registry asks of a manifest.

@@ -64,8 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 /// What a program of the probe computes on the host.
 pub(crate) fn on_host(program: &str, part: &str) -> Result<Vec<Call>> {
-    let mut cargo = run::cargo();
-    cargo.current_dir(run::root().join("firmware"));
+    let mut cargo = run::firmware_cargo();
     cargo.args([
         "run",
         "--quiet",

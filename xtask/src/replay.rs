@@ -21,20 +21,11 @@ pub(crate) struct Loops {
 
 /// Builds and flies a board's images, replays them, and prints what memory they take.
 pub(crate) fn run(board: &Board, bare: &Bare) -> Result<()> {
-    let firmware = run::root().join("firmware");
     let target = image::firmware_target()?;
     for loops in board.loops {
         let name = loops.image;
-        let mut build = bare.build_with(board.rustflags);
-        build.current_dir(&firmware).env("SALTUS_BOARD", board.name);
-        build.args([
-            "--quiet",
-            "--locked",
-            "--package",
-            loops.package,
-            "--bin",
-            name,
-        ]);
+        let mut build = bare.build_for(board.name, board.rustflags);
+        build.args(["--quiet", "--package", loops.package, "--bin", name]);
         run::succeed(&mut build)?;
         let image = target.join(board.target).join("release").join(name);
         let data = Size::of(&image)?.data;
@@ -45,10 +36,8 @@ pub(crate) fn run(board: &Board, bare: &Bare) -> Result<()> {
             .stdin(Stdio::null())
             .stdout(File::create(&recording)?);
         run::succeed(&mut qemu).with_context(|| name)?;
-        let mut replay = run::cargo();
-        replay
-            .current_dir(&firmware)
-            .args(["run", "--quiet", "--profile=host", "--locked"]);
+        let mut replay = run::firmware_cargo();
+        replay.args(["run", "--quiet", "--profile=host", "--locked"]);
         replay.args(["--package", "saltus-loops", "--bin", "replay", loops.replay]);
         let said = run::stdout(replay.arg(&recording)).with_context(|| name)?;
         ensure!(

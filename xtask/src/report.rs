@@ -43,9 +43,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<()> {
     let folder = run::root().join("target/report-check");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
+    run::remove_folder(&folder)?;
     fs::create_dir_all(&folder)?;
     let html = match &args.html {
         Some(html) => html

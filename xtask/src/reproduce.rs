@@ -44,9 +44,7 @@ pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
     let folder = run::root().join("target/reproduce-check");
-    if folder.exists() {
-        fs::remove_dir_all(&folder)?;
-    }
+    run::remove_folder(&folder)?;
     let mut saltus = run::cargo();
     saltus.args(["run", "--release", "--quiet", "--package", "saltus", "--"]);
     saltus.args(["reproduce", "--quick", "--json", "--out"]);

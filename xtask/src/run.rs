@@ -1,13 +1,14 @@
 //! Starting other programs.
 
 use core::time::Duration;
-use std::env;
 use std::ffi::OsStr;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
+use serde_json::Value;
 use wait_timeout::ChildExt;
 
 /// The root of the workspace.
@@ -28,6 +29,36 @@ pub(crate) fn cargo() -> Command {
         }
     }
     command
+}
+
+/// The same cargo, in the firmware's workspace.
+pub(crate) fn firmware_cargo() -> Command {
+    let mut command = cargo();
+    command.current_dir(firmware());
+    command
+}
+
+/// The folder of the firmware's workspace.
+pub(crate) fn firmware() -> PathBuf {
+    root().join("firmware")
+}
+
+/// The programs that cargo built, from its messages in JSON.
+pub(crate) fn executables(messages: &str) -> impl Iterator<Item = PathBuf> {
+    messages
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .filter_map(|message| message["executable"].as_str().map(PathBuf::from))
+}
+
+/// Removes a folder, if it is there.
+pub(crate) fn remove_folder(folder: &Path) -> Result<()> {
+    match fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", folder.display()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Runs `command` to its end; an error if it fails.

@@ -26,3 +26,18 @@ const PATIENCE: u32 = 1_000_000;
 fn comes(mut ready: impl FnMut() -> bool) -> bool {
     (0..PATIENCE).any(|_| ready())
 }
+
+/// Nothing but interrupts from here on.
+#[cfg(target_os = "none")]
+fn sleep() -> ! {
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+/// Not even interrupts: the robot's board damps the joints after 5 ms without a frame.
+#[cfg(target_os = "none")]
+fn silence() -> ! {
+    cortex_m::interrupt::disable();
+    sleep()
+}

@@ -13,8 +13,8 @@ use saltus_loops::frame::FRAME;
 use saltus_loops::link::{Bus, Link};
 use stm32h7::stm32h743v::{DMA1, Peripherals, SPI1};
 
-use crate::comes;
 use crate::exchange::Buffers;
+use crate::{comes, silence, sleep};
 
 /// Core clock, Hz.
 const CORE_HZ: u32 = 480_000_000;
@@ -48,17 +48,11 @@ impl Board<f64, 12> for NucleoH743 {
 
     /// The flight recorder leaves with the frames.
     fn idle(_: impl FnMut(&mut [u8]) -> (usize, bool)) -> ! {
-        loop {
-            cortex_m::asm::wfi();
-        }
+        sleep()
     }
 
-    /// Silence: the robot's board damps the joints after 5 ms of it.
     fn fault() -> ! {
-        cortex_m::interrupt::disable();
-        loop {
-            cortex_m::asm::wfi();
-        }
+        silence()
     }
 }
 

@@ -7,13 +7,12 @@ use nalgebra::Vector3;
 use saltus_probe::{Numbers, Real};
 
 use crate::frame::{FRAME, LUGGAGE, Order, Report};
+use crate::joints::PERIOD;
 use crate::recorder::Recorder;
 use crate::robot::Robot;
 
 /// Joint ticks after which a report is worth nothing: 5 ms.
 const STALE: u32 = 50;
-/// Length of a joint tick, s.
-const TICK: f64 = 1e-4;
 
 /// What carries frames. No method waits.
 pub trait Bus {
@@ -109,23 +108,29 @@ impl<B: Bus> Link<B> {
     }
 }
 
+/// What a frame carries, as the loop's scalar.
+fn number<T: Real>(x: f32) -> T {
+    T::of(f64::from(x))
+}
+
 impl<T: Real, B: Bus> Robot<T, 12> for Link<B> {
     type Heard = Sensed<T>;
 
     fn encoders(&mut self) -> ([T; 12], [T; 12]) {
         self.listen();
-        let of = |xs: [f32; 12]| xs.map(|x| T::of(f64::from(x)));
         match self.fresh() {
-            Some(report) => (of(report.joints), of(report.joint_velocities)),
+            Some(report) => (
+                report.joints.map(number),
+                report.joint_velocities.map(number),
+            ),
             None => ([T::NAN; 12], [T::NAN; 12]),
         }
     }
 
     fn sensors(&mut self) -> Sensed<T> {
         self.listen();
-        let number = |x: f32| T::of(f64::from(x));
         let (sum, count) = core::mem::replace(&mut self.felt, ([0.0; 12], 0));
-        let age = T::of(f64::from(self.age) * TICK);
+        let age = T::of(f64::from(self.age) * PERIOD);
         let Some(report) = self.report else {
             return Sensed {
                 joints: [[T::NAN; 12]; 2],

@@ -83,16 +83,12 @@ where
 
     /// What a controller is told, the truth, and the mean torques since it was told last.
     pub fn hear(&mut self) -> Inputs<T, 12, 4> {
-        let (q, v) = (self.plant.configuration(), self.plant.velocity());
         let forces = self.plant.contact_forces_w();
-        let measured = Measurement {
-            base: q.base,
-            base_velocity: v.base,
-            joints: q.joints,
-            joint_velocities: v.joints,
-            foot_forces: core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
-            age: T::ZERO,
-        };
+        let measured = told(
+            self.plant.configuration(),
+            self.plant.velocity(),
+            core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
+        );
         let felt = core::mem::replace(&mut self.felt, [T::ZERO; 12]);
         Inputs { measured, felt }
     }
@@ -138,6 +134,22 @@ impl<T: Real> Numbers for Inputs<T, 12, 4> {
         (base, base_velocity).visit(take);
         (joints, joint_velocities).visit(take);
         (foot_forces, age, self.felt).visit(take);
+    }
+}
+
+/// A state with forces on the feet, as a fresh measurement.
+fn told<T: Real>(
+    q: &Configuration<T, 12>,
+    v: &Tangent<T, 12>,
+    foot_forces: [T; 4],
+) -> Measurement<T, 12, 4> {
+    Measurement {
+        base: q.base,
+        base_velocity: v.base,
+        joints: q.joints,
+        joint_velocities: v.joints,
+        foot_forces,
+        age: T::ZERO,
     }
 }
 
@@ -239,14 +251,7 @@ fn wild_machine<T: Planned, R: Recorder>(
         let (q, v) = wild_state(stream);
         let on = wild_feet(k);
         let inputs = Inputs {
-            measured: Measurement {
-                base: q.base,
-                base_velocity: v.base,
-                joints: q.joints,
-                joint_velocities: v.joints,
-                foot_forces: on.map(|on| if on { T::of(100.0) } else { T::ZERO }),
-                age: T::ZERO,
-            },
+            measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
             felt: stream.array(20.0),
         };
         let now = T::of(f64::from(first + k as u32)) * T::of(1e-3);
