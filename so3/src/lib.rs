@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+#[cfg(feature = "fused")]
+extern crate std;
+
 mod error;
 pub mod euler;
 mod exp_log;

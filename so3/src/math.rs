@@ -2,7 +2,8 @@
 //!
 //! Sine and cosine are our own (`math/sin_cos.rs`); all else is pinned `libm`, which is Rust source and so the same
 //! arithmetic everywhere. The square root is a machine instruction where there is one and integer code where
-//! there is not: both are correctly rounded, so equal. Nothing here fuses a multiplication and an addition.
+//! there is not: both are correctly rounded, so equal. Nothing here fuses a multiplication and an addition, unless the
+//! feature `fused` asks for it (see [`mul_add`]).
 
 pub(crate) mod sin_cos;
 
@@ -75,6 +76,18 @@ pub fn sin_cos_array<T: Scalar, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) 
         }
     }
     (sin, cos)
+}
+
+/// a b + c.
+///
+/// Rounded twice, as the operators do, on every target, so that host and target compute the same bits. With the feature
+/// `fused` (which needs `std`) *and* a build for x86-64 processors that have the instruction
+/// (`-C target-cpu=native` or `x86-64-v3`) it is rounded once and costs half: for programs on a host that need speed
+/// and not the bits of the firmware.
+#[inline(always)]
+#[must_use]
+pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
+    a.times_plus(b, c)
 }
 
 /// Sine of an angle in rad.

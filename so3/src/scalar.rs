@@ -46,6 +46,8 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     fn is_nan_number(self) -> bool;
 
     #[doc(hidden)]
+    fn times_plus(self, b: Self, c: Self) -> Self;
+    #[doc(hidden)]
     fn libm_sqrt(self) -> Self;
     #[doc(hidden)]
     fn sin_cos_within_bound(self) -> (Self, Self);
@@ -112,6 +114,17 @@ macro_rules! scalar {
             #[inline(always)]
             fn is_nan_number(self) -> bool {
                 self.is_nan()
+            }
+            #[cfg(all(feature = "fused", target_feature = "fma"))]
+            #[expect(clippy::disallowed_methods, reason = "this is the door")]
+            #[inline(always)]
+            fn times_plus(self, b: Self, c: Self) -> Self {
+                $t::mul_add(self, b, c)
+            }
+            #[cfg(not(all(feature = "fused", target_feature = "fma")))]
+            #[inline(always)]
+            fn times_plus(self, b: Self, c: Self) -> Self {
+                self * b + c
             }
             #[inline(always)]
             fn libm_sqrt(self) -> Self {

@@ -39,7 +39,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !run::exists("valgrind") {
         run::install_debian(&["valgrind"])?;
     }
-    let counts = measure(&dynamics::build(&run::root().join("target/icount"), "")?)?;
+    let counts = measure(&dynamics::build(
+        &run::root().join("target/icount"),
+        "",
+        &[],
+    )?)?;
     let path = run::root().join(GOLDEN);
     if args.overwrite {
         fs::write(&path, format(&counts)?).with_context(|| GOLDEN.to_owned())?;

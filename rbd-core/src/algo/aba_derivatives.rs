@@ -144,6 +144,7 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         applied,
     };
     let whole = sweep(model, posture, &moves, id);
+    id.answer_mass();
     mass_blocks(model, id, &whole, efforts);
     factors.factor(model, &efforts.by_acceleration);
 

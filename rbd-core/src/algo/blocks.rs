@@ -1,7 +1,7 @@
 //! Square matrices over all coordinates of a robot, stored by blocks.
 
 use nalgebra::SMatrix;
-use so3::Scalar;
+use so3::{Scalar, math};
 
 /// A (6 + N) × (6 + N) matrix over base and joint coordinates, each block by rows:
 ///
@@ -76,7 +76,7 @@ impl<T: Scalar, const N: usize> Default for BlockMatrix<T, N> {
 fn dot<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K]) -> T {
     let mut sum = T::ZERO;
     for (&x, &y) in a.iter().zip(b) {
-        sum += x * y;
+        sum = math::mul_add(x, y, sum);
     }
     sum
 }
@@ -85,6 +85,6 @@ fn dot<T: Scalar, const K: usize>(a: &[T; K], b: &[T; K]) -> T {
 #[inline(always)]
 pub(crate) fn add_scaled<T: Scalar, const K: usize>(y: &mut [T; K], a: T, x: &[T; K]) {
     for (y, &x) in y.iter_mut().zip(x) {
-        *y += a * x;
+        *y = math::mul_add(a, x, *y);
     }
 }

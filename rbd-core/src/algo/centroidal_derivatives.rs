@@ -150,6 +150,7 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         applied: None,
     };
     let whole = sweep(model, posture, &moves, ws);
+    ws.answer();
     let mass = whole.inertia.mass;
     let to = Centroidal {
         rotation: *posture.base.rotation.matrix(),

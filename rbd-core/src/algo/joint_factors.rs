@@ -11,8 +11,8 @@
 
 use so3::Scalar;
 
-use super::at;
 use super::blocks::add_scaled;
+use super::{at, run};
 use crate::model::{Body, Link};
 
 /// L and D; all zero they are those of joints that do not answer.
@@ -61,35 +61,48 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
         })
     }
 
-    /// Factors `h`, of which entries on and below the diagonal are read between joints of one branch.
+    /// Factors `h`, of which entries on and below the diagonal are read between joints of one branch, and takes
+    /// b ← L⁻ᵀ b along, which needs the same multipliers.
     #[inline(always)]
-    pub(crate) fn factor(&mut self, bodies: &[Body<T>; N], h: &[[T; N]; N]) {
+    pub(crate) fn factor<const K: usize>(
+        &mut self,
+        bodies: &[Body<T>; N],
+        h: &[[T; N]; N],
+        b: &mut [[T; K]; N],
+    ) {
         for (i, body) in bodies.iter().enumerate() {
             self.before[i] = match body.parent {
                 Link::Base => 0,
                 // Capped, so that walking up ends whatever the table says.
                 Link::Joint(p) => (p + 1).min(i),
             };
-            self.subtree_end[i] = body.subtree_end;
+            self.subtree_end[i] = body.subtree_end.min(N);
         }
-        // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves.
+        // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves; row k of L⁻ᵀ b: b_k − Σ L_ik (L⁻ᵀ b)_i.
+        let mut inertias = [T::ZERO; N];
         for k in (0..N).rev() {
-            let (mut row, mut inertia) = (h[k], h[k][k]);
-            let moved = self.lower.iter().zip(&self.pivots);
-            for (from, &pivot) in moved.take(self.subtree_end(k)).skip(k + 1) {
-                let x = at(from, k);
-                let l = x * pivot;
+            let (mut row, mut inertia, mut side) = (h[k], h[k][k], b[k]);
+            let (first, end) = (k + 1, self.subtree_end(k));
+            let moved = run(&self.lower, first, end).iter();
+            let moved = moved
+                .zip(run(&inertias, first, end))
+                .zip(run(b, first, end));
+            for ((from, &d), from_b) in moved {
+                let l = at(from, k);
+                let x = l * d;
                 inertia -= l * x;
-                add_scaled(&mut row, -l, from);
+                add_scaled(&mut row, -x, from);
+                add_scaled(&mut side, -l, from_b);
             }
+            b[k] = side;
             let good = inertia > h[k][k] * T::EPSILON;
-            self.pivots[k] = if good { T::ONE / inertia } else { T::ZERO };
-            self.lower[k] = row;
-        }
-        for (row, &pivot) in self.lower.iter_mut().zip(&self.pivots) {
-            for x in row {
+            let pivot = if good { T::ONE / inertia } else { T::ZERO };
+            for x in &mut row {
                 *x *= pivot;
             }
+            inertias[k] = inertia;
+            self.pivots[k] = pivot;
+            self.lower[k] = row;
         }
     }
 
@@ -98,8 +111,9 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     pub(crate) fn inward<const K: usize>(&self, b: &mut [[T; K]; N]) {
         for k in (0..N).rev() {
             let mut row = b[k];
-            let moved = self.lower.iter().zip(b.iter());
-            for (lower, from) in moved.take(self.subtree_end(k)).skip(k + 1) {
+            let (first, end) = (k + 1, self.subtree_end(k));
+            let moved = run(&self.lower, first, end).iter();
+            for (lower, from) in moved.zip(run(b, first, end)) {
                 add_scaled(&mut row, -at(lower, k), from);
             }
             b[k] = row;
@@ -134,26 +148,27 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     #[inline(always)]
     pub(crate) fn inverse(&self, out: &mut [[T; N]; N]) {
         // Columns of W, each as a row: w_k = e_k − Σ L_ak w_a over the joints a that k moves.
-        let mut columns = [[T::ZERO; N]; N];
         for k in (0..N).rev() {
             // Compared, not written: a number just stored cannot be loaded with its neighbours without a wait.
             let mut column: [T; N] =
                 core::array::from_fn(|j| if j == k { T::ONE } else { T::ZERO });
-            let moved = self.lower.iter().zip(&columns);
-            for (lower, from) in moved.take(self.subtree_end(k)).skip(k + 1) {
+            let (first, end) = (k + 1, self.subtree_end(k));
+            let moved = run(&self.lower, first, end).iter();
+            for (lower, from) in moved.zip(run(out, first, end)) {
                 add_scaled(&mut column, -at(lower, k), from);
             }
-            columns[k] = column;
+            out[k] = column;
         }
-        for (i, to) in out.iter_mut().enumerate() {
+        // Row i needs w_i and those of its ancestors, which come before it and are still there.
+        for i in (0..N).rev() {
             let mut row = [T::ZERO; N];
-            add_scaled(&mut row, self.pivots[i], &columns[i]);
+            add_scaled(&mut row, self.pivots[i], &out[i]);
             for k in self.ancestors(i) {
-                if let Some(column) = columns.get(k) {
+                if let Some(column) = out.get(k) {
                     add_scaled(&mut row, at(column, i) * at(&self.pivots, k), column);
                 }
             }
-            *to = row;
+            out[i] = row;
         }
     }
 }

@@ -8,12 +8,12 @@
 //!
 //! A joint or a base direction without any inertia has an infinitely stiff pivot: it does not answer.
 
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use super::blocks::{BlockMatrix, add_scaled};
 use super::crba::MassMatrix;
 use super::joint_factors::JointFactors;
-use super::{at, put};
+use super::{at, put, run};
 use crate::linear::spd_inverse_6;
 use crate::model::BaseKind;
 use crate::spatial::{ArticulatedInertia, Motion};
@@ -59,10 +59,11 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     #[inline]
     pub fn factor<M: Tree<T, N>>(&mut self, model: &M, mass: &MassMatrix<T, N>) {
         self.floating = model.base_kind() == BaseKind::Floating;
-        self.joints.factor(model.bodies(), &mass.joints);
         for (row, column) in self.coupling.iter_mut().zip(&mass.coupling) {
             *row = column.to_array();
         }
+        self.joints
+            .factor(model.bodies(), &mass.joints, &mut self.coupling);
         if self.floating {
             self.factor_base(mass);
         }
@@ -71,8 +72,7 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     /// X and Ã⁻¹.
     #[inline(always)]
     fn factor_base(&mut self, mass: &MassMatrix<T, N>) {
-        // Y = L⁻ᵀ Cᵀ, Ã = A − Yᵀ D⁻¹ Y, X = L⁻¹ D⁻¹ Y.
-        self.joints.inward(&mut self.coupling);
+        // From Y = L⁻ᵀ Cᵀ: Ã = A − Yᵀ D⁻¹ Y, X = L⁻¹ D⁻¹ Y.
         let mut base = ArticulatedInertia::from(mass.base).to_rows();
         for (k, to) in base.iter_mut().enumerate() {
             // The sum runs to its end in registers, a whole row at once.
@@ -199,16 +199,21 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
     /// The other blocks of M⁻¹, and the block of the joints, which holds H⁻¹.
     #[inline(always)]
     pub(crate) fn complete_inverse(&self, out: &mut BlockMatrix<T, N>) {
-        out.base_joints = [[T::ZERO; N]; 6];
         if !self.floating {
             out.base = [[T::ZERO; 6]; 6];
             out.joints_base = [[T::ZERO; 6]; N];
+            out.base_joints = [[T::ZERO; N]; 6];
             return;
         }
         out.base = self.base;
-        let transposed = columns_of(&self.coupling);
-        subtract_product(&mut out.base_joints, &self.base, &transposed);
-        out.joints_base = rows_of(&out.base_joints);
+        for (to, x) in out.joints_base.iter_mut().zip(&self.coupling) {
+            let mut row = [T::ZERO; 6];
+            for (&x, base) in x.iter().zip(&self.base) {
+                add_scaled(&mut row, -x, base);
+            }
+            *to = row;
+        }
+        out.base_joints = columns_of(&out.joints_base);
         subtract_product(&mut out.joints, &self.coupling, &out.base_joints);
     }
 
@@ -239,14 +244,14 @@ impl<T: Scalar, const N: usize> MassFactors<T, N> {
         let mut first = 0;
         while first < N {
             let end = self.joints.subtree_end(first).min(N);
-            let branch = d.joints_base.iter().zip(&d.joints).take(end).skip(first);
+            let d_left = run(&d.joints_base, first, end);
+            let d_right = run(&d.joints, first, end);
             let rows = out.joints_base.iter_mut().zip(&mut out.joints);
             let rows = rows.zip(joints_inverse.iter().zip(&self.coupling));
             for ((to_left, to_right), (inverse, coupling)) in rows.take(end).skip(first) {
                 let (mut left, mut right) = ([T::ZERO; 6], [T::ZERO; N]);
-                for ((from_left, from_right), &x) in
-                    branch.clone().zip(inverse.iter().take(end).skip(first))
-                {
+                let inverse = run(inverse, first, end);
+                for ((&x, from_left), from_right) in inverse.iter().zip(d_left).zip(d_right) {
                     add_scaled(&mut left, -x, from_left);
                     add_scaled(&mut right, -x, from_right);
                 }
@@ -298,26 +303,39 @@ impl<T: Scalar, const N: usize, const K: usize> Columns<T, N, K> {
     }
 }
 
-/// y ← y − x rows.
+/// y ← y − x rows, two rows of y at a time.
 #[inline(always)]
 fn subtract_product<T: Scalar, const R: usize, const K: usize>(
     y: &mut [[T; K]; R],
     x: &[[T; 6]; R],
     rows: &[[T; K]; 6],
 ) {
-    for (y, x) in y.iter_mut().zip(x) {
+    let (pairs, last) = y.as_chunks_mut::<2>();
+    let (x_pairs, x_last) = x.as_chunks::<2>();
+    for (y, x) in pairs.iter_mut().zip(x_pairs) {
         subtract_rows(y, x, rows);
+    }
+    for (y, x) in last.iter_mut().zip(x_last) {
+        subtract_rows(core::array::from_mut(y), core::array::from_ref(x), rows);
     }
 }
 
-/// y ← y − Σ x_k row_k. Out of line: together with the loop around it, compilers would turn it into gathers and
-/// scatters, which are slower.
+/// y_r ← y_r − Σ x_rk row_k for rows y_r that share what is read. Out of line: together with the loop around it,
+/// compilers would turn it into gathers and scatters, which are slower.
 #[inline(never)]
-fn subtract_rows<T: Scalar, const K: usize>(y: &mut [T; K], x: &[T; 6], rows: &[[T; K]; 6]) {
+fn subtract_rows<T: Scalar, const R: usize, const K: usize>(
+    y: &mut [[T; K]; R],
+    x: &[[T; 6]; R],
+    rows: &[[T; K]; 6],
+) {
     let [a, b, c, d, e, f] = rows;
-    let [p, q, r, s, t, u] = *x;
     for i in 0..K {
-        y[i] -= (p * a[i] + q * b[i] + r * c[i]) + (s * d[i] + t * e[i] + u * f[i]);
+        for (y, x) in y.iter_mut().zip(x) {
+            let [p, q, r, s, t, u] = *x;
+            let left = math::mul_add(r, c[i], math::mul_add(q, b[i], p * a[i]));
+            let right = math::mul_add(u, f[i], math::mul_add(t, e[i], s * d[i]));
+            y[i] -= left + right;
+        }
     }
 }
 
@@ -331,12 +349,6 @@ fn columns_of<T: Scalar, const N: usize>(rows: &[[T; 6]; N]) -> [[T; N]; 6] {
         }
     }
     columns
-}
-
-/// A matrix of six rows, transposed.
-#[inline(never)]
-fn rows_of<T: Scalar, const N: usize>(columns: &[[T; N]; 6]) -> [[T; 6]; N] {
-    core::array::from_fn(|i| columns.each_ref().map(|column| at(column, i)))
 }
 
 impl<T: Scalar> ArticulatedInertia<T> {

@@ -43,6 +43,12 @@ pub(crate) fn put<X>(xs: &mut [X], i: usize, x: X) {
     }
 }
 
+/// Entries `first..end`, none if there is no such run; loops over slices of one length have one check and not four.
+#[inline(always)]
+pub(crate) fn run<X>(xs: &[X], first: usize, end: usize) -> &[X] {
+    xs.get(first..end).unwrap_or(&[])
+}
+
 /// A joint's rotation and offset in a posture.
 #[inline(always)]
 pub(crate) fn place<J: JointKind, T: Scalar, const N: usize>(

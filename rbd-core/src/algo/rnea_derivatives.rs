@@ -240,6 +240,7 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         applied,
     };
     let whole = sweep(model, posture, &moves, ws);
+    ws.answer();
     border_blocks(ws, &base, out);
     coupling_block(ws, &mut out.by_acceleration.coupling);
     joint_blocks::<T, true, true, N>(model.bodies(), model.joint_count(), ws, out);

@@ -28,7 +28,7 @@
 #![allow(clippy::needless_range_loop, reason = "one index walks several tables")]
 
 use nalgebra::{Matrix3, Vector3};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
@@ -288,9 +288,27 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
         }
     }
 
+    /// F alone, what the mass matrix needs of each subtree's answer to its joint.
+    #[inline(never)]
+    pub(crate) fn answer_mass(&mut self) {
+        for i in 0..N {
+            let [m, hx, hy, hz, xx, yy, zz, xy, xz, yz, ..] = column(&self.subtrees, i);
+            let inertia = Inertia {
+                mass: m,
+                first: Vector3::new(hx, hy, hz),
+                second: Symmetric3::new([xx, yy, zz, xy, xz, yz]),
+            };
+            let [a, b, c, d, e, f, ..] = column(&self.axes, i);
+            let by_a = inertia.mul(&Motion::from_array([a, b, c, d, e, f]));
+            for (row, x) in self.answers[12..].iter_mut().zip(by_a.to_array()) {
+                row[i] = x;
+            }
+        }
+    }
+
     /// What each subtree answers to its joint, each for itself.
     #[inline(never)]
-    fn answer(&mut self) {
+    pub(crate) fn answer(&mut self) {
         for i in 0..N {
             let subtree = Composite::unpack(&column(&self.subtrees, i));
             let [a, b, c, d, e, f, g, h, j, k, l, m, n, o, p, q, r, s] = column(&self.axes, i);
@@ -333,7 +351,7 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
         for k in 0..6 {
             let (s, f) = (&self.axes[k], &self.subtrees[22 + k]);
             for i in 0..N {
-                out[i] += s[i] * f[i];
+                out[i] = math::mul_add(s[i], f[i], out[i]);
             }
         }
         out
@@ -342,7 +360,7 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
     /// From the state of the last [`sweep`] to one with more acceleration, everything else the same.
     ///
     /// With Δa_i = Δa_parent + S_i Δq̈_i, the axes gain ΔS̈ = Δa × S and the net forces
-    /// Δf_i = I_i Δa_i + Σ F_j Δq̈_j over the joints j behind i.
+    /// Δf_i = I_i Δa_i + Σ F_j Δq̈_j over the joints j behind i. Needs F and leaves all answers.
     pub(crate) fn accelerate<M: Tree<T, N>>(
         &mut self,
         model: &M,
@@ -455,7 +473,7 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
             let f = lanes(&self.answers[12 + k], j);
             if MASS {
                 for l in 0..LANES {
-                    pairs.mass[l] += s * f[l];
+                    pairs.mass[l] = math::mul_add(s, f[l], pairs.mass[l]);
                 }
             }
             if GRADIENT {
@@ -463,10 +481,10 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
                 let (p, q) = (lanes(&self.answers[k], j), lanes(&self.answers[6 + k], j));
                 let r = r + r;
                 for l in 0..LANES {
-                    pairs.above_q[l] += s * p[l];
-                    pairs.above_v[l] += s * q[l];
-                    pairs.below_q[l] += t * f[l];
-                    pairs.below_v[l] += r * f[l];
+                    pairs.above_q[l] = math::mul_add(s, p[l], pairs.above_q[l]);
+                    pairs.above_v[l] = math::mul_add(s, q[l], pairs.above_v[l]);
+                    pairs.below_q[l] = math::mul_add(t, f[l], pairs.below_q[l]);
+                    pairs.below_v[l] = math::mul_add(r, f[l], pairs.below_v[l]);
                 }
             }
         }
@@ -475,8 +493,8 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
                 let (s, r) = (at(&self.axes[3 + k], i), at(&self.axes[9 + k], i));
                 let g = lanes(&self.answers[18 + k], j);
                 for l in 0..LANES {
-                    pairs.below_q[l] += r * g[l];
-                    pairs.below_v[l] += s * g[l];
+                    pairs.below_q[l] = math::mul_add(r, g[l], pairs.below_q[l]);
+                    pairs.below_v[l] = math::mul_add(s, g[l], pairs.below_v[l]);
                 }
             }
         }
@@ -601,7 +619,7 @@ pub(crate) struct Moves<'a, T, const N: usize> {
     pub(crate) applied: Option<&'a [Force<T>; N]>,
 }
 
-/// Fills the workspace; returns the composite of the whole robot.
+/// Fills the workspace but for the answers of the subtrees; returns the composite of the whole robot.
 #[inline(always)]
 pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
@@ -650,6 +668,5 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
             }
         }
     }
-    ws.answer();
     Composite::unpack(&whole)
 }

@@ -29,6 +29,9 @@ pub(super) struct Args {
 /// Compiler flags of our native build.
 const NATIVE: &str = "-C target-cpu=native";
 
+/// Its features: peers fuse multiplications and additions, and so do we on a host that wants speed.
+const NATIVE_FEATURES: &[&str] = &["--features", "fused"];
+
 /// Pinocchio's names of one algorithm, when there are several conventions: the fastest is the peer.
 const PINOCCHIO_BEST: [(&str, &[&str]); 2] = [
     ("crba", &["crba", "crba_local"]),
@@ -119,7 +122,7 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
     let peer = |name: &str| directory.join(name);
     Ok([
         Program {
-            path: build(&directory.join("ours/native"), NATIVE)?,
+            path: build(&directory.join("ours/native"), NATIVE, NATIVE_FEATURES)?,
             tag: "native",
             robots: &[],
         },
@@ -139,15 +142,15 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
             robots: &["icub23"],
         },
         Program {
-            path: build(&directory.join("ours/baseline"), "")?,
+            path: build(&directory.join("ours/baseline"), "", &[])?,
             tag: "baseline",
             robots: &[],
         },
     ])
 }
 
-/// Builds our bench into a target folder of its own with the given compiler flags, and none that are around.
-pub(crate) fn build(target: &Path, flags: &str) -> Result<PathBuf> {
+/// Builds our bench into a target folder of its own with the given compiler flags, and none that are around, and features.
+pub(crate) fn build(target: &Path, flags: &str, features: &[&str]) -> Result<PathBuf> {
     run::succeed(
         run::cargo()
             .args([
@@ -159,6 +162,7 @@ pub(crate) fn build(target: &Path, flags: &str) -> Result<PathBuf> {
                 "--bin",
                 "bench-dynamics",
             ])
+            .args(features)
             .arg("--target-dir")
             .arg(target)
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
