@@ -7,6 +7,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
+use so3::math::mul_add;
 
 use crate::model::Body;
 use crate::spatial::Symmetric3;
@@ -129,9 +130,9 @@ pub trait JointKind: Copy {
     #[inline(always)]
     fn add_cross_axis<T: Scalar>(v: Vector3<T>, w: &Vector3<T>, x: T) -> Vector3<T> {
         match Self::KIND.axis() {
-            0 => Vector3::new(v.x, v.y + w.z * x, v.z - w.y * x),
-            1 => Vector3::new(v.x - w.z * x, v.y, v.z + w.x * x),
-            _ => Vector3::new(v.x + w.y * x, v.y - w.x * x, v.z),
+            0 => Vector3::new(v.x, mul_add(w.z, x, v.y), mul_add(-w.y, x, v.z)),
+            1 => Vector3::new(mul_add(-w.z, x, v.x), v.y, mul_add(w.x, x, v.z)),
+            _ => Vector3::new(mul_add(w.y, x, v.x), mul_add(-w.x, x, v.y), v.z),
         }
     }
 
@@ -183,14 +184,31 @@ pub struct AxisRotation<T, const AXIS: usize> {
     cos: T,
 }
 
+impl<T: Scalar, const AXIS: usize> AxisRotation<T, AXIS> {
+    /// (x, y) in the plane of the rotation, turned.
+    #[inline(always)]
+    fn turned(&self, x: T, y: T) -> (T, T) {
+        let (s, c) = (self.sin, self.cos);
+        (mul_add(c, x, -(s * y)), mul_add(s, x, c * y))
+    }
+}
+
 impl<T: Scalar, const AXIS: usize> JointRotation<T> for AxisRotation<T, AXIS> {
     #[inline(always)]
     fn up(&self, v: &Vector3<T>) -> Vector3<T> {
-        let (s, c) = (self.sin, self.cos);
         match AXIS {
-            0 => Vector3::new(v.x, c * v.y - s * v.z, s * v.y + c * v.z),
-            1 => Vector3::new(c * v.x + s * v.z, v.y, c * v.z - s * v.x),
-            _ => Vector3::new(c * v.x - s * v.y, s * v.x + c * v.y, v.z),
+            0 => {
+                let (y, z) = self.turned(v.y, v.z);
+                Vector3::new(v.x, y, z)
+            }
+            1 => {
+                let (z, x) = self.turned(v.z, v.x);
+                Vector3::new(x, v.y, z)
+            }
+            _ => {
+                let (x, y) = self.turned(v.x, v.y);
+                Vector3::new(x, y, v.z)
+            }
         }
     }
 
@@ -209,41 +227,44 @@ impl<T: Scalar, const AXIS: usize> JointRotation<T> for AxisRotation<T, AXIS> {
         // d = s (aa − bb) + 2c ab: aa' = aa − s d, bb' = bb + s d, ab' = c d − ab.
         let (s, c) = (self.sin, self.cos);
         let plane = |aa: T, bb: T, ab: T| {
-            let d = s * (aa - bb) + T::TWO * c * ab;
-            (aa - s * d, bb + s * d, c * d - ab)
+            let d = mul_add(s, aa - bb, T::TWO * c * ab);
+            (mul_add(-s, d, aa), mul_add(s, d, bb), mul_add(c, d, -ab))
         };
         match AXIS {
             0 => {
                 let (yy, zz, yz) = plane(m.yy, m.zz, m.yz);
+                let (xy, xz) = self.turned(m.xy, m.xz);
                 Symmetric3 {
                     xx: m.xx,
                     yy,
                     zz,
+                    xy,
+                    xz,
                     yz,
-                    xy: c * m.xy - s * m.xz,
-                    xz: s * m.xy + c * m.xz,
                 }
             }
             1 => {
                 let (zz, xx, xz) = plane(m.zz, m.xx, m.xz);
+                let (yz, xy) = self.turned(m.yz, m.xy);
                 Symmetric3 {
                     xx,
                     yy: m.yy,
                     zz,
+                    xy,
                     xz,
-                    yz: c * m.yz - s * m.xy,
-                    xy: s * m.yz + c * m.xy,
+                    yz,
                 }
             }
             _ => {
                 let (xx, yy, xy) = plane(m.xx, m.yy, m.xy);
+                let (xz, yz) = self.turned(m.xz, m.yz);
                 Symmetric3 {
                     xx,
                     yy,
                     zz: m.zz,
                     xy,
-                    xz: c * m.xz - s * m.yz,
-                    yz: s * m.xz + c * m.yz,
+                    xz,
+                    yz,
                 }
             }
         }

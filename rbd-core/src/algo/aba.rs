@@ -15,7 +15,7 @@ use super::rnea::Field;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::BaseKind;
-use crate::spatial::{ArticulatedInertia, Force, Motion};
+use crate::spatial::{ArticulatedInertia, Force, Motion, cross};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -168,7 +168,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Inward<'_, T, N> {
             inertia: turned.shifted(&offset),
             bias: Force {
                 linear,
-                angular: rotation.up(&bias.angular) + offset.cross(&linear),
+                angular: rotation.up(&bias.angular) + cross(&offset, &linear),
             },
         }
     }
@@ -189,7 +189,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
     fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Motion<T>) -> (Motion<T>, Nothing) {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
         let moved = Motion {
-            linear: rotation.down(&(up.linear + up.angular.cross(&offset))),
+            linear: rotation.down(&(up.linear + cross(&up.angular, &offset))),
             angular: rotation.down(&up.angular),
         };
         let pivot = at(self.joints, here.index);

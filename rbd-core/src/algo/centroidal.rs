@@ -16,7 +16,7 @@ use super::rnea::sweep;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform, cross};
 use crate::state::{Posture, Tangent};
 use crate::tree::{At, Fold, Tree};
 
@@ -141,7 +141,7 @@ pub fn centroidal_map<T: Scalar, M: Tree<T, N>, const N: usize>(
     out.com_w = posture.base.translation + arm_w;
     out.locked_inertia_w = whole.rotational_com().rotated(r);
     for column in &mut out.joints {
-        column.angular -= arm_w.cross(&column.linear);
+        column.angular -= cross(&arm_w, &column.linear);
     }
     out.base = base_columns(&whole, &com_b, &out.locked_inertia_w, r);
 }
@@ -252,7 +252,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Momentum<'_, T, N> {
         let first = rotation.up(&(Vector3::from(here.body.first) + children.first));
         let momentum = *own + children.momentum;
         let linear = rotation.up(&momentum.linear);
-        let angular = rotation.up(&momentum.angular) + offset.cross(&linear);
+        let angular = rotation.up(&momentum.angular) + cross(&offset, &linear);
         Moving {
             momentum: Force { linear, angular },
             mass,

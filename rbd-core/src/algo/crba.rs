@@ -10,7 +10,7 @@ use so3::Scalar;
 
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{ArticulatedInertia, Force, Inertia};
+use crate::spatial::{ArticulatedInertia, Force, Inertia, cross};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -173,7 +173,7 @@ impl<T: Scalar, const N: usize> Crba<'_, T, N> {
             };
             entries[l] = sign * J::component(part);
             let linear = rotation.up(&linear);
-            let angular = rotation.up(&angular) + offset.cross(&linear);
+            let angular = rotation.up(&angular) + cross(offset, &linear);
             [fx[l], fy[l], fz[l]] = linear.into();
             [mx[l], my[l], mz[l]] = angular.into();
         }

@@ -8,7 +8,7 @@ use so3::Scalar;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::{Frame, Link};
-use crate::spatial::{Motion, Transform};
+use crate::spatial::{Motion, Transform, cross};
 use crate::state::{Posture, Tangent};
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -109,7 +109,7 @@ pub(crate) fn carried<J: JointKind, T: Scalar, const N: usize>(
     x: T,
 ) -> Motion<T> {
     let (rotation, offset) = place::<J, T, N>(here, posture);
-    let linear = rotation.down(&(parent.linear + parent.angular.cross(&offset)));
+    let linear = rotation.down(&(parent.linear + cross(&parent.angular, &offset)));
     let angular = rotation.down(&parent.angular);
     if J::KIND.is_revolute() {
         Motion {

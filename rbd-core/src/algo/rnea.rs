@@ -13,12 +13,12 @@
 //! and forces add up on the way back. The linear velocity is not needed below the base.
 
 use nalgebra::{Matrix3, Vector3};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use super::gravity::gravity;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{Force, Inertia, Motion};
+use crate::spatial::{Force, Inertia, Motion, cross};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Tree};
 
@@ -95,17 +95,17 @@ impl<T: Scalar> Field<T> {
     #[inline(always)]
     pub(crate) fn force(&self, body: &Inertia<T>) -> Force<T> {
         let (u, s) = (&self.gradient, &body.second);
+        // Rows of U Σ that the axial part of U Σ needs.
+        let row =
+            |a: T, b: T, c: T, x: T, y: T, z: T| math::mul_add(c, z, math::mul_add(b, y, a * x));
         let moment = Vector3::new(
-            (u.m31 * s.xy + u.m32 * s.yy + u.m33 * s.yz)
-                - (u.m21 * s.xz + u.m22 * s.yz + u.m23 * s.zz),
-            (u.m11 * s.xz + u.m12 * s.yz + u.m13 * s.zz)
-                - (u.m31 * s.xx + u.m32 * s.xy + u.m33 * s.xz),
-            (u.m21 * s.xx + u.m22 * s.xy + u.m23 * s.xz)
-                - (u.m11 * s.xy + u.m12 * s.yy + u.m13 * s.yz),
+            row(u.m31, u.m32, u.m33, s.xy, s.yy, s.yz) - row(u.m21, u.m22, u.m23, s.xz, s.yz, s.zz),
+            row(u.m11, u.m12, u.m13, s.xz, s.yz, s.zz) - row(u.m31, u.m32, u.m33, s.xx, s.xy, s.xz),
+            row(u.m21, u.m22, u.m23, s.xx, s.xy, s.xz) - row(u.m11, u.m12, u.m13, s.xy, s.yy, s.yz),
         );
         Force {
             linear: self.acceleration * body.mass + u * body.first,
-            angular: body.first.cross(&self.acceleration) + moment,
+            angular: cross(&body.first, &self.acceleration) + moment,
         }
     }
 }
@@ -162,7 +162,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
         let linear = rotation.up(&force.linear);
         Force {
             linear,
-            angular: rotation.up(&force.angular) + offset.cross(&linear),
+            angular: rotation.up(&force.angular) + cross(&offset, &linear),
         }
     }
 }

@@ -33,7 +33,7 @@ use so3::{Scalar, math};
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Link;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, cross};
 use crate::state::Posture;
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -148,7 +148,7 @@ impl<T: Scalar> Composite<T> {
     #[inline(always)]
     fn of(inertia: Inertia<T>, v: &Motion<T>, a: &Motion<T>) -> Self {
         let (h, s, w) = (&inertia.first, &inertia.second, &v.angular);
-        let momentum = v.linear * inertia.mass + w.cross(h);
+        let momentum = v.linear * inertia.mass + cross(w, h);
         // K = ∫ (v + ω × r) rᵀ dm
         let stir = Matrix3::new(
             v.linear.x * h.x + (w.y * s.xz - w.z * s.xy),
@@ -216,7 +216,7 @@ impl<T: Scalar> Composite<T> {
         let trace = self.stir.m11 + self.stir.m22 + self.stir.m33;
         let moment = w * trace - self.stir * w;
         Force {
-            linear: w.cross(&self.momentum) * T::TWO,
+            linear: cross(w, &self.momentum) * T::TWO,
             angular: moment * T::TWO,
         }
     }
@@ -226,7 +226,7 @@ impl<T: Scalar> Composite<T> {
     fn coriolis_transposed(&self, m: &Motion<T>) -> Vector3<T> {
         let trace = self.stir.m11 + self.stir.m22 + self.stir.m33;
         let moment = m.angular * trace - self.stir.tr_mul(&m.angular);
-        (self.momentum.cross(&m.linear) + moment) * T::TWO
+        (cross(&self.momentum, &m.linear) + moment) * T::TWO
     }
 }
 

@@ -4,6 +4,7 @@ use core::ops::Add;
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
+use so3::math::mul_add;
 
 use super::{Force, Inertia, Motion, Symmetric3};
 
@@ -61,31 +62,31 @@ impl<T: Scalar> ArticulatedInertia<T> {
         let c = &self.cross;
         Self {
             linear: Symmetric3 {
-                xx: l.xx - gl.x * fl.x,
-                yy: l.yy - gl.y * fl.y,
-                zz: l.zz - gl.z * fl.z,
-                xy: l.xy - gl.x * fl.y,
-                xz: l.xz - gl.x * fl.z,
-                yz: l.yz - gl.y * fl.z,
+                xx: mul_add(-gl.x, fl.x, l.xx),
+                yy: mul_add(-gl.y, fl.y, l.yy),
+                zz: mul_add(-gl.z, fl.z, l.zz),
+                xy: mul_add(-gl.x, fl.y, l.xy),
+                xz: mul_add(-gl.x, fl.z, l.xz),
+                yz: mul_add(-gl.y, fl.z, l.yz),
             },
             cross: Matrix3::new(
-                c.m11 - gl.x * fa.x,
-                c.m12 - gl.x * fa.y,
-                c.m13 - gl.x * fa.z,
-                c.m21 - gl.y * fa.x,
-                c.m22 - gl.y * fa.y,
-                c.m23 - gl.y * fa.z,
-                c.m31 - gl.z * fa.x,
-                c.m32 - gl.z * fa.y,
-                c.m33 - gl.z * fa.z,
+                mul_add(-gl.x, fa.x, c.m11),
+                mul_add(-gl.x, fa.y, c.m12),
+                mul_add(-gl.x, fa.z, c.m13),
+                mul_add(-gl.y, fa.x, c.m21),
+                mul_add(-gl.y, fa.y, c.m22),
+                mul_add(-gl.y, fa.z, c.m23),
+                mul_add(-gl.z, fa.x, c.m31),
+                mul_add(-gl.z, fa.y, c.m32),
+                mul_add(-gl.z, fa.z, c.m33),
             ),
             angular: Symmetric3 {
-                xx: a.xx - ga.x * fa.x,
-                yy: a.yy - ga.y * fa.y,
-                zz: a.zz - ga.z * fa.z,
-                xy: a.xy - ga.x * fa.y,
-                xz: a.xz - ga.x * fa.z,
-                yz: a.yz - ga.y * fa.z,
+                xx: mul_add(-ga.x, fa.x, a.xx),
+                yy: mul_add(-ga.y, fa.y, a.yy),
+                zz: mul_add(-ga.z, fa.z, a.zz),
+                xy: mul_add(-ga.x, fa.y, a.xy),
+                xz: mul_add(-ga.x, fa.z, a.xz),
+                yz: mul_add(-ga.y, fa.z, a.yz),
             },
         }
     }
@@ -97,23 +98,23 @@ impl<T: Scalar> ArticulatedInertia<T> {
     pub fn shifted(&self, p: &Vector3<T>) -> Self {
         // Motion of the old origin: a_old = a + α × p = a − P α. Hence
         // f = M a + (H − M P) α,  n_new = n_old + p × f.
+        let row = |a: T, b: T, c: T, d: T| mul_add(a, b, -(c * d));
         let m = &self.linear;
         // M P, column by column: column j of P is p × e_j.
         let mp = Matrix3::new(
-            m.xy * p.z - m.xz * p.y,
-            m.xz * p.x - m.xx * p.z,
-            m.xx * p.y - m.xy * p.x,
-            m.yy * p.z - m.yz * p.y,
-            m.yz * p.x - m.xy * p.z,
-            m.xy * p.y - m.yy * p.x,
-            m.yz * p.z - m.zz * p.y,
-            m.zz * p.x - m.xz * p.z,
-            m.xz * p.y - m.yz * p.x,
+            row(m.xy, p.z, m.xz, p.y),
+            row(m.xz, p.x, m.xx, p.z),
+            row(m.xx, p.y, m.xy, p.x),
+            row(m.yy, p.z, m.yz, p.y),
+            row(m.yz, p.x, m.xy, p.z),
+            row(m.xy, p.y, m.yy, p.x),
+            row(m.yz, p.z, m.zz, p.y),
+            row(m.zz, p.x, m.xz, p.z),
+            row(m.xz, p.y, m.yz, p.x),
         );
         let h = self.cross - mp;
         // I' = I − Hᵀ P + P H'  =  I + (P H)ᵀ + P H'. Both halves are needed; only the
         // symmetric entries are computed.
-        let row = |a: T, b: T, c: T, d: T| a * b - c * d;
         let g = &self.cross;
         // (P G)_{0j} = p_y G_{2j} − p_z G_{1j}, (P G)_{1j} = p_z G_{0j} − p_x G_{2j},
         // (P G)_{2j} = p_x G_{1j} − p_y G_{0j}

@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign};
 use nalgebra::Vector3;
 use so3::Scalar;
 
-use super::{Force, Motion, Symmetric3, Transform};
+use super::{Force, Motion, Symmetric3, Transform, cross};
 
 /// Inertia of one rigid body, or of several moving as one, about the origin of its frame.
 ///
@@ -80,8 +80,8 @@ impl<T: Scalar> Inertia<T> {
     #[must_use]
     pub fn mul(&self, motion: &Motion<T>) -> Force<T> {
         Force {
-            linear: motion.linear * self.mass + motion.angular.cross(&self.first),
-            angular: self.first.cross(&motion.linear) + self.rotational().mul(&motion.angular),
+            linear: motion.linear * self.mass + cross(&motion.angular, &self.first),
+            angular: cross(&self.first, &motion.linear) + self.rotational().mul(&motion.angular),
         }
     }
 

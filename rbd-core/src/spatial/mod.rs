@@ -16,9 +16,23 @@ mod six;
 mod symmetric;
 mod transform;
 
+use nalgebra::Vector3;
+use so3::Scalar;
+use so3::math::mul_add;
+
 pub use articulated::ArticulatedInertia;
 pub use force::Force;
 pub use inertia::Inertia;
 pub use motion::Motion;
 pub use symmetric::Symmetric3;
 pub use transform::Transform;
+
+/// a × b.
+#[inline(always)]
+pub(crate) fn cross<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(
+        mul_add(a.y, b.z, -(a.z * b.y)),
+        mul_add(a.z, b.x, -(a.x * b.z)),
+        mul_add(a.x, b.y, -(a.y * b.x)),
+    )
+}

@@ -5,6 +5,7 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 use nalgebra::Vector3;
 use so3::Scalar;
 
+use super::cross;
 use super::six::six_vector;
 
 /// A spatial velocity or acceleration, expressed in one frame and about its origin.
@@ -29,8 +30,8 @@ impl<T: Scalar> Motion<T> {
     #[must_use]
     pub fn cross(&self, other: &Self) -> Self {
         Self {
-            linear: self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
-            angular: self.angular.cross(&other.angular),
+            linear: cross(&self.angular, &other.linear) + cross(&self.linear, &other.angular),
+            angular: cross(&self.angular, &other.angular),
         }
     }
 
@@ -39,8 +40,8 @@ impl<T: Scalar> Motion<T> {
     #[must_use]
     pub fn cross_force(&self, force: &super::Force<T>) -> super::Force<T> {
         super::Force {
-            linear: self.angular.cross(&force.linear),
-            angular: self.angular.cross(&force.angular) + self.linear.cross(&force.linear),
+            linear: cross(&self.angular, &force.linear),
+            angular: cross(&self.angular, &force.angular) + cross(&self.linear, &force.linear),
         }
     }
 
@@ -57,7 +58,7 @@ impl<T: Scalar> Motion<T> {
     #[must_use]
     pub fn to_classical(&self, velocity: &Self) -> Self {
         Self {
-            linear: self.linear + velocity.angular.cross(&velocity.linear),
+            linear: self.linear + cross(&velocity.angular, &velocity.linear),
             angular: self.angular,
         }
     }
@@ -67,7 +68,7 @@ impl<T: Scalar> Motion<T> {
     #[must_use]
     pub fn to_spatial(&self, velocity: &Self) -> Self {
         Self {
-            linear: self.linear - velocity.angular.cross(&velocity.linear),
+            linear: self.linear - cross(&velocity.angular, &velocity.linear),
             angular: self.angular,
         }
     }

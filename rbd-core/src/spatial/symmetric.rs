@@ -4,6 +4,7 @@ use core::ops::{Add, Sub};
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
+use so3::math::mul_add;
 
 /// A symmetric 3×3 matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,9 +104,9 @@ impl<T: Scalar> Symmetric3<T> {
             xx: T::TWO * a.x * b.x,
             yy: T::TWO * a.y * b.y,
             zz: T::TWO * a.z * b.z,
-            xy: a.x * b.y + a.y * b.x,
-            xz: a.x * b.z + a.z * b.x,
-            yz: a.y * b.z + a.z * b.y,
+            xy: mul_add(a.y, b.x, a.x * b.y),
+            xz: mul_add(a.z, b.x, a.x * b.z),
+            yz: mul_add(a.z, b.y, a.y * b.z),
         }
     }
 
@@ -134,10 +135,11 @@ impl<T: Scalar> Symmetric3<T> {
     #[inline(always)]
     #[must_use]
     pub fn mul(&self, v: &Vector3<T>) -> Vector3<T> {
+        let dot = |x: T, y: T, z: T| mul_add(z, v.z, mul_add(y, v.y, x * v.x));
         Vector3::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+            dot(self.xx, self.xy, self.xz),
+            dot(self.xy, self.yy, self.yz),
+            dot(self.xz, self.yz, self.zz),
         )
     }
 
