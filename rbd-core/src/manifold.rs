@@ -4,7 +4,7 @@
 //! R' = R Exp(ω), p' = p + R V(ω) v, s' = s + Δs, with V the left Jacobian of SO(3). This is the motion at
 //! constant body velocity for unit time, and Pinocchio's free-flyer.
 
-use so3::Scalar;
+use so3::{Rotation3, Scalar};
 
 use crate::spatial::{Motion, Transform};
 use crate::state::{Configuration, Tangent};
@@ -39,9 +39,11 @@ pub fn difference<T: Scalar, const N: usize>(
     from: &Configuration<T, N>,
     to: &Configuration<T, N>,
 ) -> Tangent<T, N> {
-    let step = from.base.inverse().compose(&to.base);
-    let (angular, jacobian) = so3::log_with_jacobian_inverse(&step.rotation);
-    let linear = jacobian * step.translation;
+    let rot_wb = from.base.rotation.matrix();
+    let turn = rot_wb.tr_mul(to.base.rotation.matrix());
+    let (angular, jacobian) =
+        so3::log_with_jacobian_inverse(&Rotation3::from_matrix_unchecked(turn));
+    let linear = jacobian * rot_wb.tr_mul(&(to.base.translation - from.base.translation));
     let mut joints = to.joints;
     for (x, &x0) in joints.iter_mut().zip(&from.joints) {
         *x -= x0;

@@ -95,7 +95,7 @@ pub fn log_with_jacobian_inverse<T: Scalar>(rot: &Rotation3<T>) -> (Vector3<T>, 
     let (v, s) = quat::short_way(&Vector3::new(x, y, z), s);
     let scale = quat::angle_per_length(&v, s);
     let w = v * scale;
-    let theta_squared = w.norm_squared();
+    let theta_squared = scale * scale * v.norm_squared();
     let d = if theta_squared < T::of(small_angle::SERIES_LIMIT) {
         small_angle::inverse_coefficient(theta_squared)
     } else {

@@ -29,6 +29,8 @@ door! {
     asin => libm_asin;
     /// Arc cosine in rad, in [0, π]; NaN outside [−1, 1].
     acos => libm_acos;
+    /// Arc tangent in rad, in [−π/2, π/2].
+    atan => libm_atan;
     /// Natural exponential.
     exp => libm_exp;
     /// Natural logarithm; NaN below zero.

@@ -60,6 +60,8 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     #[doc(hidden)]
     fn libm_acos(self) -> Self;
     #[doc(hidden)]
+    fn libm_atan(self) -> Self;
+    #[doc(hidden)]
     fn libm_atan2(self, x: Self) -> Self;
     #[doc(hidden)]
     fn libm_hypot(self, y: Self) -> Self;
@@ -78,9 +80,9 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
 /// `libm` for one scalar: C's suffix hidden, so that one macro serves both.
 mod libm_f32 {
     pub(super) use libm::{
-        acosf as acos, asinf as asin, atan2f as atan2, copysignf as copysign, expf as exp,
-        floorf as floor, hypotf as hypot, logf as log, sincosf as sincos, sqrtf as sqrt,
-        tanf as tan, tanhf as tanh,
+        acosf as acos, asinf as asin, atan2f as atan2, atanf as atan, copysignf as copysign,
+        expf as exp, floorf as floor, hypotf as hypot, logf as log, sincosf as sincos,
+        sqrtf as sqrt, tanf as tan, tanhf as tanh,
     };
 }
 
@@ -149,6 +151,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn libm_acos(self) -> Self {
                 $libm::acos(self)
+            }
+            #[inline(always)]
+            fn libm_atan(self) -> Self {
+                $libm::atan(self)
             }
             #[inline(always)]
             fn libm_atan2(self, x: Self) -> Self {

@@ -2,7 +2,10 @@
 #![allow(clippy::disallowed_methods, reason = "std is the reference here")]
 
 use proptest::prelude::*;
-use so3::math::{abs, clamp, copysign, cos, floor, hypot, max, min, powi, sin, sin_cos, sqrt};
+use so3::math::{
+    abs, atan, atan2, clamp, copysign, cos, floor, hypot, max, min, mul_add, powi, sin, sin_cos,
+    sqrt,
+};
 
 #[test]
 fn min_max_clamp_and_nan() {
@@ -72,5 +75,28 @@ proptest! {
         prop_assert!((hypot(x, y) - x.hypot(y)).abs() <= f64::EPSILON * x.hypot(y));
         let power = (0..n).fold(1.0, |p, _| p * x);
         prop_assert!((powi(x, n) - power).abs() <= 16.0 * f64::EPSILON * power.abs());
+    }
+}
+
+/// Twice, as the operators; once, and so exactly here, where the feature and the processor have it.
+#[test]
+fn mul_add_is_rounded_as_promised() {
+    let x = 1.0 + f64::EPSILON;
+    let product = x * x;
+    let lost = mul_add(x, x, -product);
+    if cfg!(all(feature = "fused", target_feature = "fma")) {
+        assert_eq!(lost, f64::EPSILON * f64::EPSILON);
+    } else {
+        assert_eq!(lost, 0.0);
+    }
+    assert_eq!(mul_add(2.0_f32, 3.0, 4.0), 10.0);
+    assert!(mul_add(f64::NAN, 0.0, 1.0).is_nan());
+}
+
+#[test]
+fn atan_is_a_quarter_turn_at_infinity() {
+    assert_eq!(atan(f64::INFINITY), core::f64::consts::FRAC_PI_2);
+    for (y, x) in [(1.0, 3.0), (5.0, 1e-3), (1e-9, 1.0)] {
+        assert_eq!(atan(y / x), atan2(y, x));
     }
 }

@@ -57,6 +57,7 @@ pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
             on.call("hypot", (y, x), |(y, x)| math::hypot(y, x));
             on.call("clamp", (y, x), |(y, x)| math::clamp(y, -T::ONE, x));
             on.call("copysign", (y, x), |(y, x)| math::copysign(y, x));
+            on.call("mul_add", (y, x), |(y, x)| math::mul_add(y, x, T::HALF));
         }
     }
 }
@@ -69,6 +70,7 @@ fn functions<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, x: T) {
     on.call("tan", x, math::tan);
     on.call("asin", x, math::asin);
     on.call("acos", x, math::acos);
+    on.call("atan", x, math::atan);
     on.call("exp", x, math::exp);
     on.call("log", x, math::log);
     on.call("tanh", x, math::tanh);

@@ -16,7 +16,7 @@ use super::rnea::sweep;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform, cross};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform, cross, product};
 use crate::state::{Posture, Tangent};
 use crate::tree::{At, Fold, Tree};
 
@@ -98,7 +98,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Map<'_, T, N> {
         up: &Self::Down,
     ) -> (Self::Down, Transform<T>) {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
-        let (rot, pos) = (rotation.after(&up.0), up.1 + up.0 * offset);
+        let (rot, pos) = (rotation.after(&up.0), up.1 + product(&up.0, &offset));
         (
             (rot, pos),
             Transform::new(Rotation3::from_matrix_unchecked(rot), pos),

@@ -18,7 +18,7 @@ use so3::{Scalar, math};
 use super::gravity::gravity;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{Force, Inertia, Motion, cross};
+use crate::spatial::{Force, Inertia, Motion, cross, product};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Tree};
 
@@ -67,7 +67,7 @@ impl<T: Scalar> Field<T> {
     ) -> Self {
         let omega = rotation.down(&self.omega);
         let alpha = rotation.down(&self.alpha);
-        let acceleration = rotation.down(&(self.acceleration + self.gradient * offset));
+        let acceleration = rotation.down(&(self.acceleration + product(&self.gradient, offset)));
         if J::KIND.is_revolute() {
             let alpha = J::add_cross_axis(J::along_axis(alpha, qdd), &omega, qd);
             Self::new(J::along_axis(omega, qd), alpha, acceleration)
@@ -104,7 +104,7 @@ impl<T: Scalar> Field<T> {
             row(u.m21, u.m22, u.m23, s.xx, s.xy, s.xz) - row(u.m11, u.m12, u.m13, s.xy, s.yy, s.yz),
         );
         Force {
-            linear: self.acceleration * body.mass + u * body.first,
+            linear: self.acceleration * body.mass + product(u, &body.first),
             angular: cross(&body.first, &self.acceleration) + moment,
         }
     }

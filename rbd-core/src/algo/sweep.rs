@@ -33,7 +33,7 @@ use so3::{Scalar, math};
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Link;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3, cross};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, cross, product};
 use crate::state::Posture;
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -571,7 +571,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
         let i = here.index;
         let (turn, offset) = place::<J, T, N>(here, self.posture);
         let rotation = turn.after(&up.rotation);
-        let origin = up.origin + up.rotation * offset;
+        let origin = up.origin + product(&up.rotation, &offset);
         let z = match J::KIND.axis() {
             0 => Vector3::new(rotation.m11, rotation.m21, rotation.m31),
             1 => Vector3::new(rotation.m12, rotation.m22, rotation.m32),

@@ -16,7 +16,7 @@ mod six;
 mod symmetric;
 mod transform;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
 use so3::math::mul_add;
 
@@ -34,5 +34,16 @@ pub(crate) fn cross<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
         mul_add(a.y, b.z, -(a.z * b.y)),
         mul_add(a.z, b.x, -(a.x * b.z)),
         mul_add(a.x, b.y, -(a.y * b.x)),
+    )
+}
+
+/// M v.
+#[inline(always)]
+pub(crate) fn product<T: Scalar>(m: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
+    let row = |a: T, b: T, c: T| mul_add(c, v.z, mul_add(b, v.y, a * v.x));
+    Vector3::new(
+        row(m.m11, m.m12, m.m13),
+        row(m.m21, m.m22, m.m23),
+        row(m.m31, m.m32, m.m33),
     )
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Vector3};
 use so3::Scalar;
 
-use super::{Force, Motion};
+use super::{Force, Motion, cross, product};
 
 /// Pose of frame b in frame a: x_a = R_ab x_b + p_ab. Named `xf_ab` where it is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,9 +73,10 @@ impl<T: Scalar> Transform<T> {
     #[inline(always)]
     #[must_use]
     pub fn motion(&self, motion_b: &Motion<T>) -> Motion<T> {
-        let angular = self.rotation * motion_b.angular;
+        let rotation = self.rotation.matrix();
+        let angular = product(rotation, &motion_b.angular);
         Motion {
-            linear: self.rotation * motion_b.linear + self.translation.cross(&angular),
+            linear: product(rotation, &motion_b.linear) + cross(&self.translation, &angular),
             angular,
         }
     }
@@ -95,10 +96,11 @@ impl<T: Scalar> Transform<T> {
     #[inline(always)]
     #[must_use]
     pub fn force(&self, force_b: &Force<T>) -> Force<T> {
-        let linear = self.rotation * force_b.linear;
+        let rotation = self.rotation.matrix();
+        let linear = product(rotation, &force_b.linear);
         Force {
             linear,
-            angular: self.rotation * force_b.angular + self.translation.cross(&linear),
+            angular: product(rotation, &force_b.angular) + cross(&self.translation, &linear),
         }
     }
 
