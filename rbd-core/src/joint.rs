@@ -189,7 +189,7 @@ impl<T: Scalar, const AXIS: usize> AxisRotation<T, AXIS> {
     #[inline(always)]
     fn turned(&self, x: T, y: T) -> (T, T) {
         let (s, c) = (self.sin, self.cos);
-        (mul_add(c, x, -(s * y)), mul_add(s, x, c * y))
+        (mul_add(-s, y, c * x), mul_add(s, x, c * y))
     }
 }
 

@@ -8,7 +8,7 @@ use so3::Scalar;
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::{Frame, Link};
-use crate::spatial::{Transform, product};
+use crate::spatial::Transform;
 use crate::state::Posture;
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -59,7 +59,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Fk<'_, T, N> {
     #[inline(always)]
     fn down<J: JointKind>(&mut self, here: At<'_, T>, up: &Self::Down) -> (Self::Down, Nothing) {
         let (rotation, offset) = place::<J, T, N>(here, self.posture);
-        let (rot, pos) = (rotation.after(&up.0), up.1 + product(&up.0, &offset));
+        let (rot, pos) = (rotation.after(&up.0), up.1 + up.0 * offset);
         let pose = Transform::new(Rotation3::from_matrix_unchecked(rot), pos);
         put(self.out, here.index, pose);
         ((rot, pos), Nothing)
