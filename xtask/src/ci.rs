@@ -29,6 +29,8 @@ const STEPS: &[Step] = &[
             "clippy",
             "--workspace",
             "--all-targets",
+            "--features",
+            "saltus-tests/fused",
             "--",
             "-D",
             "warnings",
