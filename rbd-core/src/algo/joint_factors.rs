@@ -24,8 +24,8 @@ pub(crate) struct JointFactors<T, const N: usize> {
     before: [usize; N],
     /// One more than the index of the last joint that this one moves.
     subtree_end: [usize; N],
-    /// L by rows. Only entries between a joint and its ancestors mean something; others are never read.
-    lower: [[T; N]; N],
+    /// D L by rows. Only entries between a joint and its ancestors mean something; others are never read.
+    rows: [[T; N]; N],
     /// D⁻¹; zero, an infinitely stiff pivot, for a joint without any inertia.
     pivots: [T; N],
 }
@@ -35,7 +35,7 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     pub(crate) const ZERO: Self = Self {
         before: [0; N],
         subtree_end: [0; N],
-        lower: [[T::ZERO; N]; N],
+        rows: [[T::ZERO; N]; N],
         pivots: [T::ZERO; N],
     };
 
@@ -79,31 +79,34 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
             self.subtree_end[i] = body.subtree_end.min(N);
         }
         // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves; row k of L⁻ᵀ b: b_k − Σ L_ik (L⁻ᵀ b)_i.
-        let mut inertias = [T::ZERO; N];
         for k in (0..N).rev() {
             let (mut row, mut inertia, mut side) = (h[k], h[k][k], b[k]);
-            let (first, end) = (k + 1, self.subtree_end(k));
-            let moved = run(&self.lower, first, end).iter();
-            let moved = moved
-                .zip(run(&inertias, first, end))
-                .zip(run(b, first, end));
-            for ((from, &d), from_b) in moved {
-                let l = at(from, k);
-                let x = l * d;
+            for ((from, &pivot), from_b) in self.moved(k).zip(self.moved_rows(k, b)) {
+                let x = at(from, k);
+                let l = x * pivot;
                 inertia -= l * x;
-                add_scaled(&mut row, -x, from);
+                add_scaled(&mut row, -l, from);
                 add_scaled(&mut side, -l, from_b);
             }
-            b[k] = side;
             let good = inertia > h[k][k] * T::EPSILON;
-            let pivot = if good { T::ONE / inertia } else { T::ZERO };
-            for x in &mut row {
-                *x *= pivot;
-            }
-            inertias[k] = inertia;
-            self.pivots[k] = pivot;
-            self.lower[k] = row;
+            self.pivots[k] = if good { T::ONE / inertia } else { T::ZERO };
+            self.rows[k] = row;
+            b[k] = side;
         }
+    }
+
+    /// Rows of D L and D⁻¹ of the joints that joint `k` moves.
+    #[inline(always)]
+    fn moved(&self, k: usize) -> impl Iterator<Item = (&[T; N], &T)> {
+        let (first, end) = (k + 1, self.subtree_end(k));
+        let rows = run(&self.rows, first, end).iter();
+        rows.zip(run(&self.pivots, first, end))
+    }
+
+    /// Of these joints, the rows of a table.
+    #[inline(always)]
+    fn moved_rows<'a, const K: usize>(&self, k: usize, b: &'a [[T; K]; N]) -> &'a [[T; K]] {
+        run(b, k + 1, self.subtree_end(k))
     }
 
     /// b ← L⁻ᵀ b for every column of b, rows of length K.
@@ -111,10 +114,8 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     pub(crate) fn inward<const K: usize>(&self, b: &mut [[T; K]; N]) {
         for k in (0..N).rev() {
             let mut row = b[k];
-            let (first, end) = (k + 1, self.subtree_end(k));
-            let moved = run(&self.lower, first, end).iter();
-            for (lower, from) in moved.zip(run(b, first, end)) {
-                add_scaled(&mut row, -at(lower, k), from);
+            for ((d_l, &pivot), from) in self.moved(k).zip(self.moved_rows(k, b)) {
+                add_scaled(&mut row, -at(d_l, k) * pivot, from);
             }
             b[k] = row;
         }
@@ -124,14 +125,15 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     #[inline(always)]
     pub(crate) fn outward<const K: usize>(&self, b: &mut [[T; K]; N]) {
         for k in 0..N {
-            let (mut row, lower, pivot) = (b[k], &self.lower[k], self.pivots[k]);
-            for x in &mut row {
-                *x *= pivot;
-            }
+            // D⁻¹ b − L x = D⁻¹ (b − D L x).
+            let (mut row, d_l, pivot) = (b[k], &self.rows[k], self.pivots[k]);
             for a in self.ancestors(k) {
                 if let Some(from) = b.get(a) {
-                    add_scaled(&mut row, -at(lower, a), from);
+                    add_scaled(&mut row, -at(d_l, a), from);
                 }
+            }
+            for x in &mut row {
+                *x *= pivot;
             }
             b[k] = row;
         }
@@ -152,10 +154,8 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
             // Compared, not written: a number just stored cannot be loaded with its neighbours without a wait.
             let mut column: [T; N] =
                 core::array::from_fn(|j| if j == k { T::ONE } else { T::ZERO });
-            let (first, end) = (k + 1, self.subtree_end(k));
-            let moved = run(&self.lower, first, end).iter();
-            for (lower, from) in moved.zip(run(out, first, end)) {
-                add_scaled(&mut column, -at(lower, k), from);
+            for ((d_l, &pivot), from) in self.moved(k).zip(self.moved_rows(k, out)) {
+                add_scaled(&mut column, -at(d_l, k) * pivot, from);
             }
             out[k] = column;
         }
