@@ -10,6 +10,9 @@ use serde_json::{Value, json};
 /// Tilt up to which the robot counts as upright, rad.
 const UPRIGHT: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
+/// Largest angle between the base and its goal on target, degrees.
+pub(crate) const ALLOWED_TURN: f64 = 10.0;
+
 /// The verdict on one run.
 pub(crate) struct Verdict {
     /// Touched down on its feet and never lost them to a fault.
@@ -24,6 +27,8 @@ pub(crate) struct Verdict {
     pub(crate) position_error: f64,
     /// Angle between the base and its goal at the end, degrees.
     pub(crate) orientation_error: f64,
+    /// The same angle at touchdown: what the jump itself missed, before the landing turns the robot on its feet.
+    pub(crate) touchdown_orientation_error: Option<f64>,
     /// Largest height of the centre of mass, m.
     pub(crate) apex: f64,
 }
@@ -51,15 +56,17 @@ impl Verdict {
         let last = landed_at
             .and_then(|t0| after(t0 + SETTLE).next())
             .or(run.samples.last());
+        let turned = |s: &super::log::Sample| {
+            let turn = heading_matrix(task.heading).inverse() * s.orientation.to_rotation_matrix();
+            so3::log(&turn).norm().to_degrees()
+        };
         let goal = task.start.base.translation + task.goal;
         let (position_error, orientation_error, upright) =
             last.map_or((f64::NAN, f64::NAN, false), |s| {
                 let missed = s.position - goal;
-                let turn =
-                    heading_matrix(task.heading).inverse() * s.orientation.to_rotation_matrix();
                 (
                     so3::math::hypot(missed.x, missed.y),
-                    so3::log(&turn).norm().to_degrees(),
+                    turned(s),
                     tilt(s) < UPRIGHT,
                 )
             });
@@ -70,6 +77,7 @@ impl Verdict {
             upright_after,
             position_error,
             orientation_error,
+            touchdown_orientation_error: landed_at.and_then(|t| after(t).next()).map(turned),
             apex: run
                 .samples
                 .iter()
@@ -84,7 +92,7 @@ impl Verdict {
             && self.trunk_is_right
             && self.upright
             && self.position_error <= 0.10
-            && self.orientation_error <= 10.0
+            && self.orientation_error <= ALLOWED_TURN
     }
 
     /// The object of `--json`; a stored plan comes without its single rigid body.
@@ -106,6 +114,7 @@ impl Verdict {
             "upright_after_s": self.upright_after,
             "final_position_error_m": self.position_error,
             "final_orientation_error_deg": self.orientation_error,
+            "touchdown_orientation_error_deg": self.touchdown_orientation_error,
             "apex_height_m": self.apex,
             "first_contact_s": run.first_contact,
             "peak_torque_nm": run.peak_torque,

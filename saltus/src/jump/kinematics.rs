@@ -4,7 +4,7 @@ use super::{FOOT_COUNT, JOINTS, ROBOT, State, Velocity, feet};
 use a1_model::FOOT_RADIUS;
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::{
-    Axes, CentroidalMap, Frame, FrameJacobian, Kinematics, Motion, Posture, center_of_mass,
+    Axes, CentroidalMap, Force, Frame, FrameJacobian, Kinematics, Motion, Posture, center_of_mass,
     centroidal_map, centroidal_state, forward_kinematics, frame_jacobian,
 };
 
@@ -44,15 +44,48 @@ pub(crate) fn contact_frame(kinematics: &Kinematics<f64, JOINTS>, leg: usize) ->
     frame
 }
 
-/// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and whose angular momentum about it
-/// is `momentum_w`, while the balls of the feet in `stance` roll without slip and the other joints move with `swing`.
+/// How a single rigid body turns, as the robot is to take it over; world axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Turn {
+    /// The whole robot has its angular momentum about the centre of mass.
+    Momentum(Vector3<f64>),
+    /// The base has its angular velocity, whatever the legs do.
+    Rate(Vector3<f64>),
+}
+
+impl Turn {
+    /// Part `s` of the way from this to another of the same kind.
+    pub(crate) fn toward(self, other: Self, s: f64) -> Self {
+        match (self, other) {
+            (Self::Momentum(a), Self::Momentum(b)) => Self::Momentum(a + (b - a) * s),
+            (Self::Rate(a), Self::Rate(b)) => Self::Rate(a + (b - a) * s),
+            _ => self,
+        }
+    }
+
+    /// Angular velocity, base axes, of a robot turning as one body.
+    pub(crate) fn locked(self, q: &State) -> Vector3<f64> {
+        let to_base = q.base.rotation.inverse();
+        match self {
+            Self::Rate(rate) => to_base * rate,
+            Self::Momentum(momentum) => {
+                let mut map = CentroidalMap::ZERO;
+                centroidal_map(&ROBOT, &Posture::new(&ROBOT, q), &mut map);
+                to_base * map.locked_angular_velocity(&Force::new(Vector3::zeros(), momentum))
+            }
+        }
+    }
+}
+
+/// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and which turns like `turn`, while the
+/// balls of the feet in `stance` roll without slip and the other joints move with `swing`.
 ///
 /// Found by fixed-point steps on the base's velocity: the legs are lighter than the rest.
 pub(crate) fn rolling_velocity(
     q: &State,
     stance: &[bool; FOOT_COUNT],
     com_velocity_w: &Vector3<f64>,
-    momentum_w: &Vector3<f64>,
+    turn: Turn,
     swing: &[f64; JOINTS],
 ) -> Result<Velocity, String> {
     let kinematics = poses(q);
@@ -66,8 +99,12 @@ pub(crate) fn rolling_velocity(
         .collect();
     let mut map = CentroidalMap::ZERO;
     centroidal_map(&ROBOT, &posture, &mut map);
+    let begin = match turn {
+        Turn::Rate(rate) => to_base * rate,
+        Turn::Momentum(_) => Vector3::zeros(),
+    };
     let mut velocity = Velocity {
-        base: Motion::new(to_base * com_velocity_w, Vector3::zeros()),
+        base: Motion::new(to_base * com_velocity_w, begin),
         joints: *swing,
     };
     for _ in 0..200 {
@@ -81,15 +118,19 @@ pub(crate) fn rolling_velocity(
             velocity.joints[3 * leg..3 * leg + 3].copy_from_slice(qd.as_slice());
         }
         let now = centroidal_state(&ROBOT, &posture, &velocity);
-        let missing = momentum_w - now.momentum_w.angular;
-        let turn =
-            to_base * map.locked_angular_velocity(&rbd_core::Force::new(Vector3::zeros(), missing));
+        let faster = match turn {
+            Turn::Rate(_) => Vector3::zeros(),
+            Turn::Momentum(momentum) => {
+                let missing = Force::new(Vector3::zeros(), momentum - now.momentum_w.angular);
+                to_base * map.locked_angular_velocity(&missing)
+            }
+        };
         let shift = to_base * (com_velocity_w - now.com_velocity_w);
-        if shift.norm() < 1e-9 && turn.norm() < 1e-9 {
+        if shift.norm() < 1e-9 && faster.norm() < 1e-9 {
             return Ok(velocity);
         }
         velocity.base.linear += shift;
-        velocity.base.angular += turn;
+        velocity.base.angular += faster;
     }
     Err("no whole-body velocity for this motion of the centre of mass".into())
 }

@@ -1,6 +1,6 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
-use super::reference::{self, Reference, standing};
+use super::reference::{self, Legs, Reference, standing};
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, Timing, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
@@ -15,8 +15,10 @@ use wb_opt::{BASE, Phase, State};
 pub(crate) enum Planner {
     /// Whole-body trajectory optimisation, paper A, III-B.
     WholeBody,
-    /// Leg kinematics and inverse dynamics, the baseline of paper A, V-A.
+    /// Leg kinematics along the rigid body's angular momentum, and inverse dynamics.
     Kinematics,
+    /// Leg kinematics under the rigid body's attitude, and torques of its forces alone: the baseline of paper A, V-A.
+    RigidBody,
 }
 
 /// How a whole-body problem was solved.
@@ -34,7 +36,7 @@ pub(crate) struct Solved {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Origin {
     /// Leg kinematics.
-    Kinematics,
+    Kinematics(Legs),
     /// Whole-body optimisation, just now.
     WholeBody(Solved),
     /// A container that was stored before.
@@ -45,7 +47,8 @@ impl Origin {
     /// Its name in results.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::Kinematics => "srb+kinematics",
+            Self::Kinematics(Legs::Heavy) => "srb+kinematics",
+            Self::Kinematics(Legs::Massless) => "srb+massless-legs",
             Self::WholeBody(_) => "whole-body",
             Self::Stored => "stored",
         }
@@ -55,7 +58,7 @@ impl Origin {
     pub(crate) fn solved(self) -> Option<Solved> {
         match self {
             Self::WholeBody(solved) => Some(solved),
-            Self::Kinematics | Self::Stored => None,
+            Self::Kinematics(_) | Self::Stored => None,
         }
     }
 }
@@ -66,13 +69,19 @@ impl Planner {
         match self {
             Self::WholeBody => "whole-body",
             Self::Kinematics => "kinematics",
+            Self::RigidBody => "rigid-body",
         }
     }
 
     /// Plans the legs along a plan of the body.
     pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
-        if self == Self::Kinematics {
-            return reference::build(task, srb);
+        let legs = match self {
+            Self::WholeBody => None,
+            Self::Kinematics => Some(Legs::Heavy),
+            Self::RigidBody => Some(Legs::Massless),
+        };
+        if let Some(legs) = legs {
+            return reference::build(task, srb, legs);
         }
         let whole = whole_body::audited(task, srb, Timing::Given, false, |_| {
             ControlFlow::Continue(())

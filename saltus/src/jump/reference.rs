@@ -1,21 +1,20 @@
-//! The reference by leg kinematics along the single-rigid-body plan: the paper's baseline of section V-A.
+//! The reference by leg kinematics along the single-rigid-body plan.
 //!
-//! The plan gives the motion of the centre of mass and the angular momentum about it; base and legs follow because the
-//! balls of the feet roll on the ground without slip. (Giving the base the rigid body's angular velocity instead would
-//! forget what the legs turn: they stop after take-off, and the base would take over their momentum.) Torques are inverse dynamics of that motion with the plan's foot forces,
-//! changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
-//! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
+//! The plan gives the motion of the centre of mass; base and legs follow because the balls of the feet roll on the ground without
+//! slip. Of the plan's turning there are two readings ([`Legs`]). In the paper's baseline (section V-A) legs weigh nothing: the base
+//! has the body's attitude, and torques are those of the planned forces. Legs that stand do not turn with the base, so the robot has
+//! less angular momentum than the body, and once they have left the ground the base has to share it with them. Otherwise the robot has the body's angular
+//! momentum, and torques are inverse dynamics with the plan's foot forces, changed as little as the whole-body dynamics of the base
+//! require (they differ from those of a rigid body by the moving legs and the rolling contact points). In flight the legs go to
+//! the pre-landing posture.
 
-use super::kinematics::{com, contact_frame, jacobian, poses, rolling_velocity};
+use super::kinematics::{Turn, com, contact_frame, jacobian, poses, rolling_velocity};
 use super::planned::Origin;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
 use a1_model::a1;
 use nalgebra::{Matrix6, Vector3, Vector6};
-use rbd_core::{
-    CentroidalMap, Force, GRAVITY, Motion, Posture, Transform, centroidal_map, integrate,
-    joint_friction, rnea,
-};
+use rbd_core::{Force, GRAVITY, Motion, Posture, Transform, integrate, joint_friction, rnea};
 
 /// Longest integration step of the kinematics, s.
 const STEP: f64 = 1e-3;
@@ -25,6 +24,15 @@ const PULL: f64 = 0.02;
 const POSING_SHARE: f64 = 0.5;
 /// Speed at which planned Coulomb friction fades, rad/s.
 const FRICTION_SMOOTHING: f64 = 0.1;
+
+/// What the legs of the reference are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Legs {
+    /// Their inertia counts.
+    Heavy,
+    /// They only connect the body with its feet.
+    Massless,
+}
 
 /// The reference and its margins.
 pub(crate) struct Reference {
@@ -53,28 +61,29 @@ struct Interval {
     pos: Vector3<f64>,
     vel: Vector3<f64>,
     acc: Vector3<f64>,
-    /// Angular momentum about the centre of mass at both ends, world axes.
-    momentum_w: (Vector3<f64>, Vector3<f64>),
+    /// How it turns at both ends.
+    turn: (Turn, Turn),
     rotation: nalgebra::Rotation3<f64>,
     contacts: [bool; FOOT_COUNT],
     forces_w: [Vector3<f64>; FOOT_COUNT],
 }
 
 impl Interval {
-    fn at(&self, s: f64) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
-        let blend = self.momentum_w.0 + (self.momentum_w.1 - self.momentum_w.0) * (s / self.dt);
+    fn at(&self, s: f64) -> (Vector3<f64>, Vector3<f64>, Turn) {
         (
             self.pos + (self.vel + self.acc * (0.5 * s)) * s,
             self.vel + self.acc * s,
-            blend,
+            self.turn.0.toward(self.turn.1, s / self.dt),
         )
     }
 }
 
-fn intervals(task: &Task, stages: &[SrbStage]) -> Vec<Interval> {
+fn intervals(task: &Task, stages: &[SrbStage], legs: Legs) -> Vec<Interval> {
     let problem = &task.problem;
-    let momentum =
-        |state: &srb_opt::State<f64, PHASES>| state.rot_wb * problem.inertia_b * state.omega_b;
+    let turn = |state: &srb_opt::State<f64, PHASES>| match legs {
+        Legs::Heavy => Turn::Momentum(state.rot_wb * problem.inertia_b * state.omega_b),
+        Legs::Massless => Turn::Rate(state.rot_wb * state.omega_b),
+    };
     let mut start = 0.0;
     let mut out = Vec::new();
     for (k, pair) in stages.windows(2).enumerate() {
@@ -91,7 +100,7 @@ fn intervals(task: &Task, stages: &[SrbStage]) -> Vec<Interval> {
             pos: state.pos_w,
             vel: state.vel_w,
             acc: total / problem.mass - Vector3::z() * problem.gravity,
-            momentum_w: (momentum(state), momentum(next)),
+            turn: (turn(state), turn(next)),
             rotation: nalgebra::Rotation3::from_matrix(&state.rot_wb),
             contacts: data.contacts,
             forces_w,
@@ -113,12 +122,12 @@ fn load(
     q: &State,
     v: &Velocity,
     a: &Velocity,
-    contacts: &[bool; FOOT_COUNT],
-    planned_w: &[Vector3<f64>; FOOT_COUNT],
+    interval: &Interval,
+    legs: Legs,
 ) -> Result<Load, String> {
     let kinematics = poses(q);
     let effort = rnea(&ROBOT, &Posture::new(&ROBOT, q), v, a);
-    let mut forces_w = *planned_w;
+    let (contacts, mut forces_w) = (&interval.contacts, interval.forces_w);
     let jacobians: Vec<_> = (0..FOOT_COUNT)
         .map(|leg| jacobian(&kinematics, &contact_frame(&kinematics, leg)))
         .collect();
@@ -132,6 +141,13 @@ fn load(
     let missing = |forces: &[Vector3<f64>; FOOT_COUNT]| {
         Vector6::from((effort.base - push(forces).base).to_array())
     };
+    if legs == Legs::Massless {
+        return Ok(Load {
+            torques: push(&forces_w).joints.map(|x| -x),
+            forces_w,
+            residual: missing(&forces_w).amax(),
+        });
+    }
     // The least change of the forces in contact that balances the base: δ = Gᵀ(G Gᵀ)⁻¹ missing.
     let mut gram = Matrix6::identity() * 1e-9;
     let maps: Vec<nalgebra::Matrix6x3<f64>> = jacobians
@@ -192,8 +208,8 @@ pub(crate) fn standing(task: &Task) -> Result<Node, String> {
 }
 
 /// The whole-body reference of a solved plan.
-pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
-    let intervals = intervals(task, &plan.stages);
+pub(crate) fn build(task: &Task, plan: &SrbPlan, legs: Legs) -> Result<Reference, String> {
+    let intervals = intervals(task, &plan.stages, legs);
     let landing_joints = task.robot.landing_joints(&task.start)?;
     let mut q = task.start;
     let mut swing = [0.0; JOINTS];
@@ -206,9 +222,9 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         .count();
     for interval in &intervals[..stance] {
         let speed = |q: &State, s: f64, swing: &[f64; JOINTS]| {
-            let (pos, vel, momentum) = interval.at(s);
+            let (pos, vel, turn) = interval.at(s);
             let pulled = vel + (pos - com(q)) / PULL;
-            rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
+            rolling_velocity(q, &interval.contacts, &pulled, turn, swing)
         };
         // Legs that have left the ground early fold towards the pre-landing posture.
         for leg in (0..FOOT_COUNT).filter(|leg| !interval.contacts[*leg]) {
@@ -230,13 +246,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         }
         let end = speed(&q, interval.dt, &swing)?;
         let rate = (end - begin) * (1.0 / interval.dt);
-        let load = load(
-            &middle.0,
-            &middle.1,
-            &rate,
-            &interval.contacts,
-            &interval.forces_w,
-        )?;
+        let load = load(&middle.0, &middle.1, &rate, interval, legs)?;
         base_residual = f64::max(base_residual, load.residual);
         peak_torque = load
             .torques
@@ -276,16 +286,8 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         peak_torque,
         peak_friction,
         base_residual,
-        origin: Origin::Kinematics,
+        origin: Origin::Kinematics(legs),
     })
-}
-
-/// Angular velocity, base axes, of the robot turning as one body with this angular momentum.
-fn turning(q: &State, momentum_w: &Vector3<f64>) -> Vector3<f64> {
-    let mut map = CentroidalMap::ZERO;
-    centroidal_map(&ROBOT, &Posture::new(&ROBOT, q), &mut map);
-    let whole = Force::new(Vector3::zeros(), *momentum_w);
-    q.base.rotation.inverse() * map.locked_angular_velocity(&whole)
 }
 
 /// Flight nodes: the base as planned, the legs on cubics from rest at take-off to the pre-landing posture. The
@@ -300,7 +302,7 @@ fn fly(
 ) {
     let com_b = takeoff_q.base.rotation.inverse() * (com(takeoff_q) - takeoff_q.base.translation);
     for interval in flight {
-        let (pos, vel, momentum) = interval.at(0.0);
+        let (pos, vel, turn) = interval.at(0.0);
         let rotation = interval.rotation;
         let span = posing - takeoff;
         let u = ((interval.start - takeoff) / span).clamp(0.0, 1.0);
@@ -315,7 +317,7 @@ fn fly(
         nodes.push(Node {
             time: interval.start,
             base,
-            base_velocity: Motion::new(rotation.inverse() * vel, turning(&q, &momentum)),
+            base_velocity: Motion::new(rotation.inverse() * vel, turn.locked(&q)),
             joints,
             joint_velocities,
             torques: swing_torques(&q, &joint_velocities, &rates),
@@ -347,16 +349,18 @@ pub(crate) fn heading_matrix(heading: f64) -> nalgebra::Rotation3<f64> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{build, com};
+    use super::{Legs, build, com};
     use crate::jump::kinematics::{contact_frame, poses};
     use crate::jump::task::Task;
+    use crate::jump::{Node, ROBOT, State, Velocity};
+    use rbd_core::{Posture, centroidal_state};
 
     /// The reference meets the plan's centre of mass and its feet stay where they roll.
     #[test]
     fn the_lateral_reference_follows_its_plan() {
         let task = Task::load("a1/lateral").unwrap();
         let plan = task.solve().unwrap();
-        let reference = build(&task, &plan).unwrap();
+        let reference = build(&task, &plan, Legs::Heavy).unwrap();
         assert!(
             reference.base_residual < 1e-3,
             "{}",
@@ -384,5 +388,34 @@ mod tests {
             }
         }
         assert!(reference.peak_torque < 33.5);
+    }
+
+    /// Legs that stand do not turn with the base: at its rate the robot has less than the body's angular momentum, and falls short
+    /// of the turn after take-off, when the base shares with them what there is.
+    #[test]
+    fn massless_legs_leave_momentum_behind() {
+        let task = Task::load("a1/spin-90").unwrap();
+        let plan = task.solve().unwrap();
+        let share = |legs: Legs| {
+            let reference = build(&task, &plan, legs).unwrap();
+            let before = |node: &&Node| node.time < reference.takeoff;
+            let last = reference.nodes.iter().rev().find(before).unwrap();
+            let k = reference.nodes.iter().filter(before).count() - 2;
+            let body = &plan.stages[k].state;
+            let wanted = body.rot_wb * task.problem.inertia_b * body.omega_b;
+            let q = State {
+                base: last.base,
+                joints: last.joints,
+            };
+            let v = Velocity {
+                base: last.base_velocity,
+                joints: last.joint_velocities,
+            };
+            let robot = centroidal_state(&ROBOT, &Posture::new(&ROBOT, &q), &v).momentum_w;
+            robot.angular.z / wanted.z
+        };
+        let (heavy, massless) = (share(Legs::Heavy), share(Legs::Massless));
+        assert!((heavy - 1.0).abs() < 1e-3, "{heavy}");
+        assert!((0.7..0.9).contains(&massless), "{massless}");
     }
 }

@@ -54,8 +54,9 @@ impl Args {
     fn folder(&self, task: &Task, without: &[Measure]) -> PathBuf {
         let kind = if self.ablate { "ablation" } else { "envelope" };
         let mut name = format!("{kind}-{}", task.name.replace(['/', '\\'], "-"));
-        if self.planner == Planner::Kinematics {
-            name += "-kinematics";
+        if self.planner != Planner::WholeBody {
+            name += "-";
+            name += self.planner.name();
         }
         if !without.is_empty() {
             name += "-without-";

@@ -64,8 +64,9 @@ impl Study<'_> {
             self.samples,
             self.seed
         );
-        if self.planner == Planner::Kinematics {
-            title += " planner kinematics";
+        if self.planner != Planner::WholeBody {
+            title += " planner ";
+            title += self.planner.name();
         }
         if !self.without.is_empty() {
             title += " without ";

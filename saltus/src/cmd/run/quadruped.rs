@@ -9,7 +9,7 @@ use crate::jump::judge::Verdict;
 use crate::jump::planned::Origin;
 use crate::jump::plant::Sim;
 use crate::jump::programs::Programs;
-use crate::jump::reference::Reference;
+use crate::jump::reference::{Legs, Reference};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, report, stored, strip};
 use crate::report::Line;
@@ -175,7 +175,10 @@ fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64
             format!(
                 "{}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
                 match reference.origin {
-                    Origin::Kinematics => "leg kinematics, not a whole-body optimum".to_owned(),
+                    Origin::Kinematics(Legs::Heavy) =>
+                        "leg kinematics, not a whole-body optimum".to_owned(),
+                    Origin::Kinematics(Legs::Massless) =>
+                        "legs without mass under a rigid body".to_owned(),
                     Origin::WholeBody(solved) => format!(
                         "whole body solved in {:.0} ms, {} iterations",
                         solved.wall_ms, solved.iterations
