@@ -1,11 +1,12 @@
 //! Starting other programs.
 
 use core::time::Duration;
+use std::env;
 use std::ffi::OsStr;
+use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -134,6 +135,9 @@ pub(crate) fn install_debian(packages: &[&str]) -> Result<()> {
     if !root || !exists("apt-get") {
         bail!("{wanted} missing: install (Debian: `sudo apt-get install {wanted}`)");
     }
+    // One at a time: apt-get does not wait for another.
+    let lock = File::create(env::temp_dir().join("saltus-apt-get.lock"))?;
+    lock.lock()?;
     println!("installing {wanted} with apt-get");
     let install = || {
         succeed(
