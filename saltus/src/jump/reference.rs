@@ -1,12 +1,12 @@
 //! The reference by leg kinematics along the single-rigid-body plan.
 //!
-//! The plan gives the motion of the centre of mass; base and legs follow because the balls of the feet roll on the ground without
-//! slip. Of the plan's turning there are two readings ([`Legs`]). In the paper's baseline (section V-A) legs weigh nothing: the base
-//! has the body's attitude, and torques are those of the planned forces. Legs that stand do not turn with the base, so the robot has
-//! less angular momentum than the body, and once they have left the ground the base has to share it with them. Otherwise the robot has the body's angular
-//! momentum, and torques are inverse dynamics with the plan's foot forces, changed as little as the whole-body dynamics of the base
-//! require (they differ from those of a rigid body by the moving legs and the rolling contact points). In flight the legs go to
-//! the pre-landing posture.
+//! The plan gives the motion of the centre of mass; base and legs follow because the balls of the feet roll on the ground
+//! without slip. Of the plan's turning there are two readings ([`Legs`]). In the paper's baseline (section V-A) legs weigh
+//! nothing: the base has the body's attitude, and torques are those of the planned forces. Legs that stand do not turn with
+//! the base, so the robot has less angular momentum than the body, and once they have left the ground the base has to share
+//! it with them. Otherwise the robot has the body's angular momentum, and torques are inverse dynamics with the plan's foot
+//! forces, changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
+//! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
 use super::kinematics::{Turn, com, contact_frame, jacobian, poses, rolling_velocity};
 use super::planned::Origin;
