@@ -32,7 +32,7 @@ pub(crate) fn unnormalized<T: Scalar>(m: &Matrix3<T>) -> [T; 4] {
     }
 }
 
-/// θ/|v| = 2 atan(|v|/s)/|v| for a quaternion (v, s) of any length with s ≥ 0: times v, its rotation vector; times
+/// θ/|v| = 2 atan2(|v|, s)/|v| for a quaternion (v, s) of any length with s ≥ 0: times v, its rotation vector; times
 /// s/2, the half angle times its cotangent.
 #[inline(always)]
 pub(crate) fn angle_per_length<T: Scalar>(v: &Vector3<T>, s: T) -> T {
@@ -43,8 +43,8 @@ pub(crate) fn angle_per_length<T: Scalar>(v: &Vector3<T>, s: T) -> T {
         return T::TWO / s;
     }
     let length = math::sqrt(length_squared);
-    // Infinite where s is 0: a half turn.
-    T::TWO * math::atan(length / s) / length
+    let per_length = T::TWO / length;
+    math::quadrant(length, s) * per_length
 }
 
 /// The same rotation with s ≥ 0.

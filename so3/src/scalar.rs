@@ -1,5 +1,6 @@
 //! The two scalars of the house, `f32` and `f64`, behind one sealed trait.
 
+use crate::math::atan::{quadrant_f32, quadrant_f64};
 use crate::math::sin_cos::{sin_cos_f32, sin_cos_f64};
 
 mod sealed {
@@ -60,7 +61,7 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
     #[doc(hidden)]
     fn libm_acos(self) -> Self;
     #[doc(hidden)]
-    fn libm_atan(self) -> Self;
+    fn angle_in_quadrant(self, x: Self) -> Self;
     #[doc(hidden)]
     fn libm_atan2(self, x: Self) -> Self;
     #[doc(hidden)]
@@ -80,14 +81,14 @@ pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'stati
 /// `libm` for one scalar: C's suffix hidden, so that one macro serves both.
 mod libm_f32 {
     pub(super) use libm::{
-        acosf as acos, asinf as asin, atan2f as atan2, atanf as atan, copysignf as copysign,
-        expf as exp, floorf as floor, hypotf as hypot, logf as log, sincosf as sincos,
-        sqrtf as sqrt, tanf as tan, tanhf as tanh,
+        acosf as acos, asinf as asin, atan2f as atan2, copysignf as copysign, expf as exp,
+        floorf as floor, hypotf as hypot, logf as log, sincosf as sincos, sqrtf as sqrt,
+        tanf as tan, tanhf as tanh,
     };
 }
 
 macro_rules! scalar {
-    ($t:ident, $libm:ident, sin_cos: $sin_cos:ident within $sin_cos_bound:literal) => {
+    ($t:ident, $libm:ident, sin_cos: $sin_cos:ident within $sin_cos_bound:literal, quadrant: $quadrant:ident) => {
         impl Scalar for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -153,8 +154,8 @@ macro_rules! scalar {
                 $libm::acos(self)
             }
             #[inline(always)]
-            fn libm_atan(self) -> Self {
-                $libm::atan(self)
+            fn angle_in_quadrant(self, x: Self) -> Self {
+                $quadrant(self, x)
             }
             #[inline(always)]
             fn libm_atan2(self, x: Self) -> Self {
@@ -188,5 +189,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, libm_f32, sin_cos: sin_cos_f32 within 402.0);
-scalar!(f64, libm, sin_cos: sin_cos_f64 within 3216.0);
+scalar!(f32, libm_f32, sin_cos: sin_cos_f32 within 402.0, quadrant: quadrant_f32);
+scalar!(f64, libm, sin_cos: sin_cos_f64 within 3216.0, quadrant: quadrant_f64);

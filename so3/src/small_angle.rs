@@ -51,11 +51,13 @@ pub fn coefficients<T: Scalar>(theta_squared: T) -> Coefficients<T> {
     }
     let theta = math::sqrt(z);
     let (sin_h, cos_h) = math::sin_cos(theta * T::HALF);
-    let a = T::TWO * sin_h * cos_h / theta;
+    // One division, which does not wait for the sine.
+    let per_z = T::ONE / z;
+    let a = T::TWO * sin_h * cos_h * (theta * per_z);
     Coefficients {
         a,
-        b: T::TWO * sin_h * sin_h / z,
-        c: (T::ONE - a) / z,
+        b: T::TWO * sin_h * sin_h * per_z,
+        c: (T::ONE - a) * per_z,
     }
 }
 
@@ -83,7 +85,7 @@ fn series<T: Scalar, const N: usize>(z: T, coefficients: &[f64; N]) -> T {
     coefficients
         .iter()
         .rev()
-        .fold(T::ZERO, |sum, &c| sum * z + T::of(c))
+        .fold(T::ZERO, |sum, &c| math::mul_add(sum, z, T::of(c)))
 }
 
 /// (−1)ᵏ/(2k+1)!

@@ -57,18 +57,9 @@ impl<T: Scalar> ArticulatedInertia<T> {
     pub fn without(&self, f: &Force<T>, factor: T) -> Self {
         let (fl, fa) = (f.linear, f.angular);
         let (gl, ga) = (fl * factor, fa * factor);
-        let l = &self.linear;
-        let a = &self.angular;
         let c = &self.cross;
         Self {
-            linear: Symmetric3 {
-                xx: mul_add(-gl.x, fl.x, l.xx),
-                yy: mul_add(-gl.y, fl.y, l.yy),
-                zz: mul_add(-gl.z, fl.z, l.zz),
-                xy: mul_add(-gl.x, fl.y, l.xy),
-                xz: mul_add(-gl.x, fl.z, l.xz),
-                yz: mul_add(-gl.y, fl.z, l.yz),
-            },
+            linear: self.linear.less_outer(&gl, &fl),
             cross: Matrix3::new(
                 mul_add(-gl.x, fa.x, c.m11),
                 mul_add(-gl.x, fa.y, c.m12),
@@ -80,14 +71,7 @@ impl<T: Scalar> ArticulatedInertia<T> {
                 mul_add(-gl.z, fa.y, c.m32),
                 mul_add(-gl.z, fa.z, c.m33),
             ),
-            angular: Symmetric3 {
-                xx: mul_add(-ga.x, fa.x, a.xx),
-                yy: mul_add(-ga.y, fa.y, a.yy),
-                zz: mul_add(-ga.z, fa.z, a.zz),
-                xy: mul_add(-ga.x, fa.y, a.xy),
-                xz: mul_add(-ga.x, fa.z, a.xz),
-                yz: mul_add(-ga.y, fa.z, a.yz),
-            },
+            angular: self.angular.less_outer(&ga, &fa),
         }
     }
 

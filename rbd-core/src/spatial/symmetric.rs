@@ -131,6 +131,19 @@ impl<T: Scalar> Symmetric3<T> {
         }
     }
 
+    /// S − a bᵀ for parallel a and b.
+    #[inline(always)]
+    pub(crate) fn less_outer(&self, a: &Vector3<T>, b: &Vector3<T>) -> Self {
+        Self {
+            xx: mul_add(-a.x, b.x, self.xx),
+            yy: mul_add(-a.y, b.y, self.yy),
+            zz: mul_add(-a.z, b.z, self.zz),
+            xy: mul_add(-a.x, b.y, self.xy),
+            xz: mul_add(-a.x, b.z, self.xz),
+            yz: mul_add(-a.y, b.z, self.yz),
+        }
+    }
+
     /// S v.
     #[inline(always)]
     #[must_use]

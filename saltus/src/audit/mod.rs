@@ -11,7 +11,7 @@
 mod forward;
 mod limits;
 
-use crate::jump::stored::Stored;
+use crate::jump::{self, stored::Stored};
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use forward::{Forward, Velocity};
 use jump_control::container::PlanNode;
@@ -218,14 +218,5 @@ impl Held {
 
 /// Configuration and velocity at a node.
 fn state(node: &PlanNode<JOINTS, LEGS>) -> (State, Velocity) {
-    let node = node.node::<f64>();
-    let q = State {
-        base: node.base,
-        joints: node.joints,
-    };
-    let v = Velocity {
-        base: node.base_velocity,
-        joints: node.joint_velocities,
-    };
-    (q, v)
+    jump::state(&node.node())
 }

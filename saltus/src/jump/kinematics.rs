@@ -54,15 +54,6 @@ pub(crate) enum Turn {
 }
 
 impl Turn {
-    /// Part `s` of the way from this to another of the same kind.
-    pub(crate) fn toward(self, other: Self, s: f64) -> Self {
-        match (self, other) {
-            (Self::Momentum(a), Self::Momentum(b)) => Self::Momentum(a + (b - a) * s),
-            (Self::Rate(a), Self::Rate(b)) => Self::Rate(a + (b - a) * s),
-            _ => self,
-        }
-    }
-
     /// Angular velocity, base axes, of a robot turning as one body.
     pub(crate) fn locked(self, q: &State) -> Vector3<f64> {
         let to_base = q.base.rotation.inverse();

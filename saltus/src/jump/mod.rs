@@ -48,6 +48,19 @@ pub(crate) type State = Configuration<f64, JOINTS>;
 pub(crate) type Velocity = Tangent<f64, JOINTS>;
 pub(crate) type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;
 
+/// Configuration and velocity at a node.
+pub(crate) fn state(node: &Node) -> (State, Velocity) {
+    let q = State {
+        base: node.base,
+        joints: node.joints,
+    };
+    let v = Velocity {
+        base: node.base_velocity,
+        joints: node.joint_velocities,
+    };
+    (q, v)
+}
+
 /// Frames of the feet: the centres of the balls.
 pub(crate) fn feet() -> [Frame<f64>; FOOT_COUNT] {
     FEET.map(|foot| foot.frame)

@@ -61,8 +61,10 @@ struct Interval {
     pos: Vector3<f64>,
     vel: Vector3<f64>,
     acc: Vector3<f64>,
-    /// How it turns at both ends.
-    turn: (Turn, Turn),
+    /// Which of the two readings its turning is given in.
+    legs: Legs,
+    /// Angular momentum or velocity at both ends, world axes.
+    turn: (Vector3<f64>, Vector3<f64>),
     rotation: nalgebra::Rotation3<f64>,
     contacts: [bool; FOOT_COUNT],
     forces_w: [Vector3<f64>; FOOT_COUNT],
@@ -70,10 +72,14 @@ struct Interval {
 
 impl Interval {
     fn at(&self, s: f64) -> (Vector3<f64>, Vector3<f64>, Turn) {
+        let blend = self.turn.0 + (self.turn.1 - self.turn.0) * (s / self.dt);
         (
             self.pos + (self.vel + self.acc * (0.5 * s)) * s,
             self.vel + self.acc * s,
-            self.turn.0.toward(self.turn.1, s / self.dt),
+            match self.legs {
+                Legs::Heavy => Turn::Momentum(blend),
+                Legs::Massless => Turn::Rate(blend),
+            },
         )
     }
 }
@@ -81,8 +87,8 @@ impl Interval {
 fn intervals(task: &Task, stages: &[SrbStage], legs: Legs) -> Vec<Interval> {
     let problem = &task.problem;
     let turn = |state: &srb_opt::State<f64, PHASES>| match legs {
-        Legs::Heavy => Turn::Momentum(state.rot_wb * problem.inertia_b * state.omega_b),
-        Legs::Massless => Turn::Rate(state.rot_wb * state.omega_b),
+        Legs::Heavy => state.rot_wb * problem.inertia_b * state.omega_b,
+        Legs::Massless => state.rot_wb * state.omega_b,
     };
     let mut start = 0.0;
     let mut out = Vec::new();
@@ -100,6 +106,7 @@ fn intervals(task: &Task, stages: &[SrbStage], legs: Legs) -> Vec<Interval> {
             pos: state.pos_w,
             vel: state.vel_w,
             acc: total / problem.mass - Vector3::z() * problem.gravity,
+            legs,
             turn: (turn(state), turn(next)),
             rotation: nalgebra::Rotation3::from_matrix(&state.rot_wb),
             contacts: data.contacts,
@@ -118,13 +125,7 @@ struct Load {
 }
 
 /// Inverse dynamics in contact, starting from the plan's forces.
-fn load(
-    q: &State,
-    v: &Velocity,
-    a: &Velocity,
-    interval: &Interval,
-    legs: Legs,
-) -> Result<Load, String> {
+fn load(q: &State, v: &Velocity, a: &Velocity, interval: &Interval) -> Result<Load, String> {
     let kinematics = poses(q);
     let effort = rnea(&ROBOT, &Posture::new(&ROBOT, q), v, a);
     let (contacts, mut forces_w) = (&interval.contacts, interval.forces_w);
@@ -141,7 +142,7 @@ fn load(
     let missing = |forces: &[Vector3<f64>; FOOT_COUNT]| {
         Vector6::from((effort.base - push(forces).base).to_array())
     };
-    if legs == Legs::Massless {
+    if interval.legs == Legs::Massless {
         return Ok(Load {
             torques: push(&forces_w).joints.map(|x| -x),
             forces_w,
@@ -246,7 +247,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan, legs: Legs) -> Result<Reference
         }
         let end = speed(&q, interval.dt, &swing)?;
         let rate = (end - begin) * (1.0 / interval.dt);
-        let load = load(&middle.0, &middle.1, &rate, interval, legs)?;
+        let load = load(&middle.0, &middle.1, &rate, interval)?;
         base_residual = f64::max(base_residual, load.residual);
         peak_torque = load
             .torques
@@ -352,7 +353,7 @@ mod tests {
     use super::{Legs, build, com};
     use crate::jump::kinematics::{contact_frame, poses};
     use crate::jump::task::Task;
-    use crate::jump::{Node, ROBOT, State, Velocity};
+    use crate::jump::{Node, ROBOT, state};
     use rbd_core::{Posture, centroidal_state};
 
     /// The reference meets the plan's centre of mass and its feet stay where they roll.
@@ -371,10 +372,7 @@ mod tests {
             .iter()
             .filter(|n| n.time >= 0.0 && n.time < reference.takeoff);
         for (node, stage) in stance.zip(&plan.stages) {
-            let q = super::State {
-                base: node.base,
-                joints: node.joints,
-            };
+            let (q, _) = state(node);
             assert!((com(&q) - stage.state.pos_w).norm() < 2e-3);
             let kinematics = poses(&q);
             for leg in 0..4 {
@@ -403,14 +401,7 @@ mod tests {
             let k = reference.nodes.iter().filter(before).count() - 2;
             let body = &plan.stages[k].state;
             let wanted = body.rot_wb * task.problem.inertia_b * body.omega_b;
-            let q = State {
-                base: last.base,
-                joints: last.joints,
-            };
-            let v = Velocity {
-                base: last.base_velocity,
-                joints: last.joint_velocities,
-            };
+            let (q, v) = state(last);
             let robot = centroidal_state(&ROBOT, &Posture::new(&ROBOT, &q), &v).momentum_w;
             robot.angular.z / wanted.z
         };

@@ -16,14 +16,7 @@
 //! Beyond the bound, and for infinities and NaN, the caller takes `libm`, which reduces any finite number.
 //! There is no fused multiply-add anywhere: the bits are the same on every target.
 
-/// c0 + c1 z + c2 z² + …, in pairs: half the latency of Horner's scheme.
-macro_rules! polynomial {
-    ($z:ident, $z2:ident; $c0:expr, $c1:expr) => { $c0 + $c1 * $z };
-    ($z:ident, $z2:ident; $c0:expr, $c1:expr, $c2:expr) => { ($c0 + $c1 * $z) + $c2 * $z2 };
-    ($z:ident, $z2:ident; $c0:expr, $c1:expr, $($c:expr),+) => {
-        ($c0 + $c1 * $z) + $z2 * (polynomial!($z, $z2; $($c),+))
-    };
-}
+use super::polynomial::polynomial;
 
 macro_rules! kernel {
     (

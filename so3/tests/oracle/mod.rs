@@ -83,6 +83,14 @@ pub(crate) fn sin_cos(x: f64) -> (Dd, Dd) {
     }
 }
 
+/// atan x, |x| < 10¹⁰⁰: one Newton step from the nearest double, with tan(a − y) = (x cos y − sin y)/(cos y + x sin y).
+pub(crate) fn atan(x: f64) -> Dd {
+    let y = libm::atan(x);
+    let ((sin, cos), x) = (sin_cos(y), Dd(x, 0.0));
+    let rest = x.mul(cos).add(sin.minus()).over(cos.add(x.mul(sin)));
+    Dd(y, 0.0).add(rest)
+}
+
 /// Distance from `value` to the exact number in units in its last place.
 pub(crate) fn ulps(value: f64, exact: Dd) -> f64 {
     let near = exact.0.abs();
