@@ -30,7 +30,8 @@ use crate::{Matrix3, Rotation3, Scalar, Unit, Vector3, hat, jacobian, math, quat
 #[must_use]
 pub fn exp<T: Scalar>(w: &Vector3<T>) -> Rotation3<T> {
     let theta_squared = w.norm_squared();
-    exponential(w, theta_squared, &small_angle::coefficients(theta_squared))
+    let (a, b) = small_angle::sine_and_versine(theta_squared);
+    exponential(w, theta_squared, a, b)
 }
 
 /// exp(w) and its left Jacobian at once, for the price of little more than one: what the exponential of a rigid
@@ -41,20 +42,16 @@ pub fn exp<T: Scalar>(w: &Vector3<T>) -> Rotation3<T> {
 #[must_use]
 pub fn exp_with_jacobian<T: Scalar>(w: &Vector3<T>) -> (Rotation3<T>, Matrix3<T>) {
     let theta_squared = w.norm_squared();
-    let coefficients = small_angle::coefficients(theta_squared);
+    let small_angle::Coefficients { a, b, c } = small_angle::coefficients(theta_squared);
     (
-        exponential(w, theta_squared, &coefficients),
-        jacobian::polynomial(w, coefficients.b, coefficients.c),
+        exponential(w, theta_squared, a, b),
+        jacobian::polynomial(w, b, c),
     )
 }
 
 /// cos θ I + a A + b w wᵀ.
 #[inline(always)]
-fn exponential<T: Scalar>(
-    w: &Vector3<T>,
-    theta_squared: T,
-    &small_angle::Coefficients { a, b, .. }: &small_angle::Coefficients<T>,
-) -> Rotation3<T> {
+fn exponential<T: Scalar>(w: &Vector3<T>, theta_squared: T, a: T, b: T) -> Rotation3<T> {
     let cos = T::ONE - b * theta_squared;
     let m = Matrix3::from_diagonal_element(cos) + hat(&(w * a)) + (w * b) * w.transpose();
     Rotation3::from_matrix_unchecked(m)

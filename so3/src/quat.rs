@@ -149,7 +149,7 @@ pub fn to_wxyz<T: Scalar>(quat: &UnitQuaternion<T>) -> [T; 4] {
 pub fn exp<T: Scalar>(w: &Vector3<T>) -> UnitQuaternion<T> {
     let half = w * T::HALF;
     let h_squared = half.norm_squared();
-    let small_angle::Coefficients { a, b, .. } = small_angle::coefficients(h_squared);
+    let (a, b) = small_angle::sine_and_versine(h_squared);
     let v = half * a;
     UnitQuaternion::new_unchecked(Quaternion::new(T::ONE - b * h_squared, v.x, v.y, v.z))
 }

@@ -42,23 +42,27 @@ pub struct Coefficients<T> {
 #[must_use]
 pub fn coefficients<T: Scalar>(theta_squared: T) -> Coefficients<T> {
     let z = theta_squared;
+    let (a, b) = sine_and_versine(z);
+    let c = if z < T::of(SERIES_LIMIT) {
+        series(z, &SINE_REMAINDER)
+    } else {
+        (T::ONE - a) * (T::ONE / z)
+    };
+    Coefficients { a, b, c }
+}
+
+/// a and b alone, all that exp needs.
+#[inline(always)]
+pub(crate) fn sine_and_versine<T: Scalar>(z: T) -> (T, T) {
     if z < T::of(SERIES_LIMIT) {
-        return Coefficients {
-            a: series(z, &SINE),
-            b: series(z, &VERSINE),
-            c: series(z, &SINE_REMAINDER),
-        };
+        return (series(z, &SINE), series(z, &VERSINE));
     }
     let theta = math::sqrt(z);
     let (sin_h, cos_h) = math::sin_cos(theta * T::HALF);
     // One division, which does not wait for the sine.
     let per_z = T::ONE / z;
-    let a = T::TWO * sin_h * cos_h * (theta * per_z);
-    Coefficients {
-        a,
-        b: T::TWO * sin_h * sin_h * per_z,
-        c: (T::ONE - a) * per_z,
-    }
+    let twice = T::TWO * sin_h;
+    (twice * cos_h * (theta * per_z), twice * sin_h * per_z)
 }
 
 /// d = (1 − (θ/2) cot(θ/2)) / θ² at `theta_squared` = θ² ≥ 0, in rad²: the inverse Jacobians' coefficient.
