@@ -1,9 +1,9 @@
 //! Every check of the project but the tests themselves, in the order in which a failure is cheapest.
 //!
-//! The two workspaces share no target folder, and linking an image takes one core for long: their steps run in two lanes side by side.
+//! Linking takes one core for long, and so do some tests: steps run in three lanes side by side. Lanes share no folder that cargo
+//! locks: one builds the workspace for debugging, one for release, one the firmware's workspace.
 
 use core::sync::atomic::{AtomicBool, Ordering};
-use std::env;
 use std::io::{self, Read, Write};
 use std::process::Command;
 use std::thread;
@@ -19,22 +19,25 @@ pub(crate) struct Args {
     /// Only list the steps.
     #[arg(long)]
     list: bool,
+    /// A command of cargo to run besides, as one word: the test command, which takes longest
+    #[arg(long)]
+    tests: Option<String>,
 }
 
 /// A name, and the arguments of cargo.
-type Step = (&'static str, &'static [&'static str]);
+type Step<'a> = (&'a str, &'a [&'a str]);
 
 /// With MuJoCo; of the whole workspace, so that what does not use it is not compiled again.
 const JUDGE: &str = "contact-sim/mujoco,saltus/mujoco";
 
 /// Before the lanes: what is wrong soonest, and what installs the targets for both.
-const FIRST: &[Step] = &[
+const FIRST: &[Step<'_>] = &[
     ("format", &["fmt", "--all", "--check"]),
     ("bare-metal builds", &["xtask", "cross"]),
 ];
 
-/// The lane of the workspace.
-const HOST: &[Step] = &[
+/// The lane of the workspace, after the tests.
+const HOST: &[Step<'_>] = &[
     (
         "lints",
         &[
@@ -50,10 +53,7 @@ const HOST: &[Step] = &[
     ),
     ("documentation", &["doc", "--workspace", "--no-deps"]),
     ("generated tables", &["xtask", "gen-model", "--check"]),
-    ("instruction counts", &["xtask", "icount"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
-    ("the report in a browser", &["xtask", "report"]),
-    ("both papers", &["xtask", "reproduce"]),
     ("examples", &["xtask", "examples"]),
     ("publishable crates", &["xtask", "package"]),
     ("the first hour", &["xtask", "first-hour"]),
@@ -86,8 +86,15 @@ const HOST: &[Step] = &[
     ),
 ];
 
+/// The lane of release builds.
+const RELEASE: &[Step<'_>] = &[
+    ("both papers", &["xtask", "reproduce"]),
+    ("the report in a browser", &["xtask", "report"]),
+    ("instruction counts", &["xtask", "icount"]),
+];
+
 /// The lane of the firmware's workspace.
-const FIRMWARE: &[Step] = &[
+const FIRMWARE: &[Step<'_>] = &[
     ("lints of the firmware", &["xtask", "firmware-lints"]),
     ("no reachable panic", &["xtask", "smoke"]),
     ("host equals target", &["xtask", "qemu"]),
@@ -97,8 +104,19 @@ const FIRMWARE: &[Step] = &[
 
 /// Runs every step; stops soon after the first that fails, and names it.
 pub(crate) fn run(args: &Args) -> Result<()> {
+    let words: Vec<&str> = args
+        .tests
+        .iter()
+        .flat_map(|x| x.split_whitespace())
+        .collect();
+    let tests: Vec<Step<'_>> = match words.as_slice() {
+        [] => Vec::new(),
+        ["cargo", arguments @ ..] => vec![("tests", arguments)],
+        _ => bail!("--tests takes a command of cargo"),
+    };
+    let host = [&tests, HOST].concat();
     if args.list {
-        for (name, arguments) in [FIRST, HOST, FIRMWARE].concat() {
+        for (name, arguments) in [FIRST, &host, RELEASE, FIRMWARE].concat() {
             println!("{name}: cargo {}", arguments.join(" "));
         }
         return Ok(());
@@ -106,15 +124,19 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let failed = AtomicBool::new(false);
     lane(FIRST, &failed)?;
     thread::scope(|scope| {
-        let beside = scope.spawn(|| lane(FIRMWARE, &failed));
-        let here = lane(HOST, &failed);
-        let there = beside.join().map_err(|_| anyhow!("a lane panicked"))?;
-        here.and(there)
+        let beside = [RELEASE, FIRMWARE].map(|steps| scope.spawn(|| lane(steps, &failed)));
+        let here = lane(&host, &failed);
+        beside.into_iter().fold(here, |before, lane| {
+            before.and(
+                lane.join()
+                    .unwrap_or_else(|_| Err(anyhow!("a lane panicked"))),
+            )
+        })
     })
 }
 
 /// Runs steps one after the other, until one fails in this lane or another.
-fn lane(steps: &[Step], failed: &AtomicBool) -> Result<()> {
+fn lane(steps: &[Step<'_>], failed: &AtomicBool) -> Result<()> {
     for (name, arguments) in steps {
         if failed.load(Ordering::Relaxed) {
             break;
@@ -149,11 +171,11 @@ fn step(name: &str, arguments: &[&str]) -> Result<()> {
 }
 
 /// `cargo` with these arguments, warnings of rustdoc being errors; `cargo xtask` is this program, so that no lane waits for
-/// another's builds.
+/// another's builds. The program and not its file, which the tests build anew.
 fn command(arguments: &[&str]) -> Result<Command> {
     Ok(match arguments {
         ["xtask", rest @ ..] => {
-            let mut own = Command::new(env::current_exe()?);
+            let mut own = Command::new("/proc/self/exe");
             own.current_dir(run::root()).args(rest);
             own
         }
