@@ -7,7 +7,7 @@ use crate::factor::Factor;
 use crate::kernels::at;
 use so3::Scalar;
 
-/// Length of the list of violated rows: enough to save most looks at all rows, and short to sort.
+/// Most entries of the list of violated rows.
 pub(crate) const POOL: usize = 8;
 
 /// Scratch of a solve: about 4N² + 25N + 2M scalars. `new` is const and all zero, so a
@@ -70,6 +70,14 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             is_factorised: false,
         }
     }
+
+    /// Entries of the list of violated rows. It saves looks at all rows, but rows entered by an old list leave again: where a look
+    /// is cheap, the list is short.
+    pub(crate) const LISTED: usize = match (M + N) / 10 {
+        0..=2 => 2,
+        many @ 3..POOL => many,
+        _ => POOL,
+    };
 
     /// Forgets the active set: the next [`crate::solve_warm`] starts cold.
     pub fn forget(&mut self) {

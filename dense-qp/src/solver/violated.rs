@@ -149,7 +149,7 @@ fn pool_insert<T: Scalar, const N: usize, const M: usize>(
             core::mem::swap(slot, &mut entry);
         }
     }
-    if w.pool_len < POOL {
+    if w.pool_len < Workspace::<T, N, M>::LISTED {
         put(excess, w.pool_len, e);
         put(&mut w.pool, w.pool_len, entry);
         w.pool_len += 1;
