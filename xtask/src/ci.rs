@@ -1,4 +1,4 @@
-//! Every check of the project but the tests themselves, in the order in which a failure is cheapest.
+//! Every check of the project, the tests where they are asked for, in the order in which a failure is cheapest.
 //!
 //! Linking takes one core for long, and so do some tests: steps run in three lanes side by side. Lanes share no folder that cargo
 //! locks: one builds the workspace for debugging, one for release, one the firmware's workspace.
@@ -30,7 +30,7 @@ type Step<'a> = (&'a str, &'a [&'a str]);
 /// With MuJoCo; of the whole workspace, so that what does not use it is not compiled again.
 const JUDGE: &str = "contact-sim/mujoco,saltus/mujoco";
 
-/// Before the lanes: what is wrong soonest, and what installs the targets for both.
+/// Before the lanes: what is wrong soonest, and what installs the targets for all.
 const FIRST: &[Step<'_>] = &[
     ("format", &["fmt", "--all", "--check"]),
     ("bare-metal builds", &["xtask", "cross"]),
