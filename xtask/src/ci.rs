@@ -45,7 +45,7 @@ const HOST: &[Step<'_>] = &[
             "--workspace",
             "--all-targets",
             "--features",
-            "saltus-tests/fused",
+            "saltus-tests/bench,saltus-tests/fused",
             "--",
             "-D",
             "warnings",

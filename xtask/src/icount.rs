@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let counts = measure(&dynamics::build(
         &run::root().join("target/icount"),
         "",
-        &[],
+        dynamics::FEATURES,
     )?)?;
     let path = run::root().join(GOLDEN);
     if args.overwrite {

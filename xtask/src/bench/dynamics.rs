@@ -30,7 +30,10 @@ pub(super) struct Args {
 const NATIVE: &str = "-C target-cpu=native";
 
 /// Its features: peers fuse multiplications and additions, and so do we on a host that wants speed.
-const NATIVE_FEATURES: &[&str] = &["--features", "fused"];
+const NATIVE_FEATURES: &str = "bench,fused";
+
+/// The feature without which the bench is not built.
+pub(crate) const FEATURES: &str = "bench";
 
 /// Pinocchio's names of one algorithm, when there are several conventions: the fastest is the peer.
 const PINOCCHIO_BEST: [(&str, &[&str]); 2] = [
@@ -142,7 +145,7 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
             robots: &["icub23"],
         },
         Program {
-            path: build(&directory.join("ours/baseline"), "", &[])?,
+            path: build(&directory.join("ours/baseline"), "", FEATURES)?,
             tag: "baseline",
             robots: &[],
         },
@@ -150,7 +153,7 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
 }
 
 /// Builds our bench into a target folder of its own with the given compiler flags, and none that are around, and features.
-pub(crate) fn build(target: &Path, flags: &str, features: &[&str]) -> Result<PathBuf> {
+pub(crate) fn build(target: &Path, flags: &str, features: &str) -> Result<PathBuf> {
     run::succeed(
         run::cargo()
             .args([
@@ -161,8 +164,9 @@ pub(crate) fn build(target: &Path, flags: &str, features: &[&str]) -> Result<Pat
                 "saltus-tests",
                 "--bin",
                 "bench-dynamics",
+                "--features",
+                features,
             ])
-            .args(features)
             .arg("--target-dir")
             .arg(target)
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
