@@ -1,7 +1,7 @@
 //! Every check of the project, the tests where they are asked for, in the order in which a failure is cheapest.
 //!
 //! Linking takes one core for long, and so do some tests: steps run in three lanes side by side. Lanes share no folder that cargo
-//! locks: one builds the workspace for debugging, one for release, one the firmware's workspace.
+//! locks for long: one builds the workspace for debugging, one for release, one the firmware's workspace.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use std::io::{self, Read, Write};
@@ -30,11 +30,8 @@ type Step<'a> = (&'a str, &'a [&'a str]);
 /// With MuJoCo; of the whole workspace, so that what does not use it is not compiled again.
 const JUDGE: &str = "contact-sim/mujoco,saltus/mujoco";
 
-/// Before the lanes: what is wrong soonest, and what installs the targets for all.
-const FIRST: &[Step<'_>] = &[
-    ("format", &["fmt", "--all", "--check"]),
-    ("bare-metal builds", &["xtask", "cross"]),
-];
+/// Before the lanes: what is wrong soonest.
+const FIRST: &[Step<'_>] = &[("format", &["fmt", "--all", "--check"])];
 
 /// The lane of the workspace, after the tests.
 const HOST: &[Step<'_>] = &[
@@ -53,9 +50,7 @@ const HOST: &[Step<'_>] = &[
     ),
     ("documentation", &["doc", "--workspace", "--no-deps"]),
     ("generated tables", &["xtask", "gen-model", "--check"]),
-    ("imports agree with Pinocchio", &["xtask", "import-check"]),
     ("examples", &["xtask", "examples"]),
-    ("publishable crates", &["xtask", "package"]),
     ("the first hour", &["xtask", "first-hour"]),
     (
         "MuJoCo agrees",
@@ -86,15 +81,18 @@ const HOST: &[Step<'_>] = &[
     ),
 ];
 
-/// The lane of release builds.
+/// The lane of release builds, and of those that have a folder of their own.
 const RELEASE: &[Step<'_>] = &[
     ("both papers", &["xtask", "reproduce"]),
     ("the report in a browser", &["xtask", "report"]),
     ("instruction counts", &["xtask", "icount"]),
+    ("publishable crates", &["xtask", "package"]),
+    ("imports agree with Pinocchio", &["xtask", "import-check"]),
 ];
 
-/// The lane of the firmware's workspace.
+/// The lane of bare targets and of the firmware's workspace.
 const FIRMWARE: &[Step<'_>] = &[
+    ("bare-metal builds", &["xtask", "cross"]),
     ("lints of the firmware", &["xtask", "firmware-lints"]),
     ("no reachable panic", &["xtask", "smoke"]),
     ("host equals target", &["xtask", "qemu"]),

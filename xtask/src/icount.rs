@@ -39,11 +39,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     if !run::exists("valgrind") {
         run::install_debian(&["valgrind"])?;
     }
-    let counts = measure(&dynamics::build(
-        &run::root().join("target/icount"),
-        "",
-        dynamics::FEATURES,
-    )?)?;
+    let target = run::root().join("target");
+    let counts = measure(&dynamics::build(&target, "", dynamics::FEATURES)?)?;
     let path = run::root().join(GOLDEN);
     if args.overwrite {
         fs::write(&path, format(&counts)?).with_context(|| GOLDEN.to_owned())?;

@@ -52,9 +52,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let robots = robots(&python, &root, &folder, args.only.as_deref())?;
     let crates = folder.join("crates");
     run::remove_folder(&crates)?;
-    // Of the whole workspace, as its tests build it: nothing is compiled again.
+    // Of the whole workspace and with its examples, so that crates have the features that they have in its tests and are not compiled
+    // again.
     let mut build = run::cargo();
-    run::succeed(build.args(["build", "--quiet", "--workspace", "--bin", "saltus"]))?;
+    build.args(["build", "--quiet", "--workspace", "--examples"]);
+    run::succeed(build.args(["--bin", "saltus"]))?;
     let saltus = target(&root).join("debug/saltus");
     let imported = robots
         .iter()
@@ -217,7 +219,7 @@ fn write_workspace(root: &Path, folder: &Path, imported: &[Imported]) -> Result<
     fs::write(
         folder.join("Cargo.toml"),
         "[workspace]\nresolver = \"3\"\nmembers = [\"check\", \"crates/*\"]\n\n\
-         [profile.dev]\nopt-level = 1\ndebug = false\n",
+         [profile.dev]\ndebug = false\n",
     )?;
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock"))?;
     let mut manifest = format!(

@@ -94,8 +94,6 @@ where
     spatial::run::<T, R>(on);
     rbd::run::<T, R, _, 9, 15>(on, "kinds", &Kinds, &kinds::hand());
     rbd::run_table::<T, R, _, 9, 15>(on, "kinds-table", &Kinds, &kinds::hand());
-    #[cfg(feature = "introduce_panic")]
-    introduced::run(recorder);
 }
 
 /// The dynamics of A1.

@@ -34,6 +34,8 @@ where
     landing::run(on, &robot);
     on.name = "contact-sim";
     plant::run(on, &robot);
+    #[cfg(feature = "introduce_panic")]
+    crate::introduced::run(recorder);
 }
 
 /// The whole-body programs on iCub.
