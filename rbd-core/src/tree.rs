@@ -8,9 +8,10 @@
 
 use core::ops::Add;
 
+use heapless::Vec;
 use so3::Scalar;
 
-use crate::algo::{at, put};
+use crate::algo::at;
 use crate::joint::{
     JointKind, Kind, PrismaticTilted, PrismaticX, PrismaticY, PrismaticZ, RevoluteTilted,
     RevoluteX, RevoluteY, RevoluteZ,
@@ -148,8 +149,9 @@ pub fn walk<T: Scalar, F: Fold<T>, const N: usize>(
     fold: &mut F,
     base: &F::Down,
 ) -> F::Up {
-    let mut downs = [*base; N];
-    let mut keeps = [F::Keep::default(); N];
+    // Nothing is written before it is known: on the way down the two grow, on the way up the second shrinks.
+    let mut downs: Vec<F::Down, N> = Vec::new();
+    let mut keeps: Vec<F::Keep, N> = Vec::new();
     let mut ups = [F::Up::default(); N];
     let mut total = F::Up::default();
     let mut last = *base;
@@ -164,13 +166,14 @@ pub fn walk<T: Scalar, F: Fold<T>, const N: usize>(
             fold.down::<J>(At { index, end: body.subtree_end, body }, &parent)
         });
         last = down;
-        put(&mut downs, index, down);
-        put(&mut keeps, index, keep);
+        // There is room for every body.
+        let _ = (downs.push(down), keeps.push(keep));
     }
     // What goes to the body before: that need not go through memory either.
     let mut carried = F::Up::default();
     for (index, body) in bodies.iter().enumerate().take(count).rev() {
-        let (keep, children) = (at(&keeps, index), at(&ups, index) + carried);
+        let keep = keeps.pop().unwrap_or_default();
+        let children = at(&ups, index) + carried;
         carried = F::Up::default();
         let up = by_kind!(body.kind, J => {
             fold.up::<J>(At { index, end: body.subtree_end, body }, &keep, children)
