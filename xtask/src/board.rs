@@ -53,7 +53,7 @@ const fn starter(image: &'static str) -> Loops {
 }
 
 /// The image that is built quickest, and on every board: the proof that the proof can fail needs only one.
-pub(crate) const SMALLEST: &str = "control-a1-f32";
+pub(crate) const QUICKEST: &str = "control-a1-f32";
 
 pub(crate) const BOARDS: [Board; 3] = [
     Board {
@@ -69,7 +69,7 @@ pub(crate) const BOARDS: [Board; 3] = [
             "icub-f64",
             "icub-f32",
             "control-a1-f64",
-            SMALLEST,
+            QUICKEST,
             "control-icub-f64",
             "control-icub-f32",
             "planner-f64",
@@ -92,7 +92,7 @@ pub(crate) const BOARDS: [Board; 3] = [
             "basics-f64",
             "basics-f32",
             "a1-f32",
-            SMALLEST,
+            QUICKEST,
             "control-icub-f32",
         ],
         jumps: &["jump-a1-f32"],
@@ -105,7 +105,7 @@ pub(crate) const BOARDS: [Board; 3] = [
         target: "thumbv8m.main-none-eabihf",
         rustflags: &[],
         // The instruction memory holds 512 KiB: the basics are larger, and run on the other two.
-        images: &["a1-f32", SMALLEST],
+        images: &["a1-f32", QUICKEST],
         jumps: &["jump-a1-f32"],
         loops: &[],
     },

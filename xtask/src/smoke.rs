@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSymbol};
 
 use crate::bare::Bare;
-use crate::board::{SMALLEST, Selection};
+use crate::board::{QUICKEST, Selection};
 use crate::image::{Image, build_ahead};
 use crate::{panics, run};
 
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         println!("{}: {}; {bare}", board.name, board.processor);
         fails_with_panic(&Image {
             board,
-            name: SMALLEST,
+            name: QUICKEST,
             bare: &bare,
         })?;
         let names: Vec<_> = args.selection.images(board).collect();

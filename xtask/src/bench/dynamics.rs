@@ -152,7 +152,7 @@ fn programs(directory: &Path) -> Result<[Program; 5]> {
     ])
 }
 
-/// Builds our bench into a target folder of its own with the given compiler flags, and none that are around, and features.
+/// Builds our bench into a target folder, with the given features and compiler flags, and with no flags that are around.
 pub(crate) fn build(target: &Path, flags: &str, features: &str) -> Result<PathBuf> {
     run::succeed(
         run::cargo()
