@@ -6,7 +6,7 @@
 
 use so3::{Rotation3, Scalar};
 
-use crate::spatial::{Motion, Transform};
+use crate::spatial::{Motion, Transform, matrix_product, product};
 use crate::state::{Configuration, Tangent};
 
 /// q ⊕ d: where a constant velocity d leads in unit time. `d` may be a velocity times a time step.
@@ -22,7 +22,7 @@ pub fn integrate<T: Scalar, const N: usize>(
         *x += dx;
     }
     let (rotation, jacobian) = so3::exp_with_jacobian(w);
-    let step = Transform::new(rotation, jacobian * v);
+    let step = Transform::new(rotation, product(&jacobian, v));
     Configuration {
         base: q.base.compose(&step),
         joints,
@@ -39,11 +39,12 @@ pub fn difference<T: Scalar, const N: usize>(
     from: &Configuration<T, N>,
     to: &Configuration<T, N>,
 ) -> Tangent<T, N> {
-    let rot_wb = from.base.rotation.matrix();
-    let turn = rot_wb.tr_mul(to.base.rotation.matrix());
+    let rot_bw = from.base.rotation.matrix().transpose();
+    let turn = matrix_product(&rot_bw, to.base.rotation.matrix());
     let (angular, jacobian) =
         so3::log_with_jacobian_inverse(&Rotation3::from_matrix_unchecked(turn));
-    let linear = jacobian * rot_wb.tr_mul(&(to.base.translation - from.base.translation));
+    let shift_b = product(&rot_bw, &(to.base.translation - from.base.translation));
+    let linear = product(&jacobian, &shift_b);
     let mut joints = to.joints;
     for (x, &x0) in joints.iter_mut().zip(&from.joints) {
         *x -= x0;

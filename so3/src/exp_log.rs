@@ -53,8 +53,7 @@ pub fn exp_with_jacobian<T: Scalar>(w: &Vector3<T>) -> (Rotation3<T>, Matrix3<T>
 #[inline(always)]
 fn exponential<T: Scalar>(w: &Vector3<T>, theta_squared: T, a: T, b: T) -> Rotation3<T> {
     let cos = T::ONE - b * theta_squared;
-    let m = Matrix3::from_diagonal_element(cos) + hat(&(w * a)) + (w * b) * w.transpose();
-    Rotation3::from_matrix_unchecked(m)
+    Rotation3::from_matrix_unchecked(hat::combination(w, cos, a, b))
 }
 
 /// Rotation vector w with exp(w) = `rot` and |w| ≤ π: 2 atan2(|v|, s)/|v| v of the quaternion (v, s), in rad.
@@ -139,8 +138,5 @@ pub fn rotation_about<T: Scalar>(axis: &Unit<Vector3<T>>, angle: T) -> Rotation3
     let a = axis.as_ref();
     let (sin_h, cos_h) = math::sin_cos(angle * T::HALF);
     let (sin, versine) = (T::TWO * sin_h * cos_h, T::TWO * sin_h * sin_h);
-    let m = Matrix3::from_diagonal_element(T::ONE - versine)
-        + hat(&(a * sin))
-        + (a * versine) * a.transpose();
-    Rotation3::from_matrix_unchecked(m)
+    Rotation3::from_matrix_unchecked(hat::combination(a, T::ONE - versine, sin, versine))
 }

@@ -1,5 +1,6 @@
 //! The isomorphism between ℝ³ and so(3), the skew-symmetric 3×3 matrices.
 
+use crate::math::mul_add;
 use crate::{Matrix3, Scalar, Vector3};
 
 /// Skew-symmetric matrix of a vector: hat(w) v = w × v.
@@ -10,6 +11,25 @@ use crate::{Matrix3, Scalar, Vector3};
 pub fn hat<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
     let o = T::ZERO;
     Matrix3::new(o, -w.z, w.y, w.z, o, -w.x, -w.y, w.x, o)
+}
+
+/// d I + p A + q w wᵀ, A = hat(w): the form of every map of this crate, since A² = w wᵀ − θ² I.
+///
+/// Element by element: sums of whole matrices leave compilers with wide registers shuffling.
+#[inline(always)]
+pub(crate) fn combination<T: Scalar>(w: &Vector3<T>, d: T, p: T, q: T) -> Matrix3<T> {
+    let (a, b) = (w * p, w * q);
+    Matrix3::new(
+        mul_add(b.x, w.x, d),
+        mul_add(b.x, w.y, -a.z),
+        mul_add(b.x, w.z, a.y),
+        mul_add(b.y, w.x, a.z),
+        mul_add(b.y, w.y, d),
+        mul_add(b.y, w.z, -a.x),
+        mul_add(b.z, w.x, -a.y),
+        mul_add(b.z, w.y, a.x),
+        mul_add(b.z, w.z, d),
+    )
 }
 
 /// Vector of the skew-symmetric part of a matrix: vee(hat(w)) = w.

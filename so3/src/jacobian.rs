@@ -19,8 +19,7 @@ use crate::{Matrix3, Scalar, Vector3, hat, small_angle};
 #[inline(always)]
 pub(crate) fn polynomial<T: Scalar>(w: &Vector3<T>, p: T, q: T) -> Matrix3<T> {
     // A² = w wᵀ − θ² I
-    let diagonal = T::ONE - q * w.norm_squared();
-    Matrix3::from_diagonal_element(diagonal) + hat(&(w * p)) + (w * q) * w.transpose()
+    hat::combination(w, T::ONE - q * w.norm_squared(), p, q)
 }
 
 /// Left Jacobian of the exponential map, 3×3: I + b A + c A²; exp(w + δ) ≈ exp(J δ) exp(w).

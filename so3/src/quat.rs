@@ -11,7 +11,7 @@
 
 use nalgebra::Quaternion;
 
-use crate::{Error, Matrix3, Rotation3, Scalar, UnitQuaternion, Vector3, math, small_angle};
+use crate::{Error, Matrix3, Rotation3, Scalar, UnitQuaternion, Vector3, hat, math, small_angle};
 
 /// The quaternion [x, y, z, w] of a matrix times four times its largest component.
 ///
@@ -90,10 +90,8 @@ pub fn from_rotation<T: Scalar>(rot: &Rotation3<T>) -> UnitQuaternion<T> {
 pub fn to_rotation<T: Scalar>(quat: &UnitQuaternion<T>) -> Rotation3<T> {
     let (v, s) = (quat.imag(), quat.w);
     let scale = T::TWO / (v.norm_squared() + s * s);
-    let m = Matrix3::from_diagonal_element(T::ONE - scale * v.norm_squared())
-        + crate::hat(&(v * (scale * s)))
-        + (v * scale) * v.transpose();
-    Rotation3::from_matrix_unchecked(m)
+    let diagonal = T::ONE - scale * v.norm_squared();
+    Rotation3::from_matrix_unchecked(hat::combination(&v, diagonal, scale * s, scale))
 }
 
 /// Unit quaternion from numbers in the order x, y, z, w, normalised.

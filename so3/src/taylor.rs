@@ -24,9 +24,7 @@ pub fn exp_taylor4<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
     let theta_squared = w.norm_squared();
     let p = T::ONE - theta_squared * T::of(1.0 / 6.0);
     let q = T::HALF - theta_squared * T::of(1.0 / 24.0);
-    Matrix3::from_diagonal_element(T::ONE - q * theta_squared)
-        + hat(&(w * p))
-        + (w * q) * w.transpose()
+    hat::combination(w, T::ONE - q * theta_squared, p, q)
 }
 
 /// Partial derivatives ∂E₄/∂wᵢ of [`exp_taylor4`], three 3×3 matrices.

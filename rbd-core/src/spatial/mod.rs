@@ -47,3 +47,14 @@ pub(crate) fn product<T: Scalar>(m: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
         row(m.m31, m.m32, m.m33),
     )
 }
+
+/// A B, column by column.
+#[inline(always)]
+pub(crate) fn matrix_product<T: Scalar>(a: &Matrix3<T>, b: &Matrix3<T>) -> Matrix3<T> {
+    let column = |x, y, z| product(a, &Vector3::new(x, y, z));
+    Matrix3::from_columns(&[
+        column(b.m11, b.m21, b.m31),
+        column(b.m12, b.m22, b.m32),
+        column(b.m13, b.m23, b.m33),
+    ])
+}

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Vector3};
 use so3::Scalar;
 
-use super::{Force, Motion, cross, product};
+use super::{Force, Motion, cross, matrix_product, product};
 
 /// Pose of frame b in frame a: x_a = R_ab x_b + p_ab. Named `xf_ab` where it is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,9 +45,13 @@ impl<T: Scalar> Transform<T> {
     #[inline(always)]
     #[must_use]
     pub fn compose(&self, xf_bc: &Self) -> Self {
+        let rotation = self.rotation.matrix();
         Self {
-            rotation: self.rotation * xf_bc.rotation,
-            translation: self.translation + self.rotation * xf_bc.translation,
+            rotation: Rotation3::from_matrix_unchecked(matrix_product(
+                rotation,
+                xf_bc.rotation.matrix(),
+            )),
+            translation: self.translation + product(rotation, &xf_bc.translation),
         }
     }
 
