@@ -1,7 +1,9 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
 use crate::Error;
-use crate::kernels::{at, ceil4, dot_in, floor4, put, span_mut, sub_scaled_in};
+use crate::kernels::{
+    at, ceil4, dot_in, eliminate, floor4, put, scale_from, span_mut, sub_scaled_in,
+};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use so3::Scalar;
 
@@ -53,13 +55,11 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let tolerance = pivot_tolerance::<T>();
         for k in 0..n {
-            let Some((upper, lower)) = self.u.split_at_mut_checked(k + 1) else {
+            let Some((above, [row, ..])) = self.u.split_at_mut_checked(k) else {
                 break;
             };
-            let Some(pivot_row) = upper.last_mut() else {
-                break;
-            };
-            let mut d = at(pivot_row.as_slice(), k);
+            eliminate(row, above, &self.weight, k, end);
+            let mut d = at(row.as_slice(), k);
             let diagonal = at(&self.weight, k);
             if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
                 if d < -(T::of(4.0) * tolerance * (diagonal + T::EPSILON * scale)) {
@@ -68,19 +68,11 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
                 d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * scale;
                 self.proximal = true;
             }
-            let inverse = T::ONE / d;
-            put(&mut self.weight, k, inverse);
-            for (i, r) in lower.iter_mut().take(n - k - 1).enumerate() {
-                let f = at(pivot_row.as_slice(), k + 1 + i) * inverse;
-                if f != T::ZERO {
-                    let from = floor4(k + 1 + i);
-                    sub_scaled_in(r, f, pivot_row, from, end);
-                }
-            }
-            for v in span_mut(pivot_row, k + 1, n) {
-                *v *= inverse;
-            }
-            span_mut(pivot_row, floor4(k + 1), k + 1).fill(T::ZERO);
+            put(&mut self.weight, k, T::ONE / d);
+        }
+        for k in 0..n {
+            let Some(row) = self.u.get_mut(k) else { break };
+            scale_from(row, at(&self.weight, k), k + 1, end);
         }
         Ok(())
     }
@@ -101,7 +93,8 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
         let end = ceil4(self.dim, N);
-        for (k, r) in self.u.iter().take(self.dim).enumerate().rev() {
+        for k in (0..self.dim.min(N)).rev() {
+            let Some(r) = self.u.get(k) else { break };
             let from = floor4(k + 1);
             let s = dot_in(r, v, from, end);
             if let Some(e) = v.get_mut(k) {

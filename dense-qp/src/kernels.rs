@@ -33,8 +33,9 @@ pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
 #[inline(always)]
 pub(crate) fn dot_few<T: Scalar>(a: &[T], x: &[T], from: usize, to: usize) -> T {
     let mut sum = T::ZERO;
-    for (a, x) in span(a, from, to).iter().zip(span(x, from, to)) {
-        sum += *a * *x;
+    // By index: two iterators cost more than these few products.
+    for j in from..to.min(a.len()).min(x.len()) {
+        sum += at(a, j) * at(x, j);
     }
     sum
 }
@@ -99,6 +100,64 @@ pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
         for (y, x) in y1.iter_mut().zip(x1) {
             *y -= f * *x;
         }
+    }
+}
+
+/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on columns k, rounded down, up
+/// to `to`, a multiple of 4 (or N). Blocks of columns stay in registers while all rows pass.
+#[inline(never)]
+pub(crate) fn eliminate<T: Scalar, const N: usize>(
+    row: &mut [T; N],
+    above: &[[T; N]],
+    inverses: &[T; N],
+    k: usize,
+    to: usize,
+) {
+    let mut shares = [T::ZERO; N];
+    for ((f, a), w) in shares.iter_mut().zip(above).zip(inverses) {
+        *f = at(a, k) * *w;
+    }
+    let (y4, y1) = row.as_chunks_mut::<4>();
+    for block in k / 4..to / 4 {
+        let Some(y) = y4.get_mut(block) else { break };
+        let mut s = *y;
+        for (f, a) in shares.iter().zip(above) {
+            let Some(a) = a.as_chunks::<4>().0.get(block) else {
+                break;
+            };
+            s = [
+                s[0] - *f * a[0],
+                s[1] - *f * a[1],
+                s[2] - *f * a[2],
+                s[3] - *f * a[3],
+            ];
+        }
+        *y = s;
+    }
+    if to == N {
+        for (f, a) in shares.iter().zip(above) {
+            for (y, a) in y1.iter_mut().zip(a.as_chunks::<4>().1) {
+                *y -= *f * *a;
+            }
+        }
+    }
+}
+
+/// y ← f·y on columns `first..to` of a whole row, and zeros before them up to the kernels' width; `to` is a multiple of 4 (or N).
+#[inline(always)]
+pub(crate) fn scale_from<T: Scalar, const N: usize>(y: &mut [T; N], f: T, first: usize, to: usize) {
+    let (y4, y1) = y.as_chunks_mut::<4>();
+    for block in first / 4..to / 4 {
+        let Some(y) = y4.get_mut(block) else { break };
+        *y = y.map(|y| y * f);
+    }
+    if to == N {
+        for y in y1 {
+            *y *= f;
+        }
+    }
+    for column in floor4(first)..first {
+        put(y, column, T::ZERO);
     }
 }
 

@@ -48,12 +48,15 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             sound &= self.judge(i, v, *l, *u, &mut excess);
         }
         if self.p.lower.is_some() || self.p.upper.is_some() {
-            for i in 0..N {
-                let ((l, u), v) = (self.p.limits(M + i), at(&self.w.x, i));
-                if (v <= u && v >= l) || at(&self.w.bound_state, i) != 0 {
+            let none = ([-T::INFINITY; N], [T::INFINITY; N]);
+            let lower = self.p.lower.unwrap_or(&none.0);
+            let upper = self.p.upper.unwrap_or(&none.1);
+            for (i, (l, u)) in lower.iter().zip(upper).enumerate() {
+                let v = at(&self.w.x, i);
+                if (v <= *u && v >= *l) || at(&self.w.bound_state, i) != 0 {
                     continue;
                 }
-                sound &= self.judge(M + i, v, l, u, &mut excess);
+                sound &= self.judge(M + i, v, *l, *u, &mut excess);
             }
         }
         if !(sound && sum.is_finite_number()) {
