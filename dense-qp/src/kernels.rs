@@ -2,8 +2,8 @@
 //!
 //! Every access is by iterator or by `get`; out-of-range reads give nothing, out-of-range writes do
 //! nothing. The loops that write are calls: only across a call does the compiler know that the two
-//! slices do not overlap, and without that it spends more on checking than on computing. Callers keep indices in range, so the fall-backs never run; they exist so that no panic
-//! path is linked.
+//! slices do not overlap, and without that it spends more on checking than on computing. Callers keep
+//! indices in range, so the fall-backs never run; they exist so that no panic path is linked.
 
 use so3::Scalar;
 
@@ -103,8 +103,9 @@ pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
     }
 }
 
-/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on columns k, rounded down, up
-/// to `to`, a multiple of 4 (or N). Blocks of columns stay in registers while all rows pass.
+/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on
+/// columns k, rounded down, up to `to`, a multiple of 4 (or N). Blocks of columns stay in registers
+/// while all rows pass.
 #[inline(never)]
 pub(crate) fn eliminate<T: Scalar, const N: usize>(
     row: &mut [T; N],
@@ -143,7 +144,8 @@ pub(crate) fn eliminate<T: Scalar, const N: usize>(
     }
 }
 
-/// y ← f·y on columns `first..to` of a whole row, and zeros before them up to the kernels' width; `to` is a multiple of 4 (or N).
+/// y ← f·y on columns `first..to` of a whole row, and zeros before them up to the kernels' width; `to`
+/// is a multiple of 4 (or N).
 #[inline(always)]
 pub(crate) fn scale_from<T: Scalar, const N: usize>(y: &mut [T; N], f: T, first: usize, to: usize) {
     let (y4, y1) = y.as_chunks_mut::<4>();
