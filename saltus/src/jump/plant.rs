@@ -5,7 +5,11 @@ use super::{JOINTS, ROBOT, SPHERES, spheres};
 use crate::noise::Noise;
 use a1_model::{MOTORS, a1};
 use contact_sim::{Block, NativeSimulator, Settings, Simulator, Terrain};
+use nalgebra::Vector3;
 use rbd_core::{BaseBody, BaseKind, Body, TableModel, Tangent, Tree};
+
+/// How far a box reaches from the middle of a robot on it, m.
+const AROUND: f64 = 0.6;
 
 /// A simulator of A1.
 pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
@@ -189,19 +193,29 @@ fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
 #[cfg(not(feature = "mujoco"))]
 pub(crate) const NO_MUJOCO: &str = "this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`";
 
-/// The world of a task. The robot starts at height zero: on the floor, or on a box with the floor below.
+/// The world of a task. The robot starts at height zero: on the floor, with or without a box to jump onto, or on a box with the floor below.
 pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
-    let Some(edge) = task.edge else {
+    let Some(edge) = task.edge.filter(|edge| edge.drop != 0.0) else {
         return Terrain::FLAT;
     };
-    let (mut lower, mut upper) = ([-0.6, -0.6, -edge.drop], [0.6, 0.6, 0.0]);
-    if edge.sign > 0.0 {
-        upper[edge.axis] = edge.distance;
+    let onto = edge.drop < 0.0;
+    let floor = f64::min(-edge.drop, 0.0);
+    // Around where the robot stands, or lands, cut at the edge.
+    let middle = if onto { task.goal } else { Vector3::zeros() };
+    let mut lower = [middle.x - AROUND, middle.y - AROUND, floor];
+    let mut upper = [
+        middle.x + AROUND,
+        middle.y + AROUND,
+        f64::max(-edge.drop, 0.0),
+    ];
+    let cut = edge.sign * edge.distance;
+    if onto == (edge.sign > 0.0) {
+        lower[edge.axis] = cut;
     } else {
-        lower[edge.axis] = -edge.distance;
+        upper[edge.axis] = cut;
     }
     Terrain {
-        floor: -edge.drop,
+        floor,
         block: Some(Block { lower, upper }),
     }
 }

@@ -5,6 +5,7 @@ use super::{FOOT_COUNT, JOINTS};
 use crate::track::Track;
 use nalgebra::Vector3;
 use rbd_core::Transform;
+use srb_opt::Edge;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
 
 /// Coordinates of the robot.
@@ -23,7 +24,7 @@ const CONTACT_DT: f64 = 0.005;
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub(crate) const POSED: f64 = 0.05;
-/// How much farther than it is a box edge is taken to be, m.
+/// How much farther than it is a box edge is taken to be, m; that of a box to jump onto, nearer.
 const EDGE_MARGIN: f64 = 0.12;
 /// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
 /// largest.
@@ -147,10 +148,7 @@ impl<'a> Setup<'a> {
             clearances: &self.clearances,
             // A foot that grazes the edge of a box turns the robot over.
             swing_height: task.robot.foot_radius,
-            edge: rigid.edge.map(|mut edge| {
-                edge.distance += EDGE_MARGIN;
-                edge
-            }),
+            edge: rigid.edge.map(|edge| cautious(edge, &rigid.feet)),
             phases: &self.phases,
             reference: &self.reference,
             start: pose(&task.start.base, &task.start.joints),
@@ -187,6 +185,18 @@ impl<'a> Setup<'a> {
         let sample = self.task.problem.sample(k, &stage.state, &stage.control);
         sample.forces_w[foot]
     }
+}
+
+/// The edge, moved so that feet in the air keep away from it, but not into the feet that stand.
+fn cautious(mut edge: Edge<f64>, feet: &[srb_opt::Foot<f64>; FOOT_COUNT]) -> Edge<f64> {
+    if edge.drop < 0.0 {
+        let nearest = feet.iter().map(|foot| edge.sign * foot.pos_wf[edge.axis]);
+        let gap = edge.distance - nearest.fold(f64::NEG_INFINITY, f64::max);
+        edge.distance -= EDGE_MARGIN.min(0.5 * gap.max(0.0));
+    } else {
+        edge.distance += EDGE_MARGIN;
+    }
+    edge
 }
 
 /// Corners of the trunk, and knees.
