@@ -49,6 +49,21 @@ fn on_target(json: &Value) -> bool {
 }
 
 #[test]
+fn a_jump_onto_a_box_ends_on_it() {
+    let path = folder("onto.toml");
+    let forward = include_str!("../tasks/a1/forward-60.toml");
+    let table = "[box]\ndrop_m = -0.1\naxis = \"x\"\nside = 1\ndistance_m = 0.3\n\n[total]";
+    let onto = forward.replace("0.0, 0.0]", "0.0, 0.1]");
+    std::fs::write(&path, onto.replace("[total]", table)).unwrap();
+    let (json, out) = run(path.to_str().unwrap(), "0", "onto");
+    assert!(on_target(&json), "{json}");
+    assert_eq!(json["trunk_contact"], false);
+    // A robot beside the box would be 0.1 m too low.
+    assert!(json["final_position_error_m"].as_f64().unwrap() < 0.02);
+    assert!(out.join("report.html").exists());
+}
+
+#[test]
 fn lateral_lands_upright_on_its_target_and_leaves_a_report() {
     let (json, out) = run("a1/lateral", "0", "lateral");
     assert!(on_target(&json), "{json}");

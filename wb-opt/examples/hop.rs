@@ -52,6 +52,7 @@ fn main() -> Result<(), wb_opt::Error> {
         feet,
         clearances: &[],
         swing_height: -0.01,
+        swing_rise: 0.0,
         edge: None,
         phases: &phases,
         reference: &reference,

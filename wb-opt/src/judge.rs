@@ -200,7 +200,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         above: &mut impl FnMut(T),
     ) {
         let feet = self.feet.iter().zip(&sample.forces_w);
-        for ((foot, f), on) in feet.zip(self.contacts(k)) {
+        for (i, ((foot, f), on)) in feet.zip(self.contacts(k)).enumerate() {
             let point = sweep.point(&foot.point);
             if on {
                 let mut touching = point;
@@ -215,7 +215,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 sides.take(self.friction.sides()).for_each(&mut *above);
                 above(self.least_force - f.z);
             } else {
-                above(self.swing_height - self.over_ground(&point.pos).height);
+                above(self.least_height(k, i) - self.over_ground(&point.pos).height);
             }
         }
         for clearance in self.clearances {

@@ -5,8 +5,11 @@ use crate::friction::Friction;
 use crate::robot::{BASE, Point, Robot, TURN};
 use crate::state::Pose;
 use nalgebra::{Rotation3, Vector3};
-use so3::Scalar;
+use so3::{Scalar, math};
 use srb_opt::Edge;
+
+/// How fast [`Problem::swing_rise`] comes and goes, m/s.
+const CLIMB: f64 = 0.5;
 
 /// A foot: a point of the robot that may push against the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +69,9 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     pub clearances: &'a [Clearance<T>],
     /// Least height of a foot that is not in contact, m; negative lets it graze.
     pub swing_height: T,
+    /// How much more than that it keeps over the ground on its way, m: reached at 0.5 m/s from where it lifts off, left at
+    /// 0.5 m/s to where it touches down.
+    pub swing_rise: T,
     /// Box edge, if the ground has one.
     pub edge: Option<Edge<T>>,
     /// Contact phases in order.
@@ -131,6 +137,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     pub fn contacts(&self, k: usize) -> [bool; FEET] {
         self.phase_of(k)
             .map_or([false; FEET], |phase| phase.contacts)
+    }
+
+    /// Least height of a foot in the air in the middle of interval `k`, m.
+    pub(crate) fn least_height(&self, k: usize, foot: usize) -> T {
+        let in_air = |k: &usize| !self.contacts(*k).get(foot).is_none_or(|on| *on);
+        let sum = |time: T, k: usize| time + self.dt(k);
+        let half = self.dt(k) * T::HALF;
+        let before = (0..k).rev().take_while(in_air).fold(half, sum);
+        let after = (k.saturating_add(1)..self.intervals()).take_while(in_air);
+        let nearest = math::min(before, after.fold(half, sum));
+        self.swing_height + math::min(self.swing_rise, nearest * T::of(CLIMB))
     }
 
     /// Length of interval `k`, s; 0 at the last node.
@@ -200,6 +217,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.least_force >= T::ZERO && finite(&self.least_force),
             "least_force: must not be negative",
+        )?;
+        require(
+            self.swing_rise >= T::ZERO && finite(&self.swing_rise),
+            "swing_rise: must not be negative",
         )?;
         require(positive(self.drift), "drift: must be positive")?;
         let pose = |pose: &Pose<T, N>| {

@@ -175,8 +175,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         for clearance in self.clearances {
             push(clearance.height, T::INFINITY, units.position);
         }
-        for _ in 0..groups.swing {
-            push(self.swing_height, T::INFINITY, units.position);
+        let feet = self.contacts(k).into_iter().enumerate();
+        for (foot, _) in feet.filter(|(_, on)| !*on) {
+            push(self.least_height(k, foot), T::INFINITY, units.position);
         }
         if groups.limited > 0 {
             for limit in limits() {

@@ -219,3 +219,49 @@ pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
         block: Some(Block { lower, upper }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::terrain;
+    use crate::jump::task::Task;
+    use contact_sim::Terrain;
+    use nalgebra::Vector3;
+
+    /// Height of the probes over the ground, m.
+    const GAP: f64 = 5e-4;
+
+    /// Off and onto boxes, over all four edges: the robot stands on the ground at zero and lands on ground at the height of its goal, and
+    /// between them is the edge.
+    #[test]
+    fn the_robot_stands_and_lands_on_the_ground() {
+        let mut task = Task::load("a1/lateral-down").unwrap();
+        for drop in [0.3, -0.3] {
+            for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+                let edge = task.problem.edge.as_mut().unwrap();
+                (edge.drop, edge.axis, edge.sign) = (drop, axis, sign);
+                let distance = edge.distance;
+                task.edge = task.problem.edge;
+                task.goal = Vector3::new(0.1, -0.1, -drop);
+                task.goal[axis] = 0.7 * sign;
+                let terrain = terrain(&task);
+                let mut beside = Vector3::zeros();
+                beside[axis] = sign * (distance - 1e-3);
+                let mut beyond = Vector3::zeros();
+                beyond[axis] = sign * (distance + 1e-3);
+                for (place, wanted) in [
+                    (Vector3::zeros(), 0.0),
+                    (beside, 0.0),
+                    (beyond, -drop),
+                    (task.goal, -drop),
+                ] {
+                    let probe = place.xy().push(wanted + GAP);
+                    let found = terrain.touch(&probe, 0.0).depth;
+                    assert!((found + GAP).abs() < 1e-12, "{drop} {axis} {sign} {place}");
+                }
+            }
+        }
+        task.edge.as_mut().unwrap().drop = 0.0;
+        assert_eq!(terrain(&task), Terrain::FLAT);
+    }
+}

@@ -26,6 +26,10 @@ const FLIGHT_DT: f64 = 0.005;
 pub(crate) const POSED: f64 = 0.05;
 /// How much farther than it is a box edge is taken to be, m; that of a box to jump onto, nearer.
 const EDGE_MARGIN: f64 = 0.12;
+/// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
+const ONTO_SHARE: f64 = 0.35;
+/// Height over the ground that feet keep on their way onto a box, m.
+const ONTO_RISE: f64 = 0.03;
 /// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
 /// largest.
 const CONE_SHARE: f64 = 0.95;
@@ -148,6 +152,11 @@ impl<'a> Setup<'a> {
             clearances: &self.clearances,
             // A foot that grazes the edge of a box turns the robot over.
             swing_height: task.robot.foot_radius,
+            swing_rise: if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
+                ONTO_RISE
+            } else {
+                0.0
+            },
             edge: rigid.edge.map(|edge| cautious(edge, &rigid.feet)),
             phases: &self.phases,
             reference: &self.reference,
@@ -192,7 +201,7 @@ fn cautious(mut edge: Edge<f64>, feet: &[srb_opt::Foot<f64>; FOOT_COUNT]) -> Edg
     if edge.drop < 0.0 {
         let nearest = feet.iter().map(|foot| edge.sign * foot.pos_wf[edge.axis]);
         let gap = edge.distance - nearest.fold(f64::NEG_INFINITY, f64::max);
-        edge.distance -= EDGE_MARGIN.min(0.5 * gap.max(0.0));
+        edge.distance -= EDGE_MARGIN.min(ONTO_SHARE * gap.max(0.0));
     } else {
         edge.distance += EDGE_MARGIN;
     }

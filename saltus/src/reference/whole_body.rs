@@ -134,6 +134,7 @@ impl Data {
             feet: self.feet,
             clearances: &self.clearances,
             swing_height: SWING_HEIGHT,
+            swing_rise: 0.0,
             edge: self.edge,
             phases: &self.phases,
             reference: &self.reference,

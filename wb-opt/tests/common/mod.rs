@@ -114,6 +114,7 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
         }),
         clearances: &data.clearances,
         swing_height: -0.01,
+        swing_rise: 0.0,
         edge: None,
         phases: &data.phases,
         reference: &data.reference,
