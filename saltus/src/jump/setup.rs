@@ -3,7 +3,7 @@
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::track::Track;
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use rbd_core::Transform;
 use srb_opt::Edge;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
@@ -24,7 +24,7 @@ const CONTACT_DT: f64 = 0.005;
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub(crate) const POSED: f64 = 0.05;
-/// How much farther than it is a box edge is taken to be, m; that of a box to jump onto, nearer.
+/// How much farther than it is a box edge is taken to be at most, m; that of a box to jump onto, nearer.
 const EDGE_MARGIN: f64 = 0.12;
 /// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
 const ONTO_SHARE: f64 = 0.35;
@@ -157,7 +157,7 @@ impl<'a> Setup<'a> {
             } else {
                 0.0
             },
-            edge: rigid.edge.map(|edge| cautious(edge, &rigid.feet)),
+            edge: cautious(task),
             phases: &self.phases,
             reference: &self.reference,
             start: pose(&task.start.base, &task.start.joints),
@@ -196,16 +196,24 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// The edge, moved so that feet in the air keep away from it, but not into the feet that stand.
-fn cautious(mut edge: Edge<f64>, feet: &[srb_opt::Foot<f64>; FOOT_COUNT]) -> Edge<f64> {
-    if edge.drop < 0.0 {
-        let nearest = feet.iter().map(|foot| edge.sign * foot.pos_wf[edge.axis]);
-        let gap = edge.distance - nearest.fold(f64::NEG_INFINITY, f64::max);
-        edge.distance -= EDGE_MARGIN.min(ONTO_SHARE * gap.max(0.0));
+/// The edge of the task's box, moved so that feet in the air keep away from it, but neither to the feet that stand nor to where they land.
+fn cautious(task: &Task) -> Option<Edge<f64>> {
+    let mut edge = task.problem.edge?;
+    let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), task.heading);
+    let feet = task.problem.feet.map(|foot| foot.pos_wf);
+    let landed = feet.map(|foot| across(task.goal + turn * foot));
+    let stand = feet
+        .map(across)
+        .into_iter()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let land = landed.into_iter().fold(f64::INFINITY, f64::min);
+    edge.distance += if edge.drop < 0.0 {
+        -EDGE_MARGIN.min(ONTO_SHARE * -stand.min(0.0))
     } else {
-        edge.distance += EDGE_MARGIN;
-    }
-    edge
+        EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0))
+    };
+    Some(edge)
 }
 
 /// Corners of the trunk, and knees.
