@@ -141,7 +141,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
 
     /// Least height of a foot in the air in the middle of interval `k`, m.
     pub(crate) fn least_height(&self, k: usize, foot: usize) -> T {
-        let in_air = |k: &usize| !self.contacts(*k).get(foot).is_none_or(|on| *on);
+        let in_air = |k: &usize| self.contacts(*k).get(foot).is_some_and(|on| !*on);
         let sum = |time: T, k: usize| time + self.dt(k);
         let half = self.dt(k) * T::HALF;
         let before = (0..k).rev().take_while(in_air).fold(half, sum);

@@ -1,9 +1,10 @@
 //! The whole-body problem of a task along a motion of the rigid body: the geared A1 on rolling ball feet, with margins.
 
+use super::reference::heading_matrix;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::track::Track;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 use rbd_core::Transform;
 use srb_opt::Edge;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
@@ -200,7 +201,7 @@ impl<'a> Setup<'a> {
 fn cautious(task: &Task) -> Option<Edge<f64>> {
     let mut edge = task.problem.edge?;
     let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
-    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), task.heading);
+    let turn = heading_matrix(task.heading);
     let feet = task.problem.feet.map(|foot| foot.pos_wf);
     let landed = feet.map(|foot| across(task.goal + turn * foot));
     let stand = feet
@@ -257,4 +258,31 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
     let states = srb.stages.iter().map(|stage| &stage.state);
     let poses = states.map(|state| (state.pos_w - state.rot_wb * com_b, state.rot_wb));
     Track::new(times, poses)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{EDGE_MARGIN, cautious};
+    use crate::jump::task::Task;
+
+    /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
+    fn moved(aside: f64, drop: f64) -> f64 {
+        let mut task = Task::load("a1/lateral-down").unwrap();
+        task.goal.y = aside;
+        task.problem.edge.as_mut().unwrap().drop = drop;
+        cautious(&task).unwrap().distance - task.problem.edge.unwrap().distance
+    }
+
+    #[test]
+    fn edges_are_moved_away_from_feet_in_the_air_and_not_into_others() {
+        assert!((moved(0.5, 0.3) - EDGE_MARGIN).abs() < 1e-12);
+        // The right feet land 0.13 m right of the goal, the edge is 0.18 m left of the start.
+        let near = moved(0.4, 0.3);
+        assert!(near > 0.01 && near < 0.04, "{near}");
+        assert_eq!(moved(0.32, 0.3), 0.0);
+        // Onto a box: towards the left feet, 0.05 m before it, and not as far as they are.
+        let onto = moved(0.5, -0.3);
+        assert!(onto < -0.01 && onto > -0.03, "{onto}");
+    }
 }
