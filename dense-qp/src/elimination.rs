@@ -261,6 +261,23 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
+    /// y ← t_F + |W|ᵀ t_B: sizes of the terms of [`Elimination::reduce`] from those of its entries.
+    pub(crate) fn reduce_sizes(&self, t: &[T; N], y: &mut [T; N]) {
+        if self.rank == 0 {
+            *y = *t;
+            return;
+        }
+        for (y, v) in y.iter_mut().zip(self.free_variables()) {
+            *y = at(t, *v);
+        }
+        let basic = self.lu.iter().zip(&self.perm).take(self.rank);
+        for (w, v) in basic.skip(self.fixed) {
+            let f = at(t, *v);
+            let shares = y.iter_mut().zip(span(w, self.rank, N));
+            shares.for_each(|(y, w)| *y += math::abs(f * *w));
+        }
+    }
+
     /// [`Elimination::reduce`] of the unit row of `variable`.
     pub(crate) fn reduce_unit(&self, variable: usize, y: &mut [T; N]) {
         y.fill(T::ZERO);

@@ -32,9 +32,9 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         }
     }
 
-    /// Factorises in place. A pivot that is zero to round-off gets a proximal weight: the factor is
-    /// then that of H + P with P ≥ 0 diagonal, and the caller iterates (see [`crate`], proximal steps).
-    /// `reference` sets the weight's scale when H is zero altogether.
+    /// Factorises in place. A pivot that is zero to round-off gets a proximal weight, a share of its own variable's curvature
+    /// so that units do not matter: the factor is then that of H + P with P ≥ 0 diagonal, and the caller iterates (see
+    /// [`crate`], proximal steps). A variable without any takes the largest curvature, and `reference` where H is zero.
     pub(crate) fn factorise(&mut self, reference: T) -> Result<(), Error> {
         let n = self.dim;
         let end = ceil4(n, N);
@@ -54,6 +54,8 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         self.proximal = false;
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let tolerance = pivot_tolerance::<T>();
+        // Share of its diagonal that the smallest pivot so far has kept: round-off in those after it grows by the inverse.
+        let mut least = T::ONE;
         for k in 0..n {
             let Some((above, [row, ..])) = self.u.split_at_mut_checked(k) else {
                 break;
@@ -62,11 +64,19 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             let mut d = at(row.as_slice(), k);
             let diagonal = at(&self.weight, k);
             if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
-                if d < -(T::of(4.0) * tolerance * (diagonal + T::EPSILON * scale)) {
+                let grown = so3::math::max(T::of(4.0) * tolerance, T::of(64.0) * T::EPSILON / least);
+                if d < -(grown * (diagonal + T::EPSILON * scale)) {
                     return Err(Error::HessianNotConvex(k));
                 }
-                d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * scale;
+                let own = if diagonal > T::EPSILON * T::EPSILON * scale {
+                    diagonal
+                } else {
+                    scale
+                };
+                d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * own;
                 self.proximal = true;
+            } else if d < least * diagonal {
+                least = d / diagonal;
             }
             put(&mut self.weight, k, T::ONE / d);
         }

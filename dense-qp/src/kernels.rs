@@ -40,6 +40,12 @@ pub(crate) fn dot_few<T: Scalar>(a: &[T], x: &[T], from: usize, to: usize) -> T 
     sum
 }
 
+/// Σ |aᵢbᵢ|: with ε the round-off of aᵀb.
+pub(crate) fn dot_sizes<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let terms = a.iter().zip(b).map(|(a, b)| so3::math::abs(*a * *b));
+    terms.fold(T::ZERO, |sum, term| sum + term)
+}
+
 /// y ← y − f·x.
 #[inline(never)]
 pub(crate) fn sub_scaled<T: Scalar>(y: &mut [T], f: T, x: &[T]) {

@@ -122,6 +122,16 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         }
     }
 
+    /// Σ |aᵢⱼxⱼ| of row `i` (i < M) or |x| of variable `i − M`: the size of the terms of [`Problem::value`].
+    pub(crate) fn size_at(&self, i: usize, x: &[T; N]) -> T {
+        if i < M {
+            let (from, a) = self.entries(i);
+            crate::kernels::dot_sizes(a, span(x, from, N))
+        } else {
+            math::abs(at(x, i - M))
+        }
+    }
+
     /// y ← y + f·aᵢ.
     #[inline(always)]
     pub(crate) fn add_row(&self, i: usize, f: T, y: &mut [T; N]) {

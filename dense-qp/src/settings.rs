@@ -12,9 +12,11 @@ pub struct Settings<T> {
     /// With it the time of a solve has a bound; without it an iteration may stand for up to 2N rows.
     pub max_steps: u32,
     /// How far outside a row the solution may lie, as a distance: violation / max|aᵢ|. The round-off
-    /// of evaluating the row, 32·ε·‖x‖₁, is allowed in any case.
+    /// of evaluating the row, 32·ε·Σ|aᵢⱼxⱼ|, is allowed in any case.
     pub feasibility: T,
-    /// Largest entry of Hx + g + Aᵀλ + μ relative to the largest entry of its terms.
+    /// Largest entry of Hx + g + Aᵀλ + μ relative to the largest entry of its terms, and the cost that is left to gain relative to the
+    /// terms of the cost, Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), which does not depend on units. An entry that is round-off of its own terms is
+    /// allowed in any case.
     pub optimality: T,
 }
 

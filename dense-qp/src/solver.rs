@@ -8,6 +8,7 @@
 //! repeats (Goldfarb and Idnani 1983; the LDLᵀ form of the same idea is in Arnström et al. 2022).
 
 mod exchange;
+mod gauge;
 mod newton;
 mod outcome;
 mod proof;
@@ -73,8 +74,10 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     iterations: u32,
     /// Iterations, and remembered rows that entered or left.
     steps: u32,
-    /// Distance outside a row that counts as violated, at the present x.
-    tolerance: T,
+    /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
+    worth: T,
+    /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
+    toll: T,
     /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
@@ -94,7 +97,8 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             w: workspace,
             iterations: 0,
             steps: 0,
-            tolerance: T::ZERO,
+            worth: T::ZERO,
+            toll: T::ZERO,
             primal: T::ZERO,
         }
     }
@@ -244,24 +248,21 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 }
                 Pass::Stop(status) => return Ok(status),
             }
-            let scale = self.evaluate_gradient();
-            let residual = self.reduced_residual();
-            let drift = self.drift();
-            let (dual, primal) = (self.s.optimality * scale, self.s.feasibility);
-            let merit = math::max(residual * primal, drift * dual);
-            let progress = merit < last * T::HALF;
-            // Well inside the tolerances, or inside and no longer improving.
-            let margin = T::of(0.01);
-            if !(scale.is_finite_number() && drift.is_finite_number()) {
+            let rest = self.measure();
+            if !(rest.scale.is_finite_number() && rest.drift.is_finite_number()) {
                 return Ok(Status::Numerical);
             }
-            if (residual <= margin * dual && drift <= margin * primal)
-                || (residual <= dual && drift <= self.tolerance && !progress)
-            {
+            if self.is_tight(&rest) {
                 return Ok(Status::Solved);
             }
+            let (dual, primal) = (self.s.optimality * rest.scale, self.s.feasibility);
+            let merit = math::max(rest.residual * primal, rest.drift * dual);
+            let progress = merit < last * T::HALF;
             if !progress {
                 stalls += 1;
+                if self.is_within(&rest) {
+                    return Ok(Status::Solved);
+                }
             }
             if self.w.factor.proximal
                 && let Some(status) = self.ray_step()

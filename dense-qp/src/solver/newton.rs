@@ -1,44 +1,12 @@
 //! Newton corrections of (x, λ) for the active rows.
 
-use so3::{Scalar, math};
+use so3::Scalar;
 
-use super::{Search, scale_inverse, signed};
-use crate::kernels::{at, dot, put};
-use crate::residual::worse;
+use super::Search;
+use crate::Workspace;
+use crate::kernels::{at, put};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// gradient ← Hx + g + N_Wᵀλ; returns the size of its largest term.
-    pub(super) fn evaluate_gradient(&mut self) -> T {
-        let w = &mut *self.w;
-        let mut scale = T::ZERO;
-        for ((out, h), g) in w
-            .gradient
-            .iter_mut()
-            .zip(self.p.hessian)
-            .zip(self.p.gradient)
-        {
-            let hx = dot(h, &w.x);
-            scale = worse(scale, worse(math::abs(hx), math::abs(*g)));
-            *out = hx + *g;
-        }
-        for k in 0..w.basis.len {
-            let (id, f) = (at(&w.id, k), signed(at(&w.side, k), at(&w.lambda, k)));
-            scale = worse(
-                scale,
-                math::abs(f) / scale_inverse::<T, N, M>(self.p, w, id),
-            );
-            self.p.add_row(id, f, &mut w.gradient);
-        }
-        scale
-    }
-
-    /// Largest entry of Zᵀ·gradient (left in `vec_a`).
-    pub(super) fn reduced_residual(&mut self) -> T {
-        let w = &mut *self.w;
-        w.elimination.reduce(&w.gradient, &mut w.vec_a);
-        crate::residual::norm(crate::kernels::head(&w.vec_a, w.factor.dim))
-    }
-
     /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops
     /// rows until no multiplier is negative. `known` says that [`Search::newton`] has just been called.
     pub(super) fn correct(&mut self, known: bool) {
@@ -74,16 +42,17 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// multipliers take the rest.
     fn newton(&mut self) {
         let w = &mut *self.w;
-        w.elimination.reduce(&w.gradient, &mut w.vec_a);
-        w.candidate.d.fill(T::ZERO);
-        for (i, g) in w.vec_a.iter().enumerate().take(w.factor.dim) {
-            w.basis.add_coordinates(i, *g, &mut w.candidate.d);
-        }
+        w.gradient_coordinates();
         for k in 0..self.w.basis.len {
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
             let e = self.excess(id, side);
             put(&mut self.w.vec_b, k, e);
         }
+        self.aim();
+    }
+
+    /// The rest of [`Search::newton`], from the gradient in the candidate and the rows' excesses in `vec_b`.
+    pub(super) fn aim(&mut self) {
         let w = &mut *self.w;
         w.basis.solve_transposed(&mut w.vec_b);
         let rows = w.candidate.d.iter_mut().zip(&mut w.vec_b);
@@ -143,6 +112,18 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.answer();
             self.turn();
             self.advance(-value);
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
+    /// Coordinates of `gradient` in the basis, into the candidate.
+    #[inline(always)]
+    pub(super) fn gradient_coordinates(&mut self) {
+        self.elimination.reduce(&self.gradient, &mut self.vec_a);
+        self.candidate.d.fill(T::ZERO);
+        for (i, g) in self.vec_a.iter().enumerate().take(self.factor.dim) {
+            self.basis.add_coordinates(i, *g, &mut self.candidate.d);
         }
     }
 }

@@ -3,9 +3,9 @@
 use so3::{Scalar, math};
 
 use super::outcome::set_multiplier;
-use super::{EQUALITY, Search, scale_inverse};
+use super::{EQUALITY, Search, signed};
 use crate::Status;
-use crate::kernels::{at, dot, max_abs};
+use crate::kernels::{at, dot, dot_sizes, max_abs, put, sub_scaled};
 use crate::residual::{infeasibility, worse};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
@@ -60,70 +60,185 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 *y * inverse
             };
         }
-        let proof = infeasibility(self.p, &w.row_multipliers, &w.bound_multipliers);
-        let reach = math::max(T::ONE, max_abs(&w.x)) * T::of(10.0);
-        if proof.support < T::ZERO && proof.combination * reach <= -proof.support {
+        if self.is_contradiction() {
             Status::Infeasible
         } else {
             Status::Numerical
         }
     }
 
-    /// Without curvature along the last proximal step, goes on to the first limit; if there is none
-    /// the cost has no minimum.
+    /// Whether the caller's own numbers confirm the multipliers as a proof: with c = Aᵀy + μ, every feasible x has cᵀx ≤ support, so
+    /// that its least value over the bounds must exceed `support`, by more than the round-off of both. An entry of c that is round-off
+    /// of its terms counts as zero. One that is more and has no bound to multiply leaves a proof that no feasible point is within ten
+    /// times the reach of the present one.
+    fn is_contradiction(&self) -> bool {
+        let (rows, bounds) = (&self.w.row_multipliers, &self.w.bound_multipliers);
+        let noise = T::of(32.0) * T::EPSILON;
+        let proof = infeasibility(self.p, rows, bounds);
+        let (mut least, mut terms, mut open) = (T::ZERO, T::ZERO, T::ZERO);
+        for (i, y) in rows.iter().chain(bounds).enumerate() {
+            let (l, u) = self.p.limits(i);
+            if *y != T::ZERO {
+                terms += math::abs(*y * if *y > T::ZERO { u } else { l });
+            }
+        }
+        for (i, mu) in bounds.iter().enumerate() {
+            let (mut c, mut size) = (*mu, math::abs(*mu));
+            for (a, y) in self.p.rows.iter().zip(rows) {
+                if *y != T::ZERO {
+                    let term = at(a, i) * *y;
+                    c += term;
+                    size += math::abs(term);
+                }
+            }
+            if math::abs(c) <= noise * size {
+                continue;
+            }
+            let (l, u) = self.p.limits(M + i);
+            let value = c * if c > T::ZERO { l } else { u };
+            if value.is_finite_number() {
+                least += value;
+                terms += math::abs(value);
+            } else {
+                open = worse(open, math::abs(c));
+            }
+        }
+        let gap = least - proof.support;
+        let reach = math::max(T::ONE, max_abs(&self.w.x)) * T::of(10.0);
+        gap > noise * terms && open * reach <= gap
+    }
+
+    /// Along the last proximal step: goes on to where the cost is least or the first limit stops it, which is far where the curvature
+    /// is small beside the proximal weight. Without curvature and limits the cost has no minimum.
     pub(super) fn ray_step(&mut self) -> Option<Status> {
         let w = &mut *self.w;
-        for ((s, x), before) in w.step.iter_mut().zip(&w.x).zip(&w.previous) {
-            *s = *x - *before;
+        let mut length = T::ZERO;
+        for (before, x) in w.previous.iter_mut().zip(&w.x) {
+            *before = *x - *before;
+            length = worse(length, math::abs(*before));
         }
-        let length = max_abs(&w.step);
         if !(length > T::ZERO && length.is_finite_number()) {
             return None;
         }
-        let mut slope = T::ZERO;
-        let (mut curvature, mut size) = (T::ZERO, T::ZERO);
-        for s in &mut w.step {
+        for s in &mut w.previous {
             *s /= length;
         }
-        for (h, (g, s)) in self
-            .p
-            .hessian
-            .iter()
-            .zip(self.p.gradient.iter().zip(&w.step))
-        {
-            curvature = worse(curvature, math::abs(dot(h, &w.step)));
-            size = worse(size, max_abs(h));
-            slope += *g * *s;
-        }
-        let small = T::of(1e5) * T::EPSILON;
-        if !(curvature <= small * size && slope < -(small * max_abs(self.p.gradient))) {
+        let course = self.course();
+        if course.slope >= -course.slope_noise {
             return None;
         }
-        let mut reach = T::INFINITY;
+        let is_flat = course.curvature <= course.curvature_noise;
+        let best = if is_flat {
+            T::INFINITY
+        } else {
+            -course.slope / course.curvature
+        };
+        // The next proximal step gets there as well.
+        if best <= length {
+            return None;
+        }
+        let far = self.first_limit();
+        if far == T::INFINITY && is_flat {
+            self.purify();
+            return self.is_ray().then_some(Status::Unbounded);
+        }
+        let w = &mut *self.w;
+        sub_scaled(&mut w.x, -math::min(best, far), &w.previous);
+        self.evaluate_gradient();
+        None
+    }
+
+    /// Slope and curvature of the cost at x along `previous`.
+    fn course(&self) -> Course<T> {
+        let (x, d) = (&self.w.x, &self.w.previous);
+        let mut course = Course {
+            slope: T::ZERO,
+            slope_noise: T::ZERO,
+            curvature: T::ZERO,
+            curvature_noise: T::ZERO,
+        };
+        for (i, (h, g)) in self.p.hessian.iter().zip(self.p.gradient).enumerate() {
+            let (di, hd, size) = (at(d, i), dot(h, d), dot_sizes(h, d));
+            course.curvature += di * hd;
+            course.curvature_noise += math::abs(di) * size;
+            course.slope += *g * di + hd * at(x, i);
+            course.slope_noise += math::abs(*g * di) + size * math::abs(at(x, i));
+        }
+        let noise = T::of(32.0) * T::EPSILON;
+        course.curvature_noise *= noise;
+        course.slope_noise *= noise;
+        course
+    }
+
+    /// How far x can go along `previous`.
+    fn first_limit(&self) -> T {
+        let mut far = T::INFINITY;
         for i in 0..M + N {
             if self.w.state(i) == EQUALITY {
                 continue;
             }
             let (l, u) = self.p.limits(i);
-            let rate = self.p.value(i, &self.w.step);
-            let scale = T::ONE / scale_inverse::<T, N, M>(self.p, self.w, i);
-            let value = self.p.value(i, &self.w.x);
-            let room = if rate > small * scale {
-                (u - value) / rate
-            } else if rate < -(small * scale) {
-                (l - value) / rate
-            } else {
-                continue;
-            };
-            reach = math::min(reach, math::max(room, T::ZERO));
+            let rate = self.p.value(i, &self.w.previous);
+            let limit = if rate > T::ZERO { u } else { l };
+            let least = T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.previous);
+            if limit.is_finite_number() && math::abs(rate) > least {
+                let room = (limit - self.p.value(i, &self.w.x)) / rate;
+                far = math::min(far, math::max(room, T::ZERO));
+            }
         }
-        if reach == T::INFINITY {
-            self.w.previous = self.w.step;
-            return Some(Status::Unbounded);
-        }
-        let w = &mut *self.w;
-        crate::kernels::sub_scaled(&mut w.x, -reach, &w.step);
-        self.evaluate_gradient();
-        None
+        far
     }
+
+    /// Takes out of the direction in `previous` what the equalities, the active rows and H do not allow and round-off of x has left in
+    /// it: one proximal step from it without a gradient.
+    fn purify(&mut self) {
+        let w = &mut *self.w;
+        w.elimination.complete(&mut w.previous, &mut w.vec_a);
+        w.basis.prepare(&w.factor);
+        for (out, h) in w.gradient.iter_mut().zip(self.p.hessian) {
+            *out = dot(h, &w.previous);
+        }
+        w.gradient_coordinates();
+        for k in 0..w.basis.len {
+            let (id, side) = (at(&w.id, k), at(&w.side, k));
+            let rate = self.p.value(id, &w.previous);
+            put(&mut w.vec_b, k, signed(side, rate));
+        }
+        self.aim();
+        let w = &mut *self.w;
+        let free = w.elimination.free_variables();
+        w.basis.direction(0, &w.candidate.d, free, &mut w.step);
+        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        sub_scaled(&mut w.previous, T::ONE, &w.step);
+        let length = max_abs(&w.previous);
+        for d in &mut w.previous {
+            *d /= length;
+        }
+    }
+
+    /// Whether the caller's own numbers confirm the direction in `previous` as one along which the cost falls without end: no
+    /// curvature, no finite limit ahead, a slope below zero, each up to round-off of its own terms.
+    fn is_ray(&self) -> bool {
+        let d = &self.w.previous;
+        let noise = T::of(64.0) * T::EPSILON;
+        let straight = |h: &[T; N]| math::abs(dot(h, d)) <= noise * dot_sizes(h, d);
+        let clear = |i: usize| {
+            let (l, u) = self.p.limits(i);
+            let (rate, least) = (self.p.value(i, d), noise * self.p.size_at(i, d));
+            (rate <= least || u == T::INFINITY) && (rate >= -least || l == -T::INFINITY)
+        };
+        // The slope is told from round-off by a share that its own terms leave no doubt about.
+        let (slope, terms) = (dot(self.p.gradient, d), dot_sizes(self.p.gradient, d));
+        slope < -(T::of(16.0) * noise * terms)
+            && self.p.hessian.iter().all(straight)
+            && (0..M + N).all(clear)
+    }
+}
+
+/// The cost along a direction.
+struct Course<T> {
+    slope: T,
+    slope_noise: T,
+    curvature: T,
+    curvature_noise: T,
 }

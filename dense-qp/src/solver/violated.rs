@@ -23,11 +23,6 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         for v in &self.w.x {
             length += math::abs(*v);
         }
-        let round_off = T::of(32.0) * T::EPSILON * length;
-        self.tolerance = math::min(
-            math::max(self.s.feasibility, round_off),
-            T::of(1000.0) * self.s.feasibility,
-        );
         self.primal = T::ZERO;
         self.w.pool_len = 0;
         let mut sound = length.is_finite_number();
@@ -80,21 +75,25 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             (l - v, -1)
         };
         self.primal = math::max(self.primal, e);
-        let scaled = e * scale_inverse::<T, N, M>(self.p, self.w, i);
-        if scaled > self.tolerance {
+        let inverse = scale_inverse::<T, N, M>(self.p, self.w, i);
+        let scaled = e * inverse;
+        let limit = if side > 0 { u } else { l };
+        if scaled > self.s.feasibility && scaled > self.row_noise(i, limit, inverse) {
             pool_insert(self.w, excess, scaled, (i, side));
         }
         true
     }
 
     /// How far x is from the limits of the active rows and the equalities, relative to their scale;
-    /// NaN if a number is bad. Completes `primal`.
+    /// NaN if a number is bad. Completes `primal`, and sets `toll`.
     pub(super) fn drift(&mut self) -> T {
         let mut drift = T::ZERO;
+        self.toll = T::ZERO;
         for k in 0..self.w.basis.len {
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
             let e = self.excess(id, side);
             self.primal = worse(self.primal, e);
+            self.toll += math::abs(at(&self.w.lambda, k) * e);
             drift = worse(
                 drift,
                 math::abs(e) * scale_inverse::<T, N, M>(self.p, self.w, id),
@@ -114,15 +113,21 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// used up.
     pub(super) fn next(&mut self) -> Result<Option<(usize, i8)>, Status> {
         for refilled in [false, true] {
-            let (mut worst, mut found) = (self.tolerance, None);
+            let (mut worst, mut found) = (self.s.feasibility, None);
             for k in 0..self.w.pool_len {
                 let (id, side) = at(&self.w.pool, k);
                 if self.w.state(id) != 0 {
                     continue;
                 }
-                let e = self.excess(id, side) * scale_inverse::<T, N, M>(self.p, self.w, id);
-                if e > worst {
-                    (worst, found) = (e, Some((id, side)));
+                let e = self.excess(id, side);
+                let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
+                let scaled = e * inverse;
+                if scaled > worst {
+                    let (l, u) = self.p.limits(id);
+                    let limit = if side > 0 { u } else { l };
+                    if scaled > self.row_noise(id, limit, inverse) {
+                        (worst, found) = (scaled, Some((id, side)));
+                    }
                 }
             }
             if found.is_some() || refilled {

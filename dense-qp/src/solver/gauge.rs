@@ -1,0 +1,168 @@
+//! How far the present point is from optimal, and whether what is left is round-off.
+
+use so3::{Scalar, math};
+
+use super::{EQUALITY, Search, scale_inverse, signed};
+use crate::kernels::{at, dot, dot_sizes, head, max_abs};
+use crate::residual::{norm, worse};
+
+/// What is left at a point that meets all rows.
+pub(super) struct Rest<T> {
+    /// Largest reduced entry of Hx + g + Aᵀλ, and of its terms.
+    pub(super) residual: T,
+    pub(super) scale: T,
+    /// Largest distance of an active row from its limit.
+    pub(super) drift: T,
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
+    /// gradient ← Hx + g + N_Wᵀλ; returns the size of its largest term.
+    pub(super) fn evaluate_gradient(&mut self) -> T {
+        let w = &mut *self.w;
+        let mut scale = T::ZERO;
+        let mut worth = T::ZERO;
+        for (((out, h), g), x) in w
+            .gradient
+            .iter_mut()
+            .zip(self.p.hessian)
+            .zip(self.p.gradient)
+            .zip(&w.x)
+        {
+            let hx = dot(h, &w.x);
+            let (share, push) = (math::abs(hx), math::abs(*g));
+            scale = worse(scale, worse(share, push));
+            worth += math::abs(*x) * (share + push);
+            *out = hx + *g;
+        }
+        self.worth = worth;
+        for k in 0..w.basis.len {
+            let (id, f) = (at(&w.id, k), signed(at(&w.side, k), at(&w.lambda, k)));
+            scale = worse(
+                scale,
+                math::abs(f) / scale_inverse::<T, N, M>(self.p, w, id),
+            );
+            self.p.add_row(id, f, &mut w.gradient);
+        }
+        scale
+    }
+
+    /// Measures the present point; leaves Zᵀ·gradient in `vec_a`.
+    pub(super) fn measure(&mut self) -> Rest<T> {
+        let scale = self.evaluate_gradient();
+        let w = &mut *self.w;
+        w.elimination.reduce(&w.gradient, &mut w.vec_a);
+        let residual = norm(head(&w.vec_a, w.factor.dim));
+        let drift = self.drift();
+        Rest {
+            residual,
+            scale,
+            drift,
+        }
+    }
+
+    /// Far inside all tolerances. `vec_a` as [`Search::measure`] left it.
+    pub(super) fn is_tight(&self, rest: &Rest<T>) -> bool {
+        let margin = T::of(0.01);
+        let least = margin * self.s.optimality;
+        if !(rest.residual <= least * rest.scale && rest.drift <= margin * self.s.feasibility) {
+            return false;
+        }
+        // rᵀH⁻¹r with D for H: the margin stands for what U would add.
+        let w = &*self.w;
+        let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
+        let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
+        gain + self.toll <= least * self.worth
+    }
+
+    /// Inside the tolerances, or as near as round-off lets a point come. `vec_a` as [`Search::measure`] left it.
+    pub(super) fn is_within(&mut self, rest: &Rest<T>) -> bool {
+        if rest.drift > self.s.feasibility && !self.is_drift_round_off() {
+            return false;
+        }
+        let reduced = self.w.vec_a;
+        if rest.residual <= self.s.optimality * rest.scale {
+            let w = &mut *self.w;
+            w.factor.solve_transposed(&mut w.vec_a);
+            let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
+            let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
+            if gain + self.toll <= self.s.optimality * self.worth {
+                return true;
+            }
+        }
+        self.is_gradient_round_off(&reduced)
+    }
+
+    /// Round-off of evaluating row `i` at the present x, as a distance; `inverse` is the row's scale, `limit` its limit. What it hides
+    /// where x has run away has a bound.
+    #[inline]
+    pub(super) fn row_noise(&self, i: usize, limit: T, inverse: T) -> T {
+        let noise = T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.x) * inverse;
+        let most = T::of(1000.0) * self.s.feasibility;
+        math::min(noise, most * math::max(T::ONE, math::abs(limit) * inverse))
+    }
+
+    fn is_drift_round_off(&mut self) -> bool {
+        for i in 0..M + N {
+            let state = self.w.state(i);
+            if state == 0 || (state == EQUALITY && i >= M) {
+                continue;
+            }
+            let (l, u) = self.p.limits(i);
+            let (e, limit) = if state > 0 {
+                (self.excess(i, 1), u)
+            } else {
+                (self.excess(i, -1), l)
+            };
+            let inverse = scale_inverse::<T, N, M>(self.p, self.w, i);
+            let far = math::abs(e) * inverse;
+            if far > self.s.feasibility && far > self.row_noise(i, limit, inverse) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether every entry of the reduced gradient is round-off of its own terms. Leaves these in `step` and `vec_a`.
+    fn is_gradient_round_off(&mut self, reduced: &[T; N]) -> bool {
+        let w = &mut *self.w;
+        let rows = self.p.hessian.iter().zip(self.p.gradient);
+        for (out, (h, g)) in w.step.iter_mut().zip(rows) {
+            *out = dot_sizes(h, &w.x) + math::abs(*g);
+        }
+        for k in 0..w.basis.len {
+            let (id, f) = (at(&w.id, k), math::abs(at(&w.lambda, k)));
+            if id < M {
+                let (from, a) = self.p.entries(id);
+                let terms = w.step.iter_mut().skip(from);
+                terms.zip(a).for_each(|(t, a)| *t += math::abs(f * *a));
+            } else if let Some(t) = w.step.get_mut(id - M) {
+                *t += f;
+            }
+        }
+        w.elimination.reduce_sizes(&w.step, &mut w.vec_a);
+        let noise = T::of(32.0) * T::EPSILON;
+        let mut entries = reduced.iter().zip(&w.vec_a).take(w.factor.dim);
+        if !entries.all(|(r, terms)| math::abs(*r) <= noise * *terms) {
+            return false;
+        }
+        // Where x has run away, terms hide a gradient that is none of round-off.
+        let largest = noise * max_abs(head(&w.vec_a, w.factor.dim));
+        largest <= self.s.optimality * T::of(1000.0) * max_abs(self.p.gradient)
+            || max_abs(&self.w.x) <= T::of(1000.0) * self.reach()
+    }
+
+    /// The largest distance of a limit from the origin.
+    pub(super) fn reach(&mut self) -> T {
+        let mut reach = T::ZERO;
+        for i in 0..M + N {
+            let (l, u) = self.p.limits(i);
+            let inverse = scale_inverse::<T, N, M>(self.p, self.w, i);
+            for limit in [l, u] {
+                if limit.is_finite_number() {
+                    reach = math::max(reach, math::abs(limit) * inverse);
+                }
+            }
+        }
+        reach
+    }
+}
