@@ -1,6 +1,5 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
-use crate::Error;
 use crate::kernels::{
     at, ceil4, dot_in, eliminate, floor4, put, scale_from, span_mut, sub_scaled_in,
 };
@@ -35,7 +34,9 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     /// Factorises in place. A pivot that is zero to round-off gets a proximal weight, a share of its own variable's curvature
     /// so that units do not matter: the factor is then that of H + P with P ≥ 0 diagonal, and the caller iterates (see
     /// [`crate`], proximal steps). A variable without any takes the largest curvature, and `reference` where H is zero.
-    pub(crate) fn factorise(&mut self, reference: T) -> Result<(), Error> {
+    ///
+    /// Returns the first pivot that is below zero by more than it should be: [`Factor::concave`] is a direction to look along.
+    pub(crate) fn factorise(&mut self, reference: T) -> Option<usize> {
         let n = self.dim;
         let end = ceil4(n, N);
         let mut largest = T::ZERO;
@@ -54,8 +55,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         self.proximal = false;
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let tolerance = pivot_tolerance::<T>();
-        // Share of its diagonal that the smallest pivot so far has kept: round-off in those after it grows by the inverse.
-        let mut least = T::ONE;
+        let mut below = None;
         for k in 0..n {
             let Some((above, [row, ..])) = self.u.split_at_mut_checked(k) else {
                 break;
@@ -64,19 +64,18 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             let mut d = at(row.as_slice(), k);
             let diagonal = at(&self.weight, k);
             if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
-                let grown = so3::math::max(T::of(4.0) * tolerance, T::of(64.0) * T::EPSILON / least);
-                if d < -(grown * (diagonal + T::EPSILON * scale)) {
-                    return Err(Error::HessianNotConvex(k));
+                if d < -(T::of(4.0) * tolerance * (diagonal + T::EPSILON * scale)) {
+                    below = below.or(Some(k));
                 }
                 let own = if diagonal > T::EPSILON * T::EPSILON * scale {
                     diagonal
                 } else {
                     scale
                 };
-                d = so3::math::max(d, T::ZERO) + proximal_weight::<T>() * own;
+                // Below zero it shows how large round-off is in its row, which the weight must outdo.
+                let weight = so3::math::max(proximal_weight::<T>() * own, -(T::of(8.0) * d));
+                d = so3::math::max(d, T::ZERO) + weight;
                 self.proximal = true;
-            } else if d < least * diagonal {
-                least = d / diagonal;
             }
             put(&mut self.weight, k, T::ONE / d);
         }
@@ -84,7 +83,16 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             let Some(row) = self.u.get_mut(k) else { break };
             scale_from(row, at(&self.weight, k), k + 1, end);
         }
-        Ok(())
+        below
+    }
+
+    /// v ← U⁻¹eₖ, along which the curvature is the pivot `k` before its proximal weight, less what earlier ones got.
+    pub(crate) fn concave(&mut self, k: usize, v: &mut [T; N]) {
+        v.fill(T::ZERO);
+        put(v, k, T::ONE);
+        let dim = core::mem::replace(&mut self.dim, k + 1);
+        self.solve(v);
+        self.dim = dim;
     }
 
     /// v ← U⁻ᵀ v. Leading zeros of v cost nothing.

@@ -9,7 +9,7 @@ pub struct Settings<T> {
     /// Cap on iterations: rows entering or leaving the active set plus corrections of the point. One iteration costs O(N²+NM).
     pub max_iterations: u32,
     /// Cap on everything that takes time: iterations, and also rows remembered from the last solve that enter again or leave.
-    /// With it the time of a solve has a bound; without it an iteration may stand for up to 2N rows.
+    /// With it the time of a solve has a bound; [`crate::Workspace::STEPS`], an estimate from the sizes, caps them in any case.
     pub max_steps: u32,
     /// How far outside a row the solution may lie, as a distance: violation / max|aᵢ|. The round-off
     /// of evaluating the row, 32·ε·Σ|aᵢⱼxⱼ|, is allowed in any case.
@@ -21,11 +21,11 @@ pub struct Settings<T> {
 }
 
 impl<T: Scalar> Default for Settings<T> {
-    /// f64: 1000 iterations, no cap on steps, feasibility 1e-9, optimality 1e-10; f32: 1e-4 and 3e-4.
+    /// No caps but the estimate [`crate::Workspace::STEPS`]; f64: feasibility 1e-9, optimality 1e-10; f32: 1e-4 and 3e-4.
     fn default() -> Self {
         let double = is_double::<T>();
         Self {
-            max_iterations: 1000,
+            max_iterations: u32::MAX,
             max_steps: u32::MAX,
             feasibility: T::of(if double { 1e-9 } else { 1e-4 }),
             optimality: T::of(if double { 1e-10 } else { 3e-4 }),

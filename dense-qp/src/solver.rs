@@ -19,6 +19,7 @@ use so3::{Scalar, math};
 use crate::kernels::{at, max_abs};
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use exchange::Pass;
+use proof::Ray;
 
 /// Solves from scratch.
 ///
@@ -74,6 +75,8 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     iterations: u32,
     /// Iterations, and remembered rows that entered or left.
     steps: u32,
+    /// Most of them.
+    most: u32,
     /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
     worth: T,
     /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
@@ -97,6 +100,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             w: workspace,
             iterations: 0,
             steps: 0,
+            most: settings.max_steps.min(Workspace::<T, N, M>::STEPS),
             worth: T::ZERO,
             toll: T::ZERO,
             primal: T::ZERO,
@@ -160,7 +164,12 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             &mut w.factor.weight,
             &mut w.vec_a,
         );
-        w.factor.factorise(max_abs(self.p.gradient))?;
+        if let Some(k) = w.factor.factorise(max_abs(self.p.gradient))
+            && self.is_concave(k)
+        {
+            return Err(Error::HessianNotConvex(k));
+        }
+        let w = &mut *self.w;
         w.is_factorised = true;
         w.elimination.particular(&mut w.x);
         if w.elimination.rank == 0 {
@@ -195,13 +204,13 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
 
     /// Whether the search has taken all the time that it may.
     fn is_at_cap(&self) -> bool {
-        self.iterations >= self.s.max_iterations || self.steps >= self.s.max_steps
+        self.iterations >= self.s.max_iterations || self.steps >= self.most
     }
 
     /// Re-enters the remembered active set, without multipliers yet.
     fn seed(&mut self, seeds: usize) {
         for k in 0..seeds {
-            if self.steps >= self.s.max_steps {
+            if self.steps >= self.most {
                 return;
             }
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
@@ -222,8 +231,10 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
     /// Newton corrections of (x, λ) for the active rows, each followed by the search; with a
     /// proximal factor these are the proximal steps.
     fn outer(&mut self, mut known: bool) -> Result<Status, Error> {
-        let mut last = T::INFINITY;
+        // Merit when it last fell to half, cost when it last fell by more than round-off, and passes since either.
+        let (mut mark, mut cost) = (T::INFINITY, T::INFINITY);
         let mut stalls = 0;
+        let patience = if self.w.factor.proximal { 20 } else { 4 };
         loop {
             if self.is_at_cap() {
                 return Ok(Status::Limit);
@@ -234,7 +245,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             known = false;
             // A row that pulls was not let go any more.
             let mut multipliers = self.w.lambda.iter().take(self.w.basis.len);
-            if self.steps >= self.s.max_steps && multipliers.any(|l| *l < T::ZERO) {
+            if self.steps >= self.most && multipliers.any(|l| *l < T::ZERO) {
                 return Ok(Status::Limit);
             }
             match self.search() {
@@ -252,27 +263,38 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             if !(rest.scale.is_finite_number() && rest.drift.is_finite_number()) {
                 return Ok(Status::Numerical);
             }
+            if self.w.factor.proximal {
+                match self.ray_step() {
+                    Ray::Endless => return Ok(Status::Unbounded),
+                    Ray::Moved => {
+                        self.w.previous = self.w.x;
+                        continue;
+                    }
+                    Ray::Stays => self.reduce_gradient(),
+                }
+            }
             if self.is_tight(&rest) {
                 return Ok(Status::Solved);
             }
             let (dual, primal) = (self.s.optimality * rest.scale, self.s.feasibility);
             let merit = math::max(rest.residual * primal, rest.drift * dual);
-            let progress = merit < last * T::HALF;
-            if !progress {
+            if merit < mark * T::HALF {
+                (mark, stalls) = (merit, 0);
+            } else {
                 stalls += 1;
                 if self.is_within(&rest) {
                     return Ok(Status::Solved);
                 }
             }
-            if self.w.factor.proximal
-                && let Some(status) = self.ray_step()
-            {
-                return Ok(status);
+            if self.w.factor.proximal {
+                let now = self.p.cost(&self.w.x);
+                if now < cost - T::of(8.0) * T::EPSILON * self.worth {
+                    (cost, stalls) = (now, 0);
+                }
             }
-            if !self.w.factor.proximal && stalls > 4 {
+            if stalls > patience {
                 return Ok(Status::Numerical);
             }
-            last = math::min(last, merit);
             self.w.previous = self.w.x;
         }
     }

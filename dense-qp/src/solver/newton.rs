@@ -93,7 +93,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
     fn drop_negative(&mut self) {
         for _ in 0..N {
-            if self.steps >= self.s.max_steps {
+            if self.steps >= self.most {
                 return;
             }
             let mut worst = None;

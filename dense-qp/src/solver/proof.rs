@@ -108,9 +108,26 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         gap > noise * terms && open * reach <= gap
     }
 
+    /// Whether the caller's own numbers have negative curvature along the direction in which pivot `k` of the factor found some.
+    pub(super) fn is_concave(&mut self, k: usize) -> bool {
+        let w = &mut *self.w;
+        w.factor.concave(k, &mut w.vec_b);
+        w.step.fill(T::ZERO);
+        for (v, d) in w.elimination.free_variables().iter().zip(&w.vec_b) {
+            put(&mut w.step, *v, *d);
+        }
+        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        let (mut curvature, mut terms) = (T::ZERO, T::ZERO);
+        for (d, h) in w.step.iter().zip(self.p.hessian) {
+            curvature += *d * dot(h, &w.step);
+            terms += math::abs(*d) * dot_sizes(h, &w.step);
+        }
+        curvature < -(T::of(32.0) * T::EPSILON * terms)
+    }
+
     /// Along the last proximal step: goes on to where the cost is least or the first limit stops it, which is far where the curvature
     /// is small beside the proximal weight. Without curvature and limits the cost has no minimum.
-    pub(super) fn ray_step(&mut self) -> Option<Status> {
+    pub(super) fn ray_step(&mut self) -> Ray {
         let w = &mut *self.w;
         let mut length = T::ZERO;
         for (before, x) in w.previous.iter_mut().zip(&w.x) {
@@ -118,14 +135,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             length = worse(length, math::abs(*before));
         }
         if !(length > T::ZERO && length.is_finite_number()) {
-            return None;
+            return Ray::Stays;
         }
         for s in &mut w.previous {
             *s /= length;
         }
         let course = self.course();
         if course.slope >= -course.slope_noise {
-            return None;
+            return Ray::Stays;
         }
         let is_flat = course.curvature <= course.curvature_noise;
         let best = if is_flat {
@@ -135,17 +152,24 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         };
         // The next proximal step gets there as well.
         if best <= length {
-            return None;
+            return Ray::Stays;
         }
         let far = self.first_limit();
         if far == T::INFINITY && is_flat {
             self.purify();
-            return self.is_ray().then_some(Status::Unbounded);
+            return if self.is_ray() {
+                Ray::Endless
+            } else {
+                Ray::Stays
+            };
+        }
+        if far == T::ZERO {
+            return Ray::Stays;
         }
         let w = &mut *self.w;
         sub_scaled(&mut w.x, -math::min(best, far), &w.previous);
         self.evaluate_gradient();
-        None
+        Ray::Moved
     }
 
     /// Slope and curvature of the cost at x along `previous`.
@@ -233,6 +257,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             && self.p.hessian.iter().all(straight)
             && (0..M + N).all(clear)
     }
+}
+
+/// What came of following a proximal step.
+#[derive(PartialEq)]
+pub(super) enum Ray {
+    Stays,
+    Moved,
+    Endless,
 }
 
 /// The cost along a direction.
