@@ -398,18 +398,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         )
     }
 
-    /// On the ground: forces on the feet in contact that bring the body to rest over them, leaning towards the goal.
+    /// On the ground: forces on the feet in contact that bring the body to rest over them.
     fn stand(&mut self, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
         let mut target = Target {
             height: self.settings.stand_height,
             ..Target::LEVEL
         };
         if let Some(jump) = &self.jump {
-            let sum: Vector3<T> = self.limbs.ends.iter().map(|end| end.position).sum();
-            let middle_w = self.limbs.posture.base().point(&(sum / T::of(F as f64)));
-            let most = self.settings.lean;
-            let lean = jump.goal_w - middle_w;
-            target.offset_w = [lean.x, lean.y].map(|x| math::clamp(x, -most, most));
             target.rot_wb = jump.rot_goal;
         }
         let c = self.landing.step_at(

@@ -34,8 +34,6 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub settling: T,
     /// Height of the centre of mass over the feet's centres when standing, m.
     pub stand_height: T,
-    /// How far the body may lean from the middle of the feet towards the goal, m.
-    pub lean: T,
     /// Damping of the safe command, N m s/rad.
     pub safe_damping: T,
     /// Largest rate of a joint's torque, N m/s.
@@ -77,7 +75,6 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             rest: (of(0.05), of(0.2)),
             settling: of(0.2),
             stand_height: of(0.25),
-            lean: of(0.10),
             safe_damping: T::TWO,
             slew: of(1e4),
             pd: CartesianPd::a1(feet),

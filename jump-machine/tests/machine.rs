@@ -31,7 +31,6 @@ fn jump<T: Scalar>(nodes: &[Node<T, 12, 4>]) -> Jump<'_, T, 12, 4> {
     Jump {
         plan: Plan::new(nodes, takeoff, posing, touchdown, Torques::Hold).unwrap(),
         weight: T::of(134.8),
-        goal_w: Vector3::zeros(),
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
     }

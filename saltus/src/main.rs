@@ -5,6 +5,7 @@ mod cmd;
 mod examples;
 mod humanoid;
 mod jump;
+mod lab;
 mod log;
 mod noise;
 mod observer;
@@ -14,6 +15,7 @@ mod report;
 mod reproduce;
 mod robot;
 mod track;
+mod verdict;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use serde_json::json;

@@ -1,7 +1,6 @@
 //! One file per subcommand, and what they share.
 
 pub(crate) mod completions;
-mod disturb;
 pub(crate) mod envelope;
 mod folder;
 pub(crate) mod import;

@@ -6,7 +6,8 @@ use super::sensors::{Sensors, sole_forces};
 use super::{
     JOINTS, Plant, ROBOT, State, Task, Velocity, on_the_floor, plant, poses, spheres, squat,
 };
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::Disturbance;
 use icub_model::LIMITS;
 use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
@@ -85,7 +86,7 @@ pub(crate) fn run(
         if t > run.takeoff + SETTLE + 0.7 {
             break;
         }
-        let command = controller.tick(t, &sensors.measure(&plant));
+        let command = controller.tick(t, &sensors.measure(t, &plant));
         let sample = record(&plant, &controller, t);
         observe(&mut run, &sample, &motors);
         run.samples.push(sample);

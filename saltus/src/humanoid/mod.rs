@@ -7,7 +7,8 @@ pub(crate) mod log;
 pub(crate) mod report;
 pub(crate) mod sensors;
 
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::{self, Disturbance, Key};
 use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
 use icub_model::gazebo::joint;
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
@@ -180,13 +181,12 @@ pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_
 /// The robot in a simulator.
 pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
     let limits = LIMITS.map(|mut limits| {
-        limits.damping *= disturbance.joint_friction;
-        limits.friction *= disturbance.joint_friction;
+        limits.friction = disturbance.set_to(Key::JointFriction).unwrap_or(limits.friction);
         limits
     });
     let mut settings = Settings::new(&limits, &task.motors());
-    settings.contact.friction = disturbance.friction;
-    let robot = disturbance.robot(&ROBOT)?;
+    settings.contact.friction = disturbance.get(Key::Friction);
+    let robot = lab::robot(disturbance, &ROBOT)?;
     Ok(match sim {
         Sim::Native => Box::new(NativeSimulator::new(
             robot,

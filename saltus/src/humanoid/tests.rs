@@ -3,7 +3,8 @@
 use super::judge::Verdict;
 use super::{GRAVITY, JOINTS, Landing, ROBOT, State, Task, Velocity};
 use super::{com, execute, on_the_floor, poses, squat};
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::{Disturbance, Lab, PlantArgument};
 use icub_model::MOTORS;
 use icub_model::hardware::{MOTORS_F32, SOLES_F32};
 use icub_model::limits::LIMITS_F32;

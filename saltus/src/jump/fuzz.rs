@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::execute::{HOLD, Run, run_tampered};
+use super::execute::{HOLD, Run, Trial, run_watched};
 use super::plant::Sim;
 use super::reference::{Legs, Reference, build};
 use super::sensors::Told;
@@ -73,17 +73,17 @@ proptest! {
     ) {
         let (task, reference) = jump();
         let mut expected = None;
-        let run = run_tampered(
+        let run = run_watched(
             task,
             reference,
-            Sim::Native,
-            0,
+            Trial::nominal(Sim::Native),
             |k, told| {
                 if k == tick {
                     expected = spoil(told, place, bad);
                 }
             },
             |_, _| {},
+            |_| {},
         )
         .unwrap();
         prop_assert!(inside(&run));
@@ -108,17 +108,17 @@ proptest! {
 fn a_measurement_that_stops_coming_is_stale_after_five_milliseconds() {
     let (task, reference) = jump();
     for silent in [100_u64, 700, 1000, 1500] {
-        let run = run_tampered(
+        let run = run_watched(
             task,
             reference,
-            Sim::Native,
-            0,
+            Trial::nominal(Sim::Native),
             |k, told| {
                 if k >= silent {
                     told.measured.age = (k - silent) as f64 * 1e-3;
                 }
             },
             |_, _| {},
+            |_| {},
         )
         .unwrap();
         assert_eq!(run.fault, Some(Fault::Stale));

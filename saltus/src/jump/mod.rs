@@ -44,6 +44,14 @@ const CORNER_RADIUS: f64 = 0.01;
 /// The robot that is planned for and simulated: A1 as published, with rotors.
 pub(crate) const ROBOT: A1Geared = A1Geared;
 
+/// Links with a shape of their own, for people; feet, shanks and the trunk.
+pub(crate) const fn owner_name(contact: usize) -> &'static str {
+    const NAMES: [&str; TRUNK + 1] = [
+        "FL_foot", "FR_foot", "RL_foot", "RR_foot", "FL_shank", "FR_shank", "RL_shank", "RR_shank", "trunk",
+    ];
+    NAMES[if contact < TRUNK { contact } else { TRUNK }]
+}
+
 pub(crate) type State = Configuration<f64, JOINTS>;
 pub(crate) type Velocity = Tangent<f64, JOINTS>;
 pub(crate) type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;

@@ -63,7 +63,7 @@ fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
 
 /// The run as MCAP.
 pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
-    let terrain = super::plant::terrain(task);
+    let terrain = super::plant::terrain(task, 0.0);
     let scene = Scene {
         trunk: super::TRUNK_SIZE,
         foot_radius: a1_model::FOOT_RADIUS,
@@ -97,7 +97,7 @@ fn frames(samples: &[Sample]) -> Value {
 }
 
 fn scene(task: &Task) -> Value {
-    let terrain = super::plant::terrain(task);
+    let terrain = super::plant::terrain(task, 0.0);
     json!({
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),

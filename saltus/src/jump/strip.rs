@@ -30,7 +30,7 @@ pub(crate) fn svg(task: &Task, run: &Run, takeoff: f64) -> String {
         })
         .collect();
     let across = across(task);
-    let floor = super::plant::terrain(task).floor;
+    let floor = super::plant::terrain(task, 0.0).floor;
     let top = shown.iter().map(|s| s.position.z).fold(0.0, f64::max) + 0.35;
     let [width, height] = [POSES as f64 * APART * SCALE, (top - floor + 0.25) * SCALE];
     let mut out = format!(

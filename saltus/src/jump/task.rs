@@ -42,6 +42,8 @@ const DURATIONS: [f64; 2] = [0.1, 1.0];
 const LONGEST_FOUR_LEGS: f64 = 0.55;
 /// Longest stance on fewer feet, s: it is unstable open loop.
 const LONGEST_TWO_LEGS: f64 = 0.35;
+/// Largest difference between the goal's height and the ground's, m.
+const HEIGHT_TOLERANCE: f64 = 5e-3;
 /// Width over which the edge of a box is smoothed, m.
 const EDGE_WIDTH: f64 = 0.03;
 /// Most intervals of a phase: beyond, only memory is used.
@@ -64,6 +66,8 @@ pub(crate) struct Task {
     pub(crate) goal: Vector3<f64>,
     /// Wanted heading at the end, rad.
     pub(crate) heading: f64,
+    /// Wanted rotation of the base at the end: the whole turn, of which only the heading is a posture to stand in.
+    pub(crate) rot_goal: nalgebra::Rotation3<f64>,
     /// Height of the box that the robot starts on, m, with its edge.
     pub(crate) edge: Option<Edge<f64>>,
     /// The trunk may touch the ground in the landing.
@@ -159,6 +163,7 @@ impl Task {
             "total",
             "min_s must be positive and not above max_s",
         )?;
+        check_height(&goal, edge)?;
         let (phases, reference) = phases(file, &robot, edge)?;
         let limits = &file.limits;
         let problem = Problem {
@@ -202,6 +207,7 @@ impl Task {
             problem,
             start,
             goal,
+            rot_goal: so3::exp(&(axis * angle)),
             heading: if axis.z.abs() > 0.5 {
                 angle * axis.z
             } else {
@@ -370,6 +376,19 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
         distance,
         width: EDGE_WIDTH,
     }))
+}
+
+/// The ground decides how high the goal is: a goal in the air, or in the ground, is none.
+fn check_height(goal: &Vector3<f64>, edge: Option<Edge<f64>>) -> Result<(), Unusable> {
+    let ground = edge.map_or(0.0, |edge| -edge.drop);
+    require(
+        (goal.z - ground).abs() <= HEIGHT_TOLERANCE,
+        "goal_m",
+        &format!(
+            "its third number must be the landing's ground, {ground} m: -drop_m with a box, 0 without one, not {}",
+            goal.z
+        ),
+    )
 }
 
 type Phases = ([Phase<f64, FOOT_COUNT>; PHASES], Reference);

@@ -4,7 +4,7 @@ use super::{Row, direct, exponential, write_report};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::{self, Run};
-use crate::jump::judge::{ALLOWED_TURN, Verdict};
+use crate::jump::judge::Judged;
 use crate::jump::log::Sample;
 use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
@@ -130,12 +130,12 @@ fn plan(name: &str, planner: Planner) -> Result<Planned, String> {
 }
 
 /// Runs a plan and leaves its report in the folder.
-fn fly(planned: &Planned, sim: Sim, folder: &Path, kind: &str) -> Result<(Run, Verdict), String> {
-    let run = execute::run(&planned.task, &planned.reference, sim, 0, |_, _| {})?;
-    let verdict = Verdict::of(&planned.task, &run);
+fn fly(planned: &Planned, sim: Sim, folder: &Path, kind: &str) -> Result<(Run, Judged), String> {
+    let run = execute::run(&planned.task, &planned.reference, sim, |_, _| {})?;
+    let judged = Judged::of(&planned.task, &planned.reference, &run);
     let table = [
         ("task", planned.task.name.clone(), None),
-        ("result", outcome(&run, &verdict), None),
+        ("result", outcome(&judged), None),
     ];
     let html = report::html(&planned.task, &planned.reference, &run, &table);
     let name = format!(
@@ -144,7 +144,7 @@ fn fly(planned: &Planned, sim: Sim, folder: &Path, kind: &str) -> Result<(Run, V
         sim.name()
     );
     write_report(folder, &name, &html)?;
-    Ok((run, verdict))
+    Ok((run, judged))
 }
 
 /// All rows, as they come; `tell` hears what is next and may stop.
@@ -169,18 +169,18 @@ pub(crate) fn rows(
                 .get(name)
                 .and_then(|planned| fly(planned, sim, folder, "").map(|flown| (planned, flown)));
             match flown {
-                Ok((planned, (run, verdict))) => {
+                Ok((planned, (run, judged))) => {
                     if name == "a1/double-backflip" {
-                        rows.push(swing_legs(&planned.reference, &run, &verdict, sim));
+                        rows.push(swing_legs(&planned.reference, &run, &judged, sim));
                     }
                     rows.push(row.ours(
                         format!(
                             "joints within {:.1}° of the plan before contact; {}",
                             tracking(&run),
-                            outcome(&run, &verdict)
+                            outcome(&judged)
                         ),
-                        verdict.on_target(),
-                        "holds when on target: upright 2 s later within 0.10 m and 10° of the goal",
+                        judged.verdict.on_target(),
+                        "holds when the verdict is on target: flight, stand and hardware",
                     ));
                 }
                 Err(error) => rows.push(row.failed(error)),
@@ -269,11 +269,11 @@ fn spin(plans: &mut Plans, sim: Sim, folder: &Path) -> Row {
     ) {
         (Ok((_, whole)), Ok((_, kinematic))) => {
             let missed =
-                |verdict: &Verdict| verdict.touchdown_orientation_error.unwrap_or(f64::NAN);
+                |judged: &Judged| judged.verdict.flight.map_or(f64::NAN, |flight| flight.rotation);
             let (whole, kinematic) = (missed(&whole), missed(&kinematic));
             row.ours(
                 format!("{whole:.1}° off at touchdown; {kinematic:.1}° off"),
-                whole <= ALLOWED_TURN && kinematic > ALLOWED_TURN,
+                whole <= 10.0 && kinematic > 10.0,
                 "the legs' momentum, which a single rigid body does not know, is missing in flight; less than in the paper",
             )
         }
@@ -310,7 +310,7 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
 }
 
 /// Remark 2: feet that land at different times.
-fn swing_legs(reference: &Reference, run: &Run, verdict: &Verdict, sim: Sim) -> Row {
+fn swing_legs(reference: &Reference, run: &Run, judged: &Judged, sim: Sim) -> Row {
     let after = run
         .samples
         .iter()
@@ -335,9 +335,9 @@ fn swing_legs(reference: &Reference, run: &Run, verdict: &Verdict, sim: Sim) -> 
             "{} feet land within {:.0} ms; {}",
             times.len(),
             (last - first) * 1e3,
-            outcome(run, verdict)
+            outcome(judged)
         ),
-        verdict.upright && times.len() == FOOT_COUNT,
+        judged.verdict.stands() && times.len() == FOOT_COUNT,
         "holds when all feet land and the robot stays upright",
     )
 }
@@ -353,17 +353,11 @@ fn tracking(run: &Run) -> f64 {
     jump.map(error).fold(0.0, f64::max).to_degrees()
 }
 
-fn outcome(run: &Run, verdict: &Verdict) -> String {
-    let end = if verdict.upright { "upright" } else { "fallen" };
-    let trunk = if run.trunk_contact {
-        ", the trunk touched"
-    } else {
-        ""
-    };
-    format!(
-        "{end}, {:.3} m and {:.1}° off the goal, {:.1} ms of saturation in the push-off{trunk}",
-        verdict.position_error,
-        verdict.orientation_error,
-        run.push_off_saturation * 1e3
-    )
+fn outcome(judged: &Judged) -> String {
+    let verdict = &judged.verdict;
+    let end = verdict.stand.map_or("no touchdown".to_owned(), |stand| {
+        let up = if stand.upright { "upright" } else { "fallen" };
+        format!("{up}, feet {:.3} m and {:.1}° off the goal", stand.feet, stand.rotation)
+    });
+    format!("{end}; {}", verdict.first())
 }

@@ -180,7 +180,6 @@ pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     Some(Jump {
         plan: Plan::new(T::nodes(), takeoff, posing, touchdown, Torques::Hold).ok()?,
         weight: T::of(plan::WEIGHT),
-        goal_w: Vector3::from(plan::GOAL.map(T::of)),
         rot_goal: Rotation3::identity(),
         landing_joints: plan::LANDING.map(T::of),
     })

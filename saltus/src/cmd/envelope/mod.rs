@@ -10,6 +10,7 @@ use crate::jump::measure::Measure;
 use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
 use crate::jump::task::Task;
+use crate::lab::{Interface, PlantArgument};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -32,6 +33,12 @@ pub(crate) struct Args {
     /// How the legs are planned along the single rigid body's motion.
     #[arg(long, default_value = "whole-body")]
     planner: Planner,
+    /// What differs from the plan in every run, instead of the lab of the run's seed; as in `saltus run`.
+    #[arg(long)]
+    plant: Option<PlantArgument>,
+    /// How the motors are commanded; as in `saltus run`.
+    #[arg(long, default_value = "torque")]
+    interface: Interface,
     /// Measures against disturbances to do without, separated by commas.
     #[arg(long, value_name = "MEASURE", value_delimiter = ',')]
     without: Vec<Measure>,
@@ -58,6 +65,13 @@ impl Args {
             name += "-";
             name += self.planner.name();
         }
+        if let Some(plant) = &self.plant {
+            name += "-";
+            name += &plant.to_string().replace([',', '=', '@'], "-");
+        }
+        if self.interface != Interface::Torque {
+            name += &format!("-{}", self.interface);
+        }
         if !without.is_empty() {
             name += "-without-";
             name += &names(without).replace(',', "-");
@@ -78,6 +92,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         sim: args.sim,
         samples: args.samples,
         seed: args.seed,
+        plant: args.plant,
+        interface: args.interface,
         shard: args.shard,
         folder: match &args.out {
             Some(folder) => folder.clone(),

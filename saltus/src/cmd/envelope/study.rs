@@ -7,10 +7,11 @@ use crate::cmd::folder::{describe, write};
 use crate::cmd::interrupt;
 use crate::jump::envelope::{Sample, picture, table};
 use crate::jump::execute::{self, Trial};
-use crate::jump::judge::Verdict;
+use crate::jump::judge::Judged;
 use crate::jump::measure::Measure;
 use crate::jump::planned::Planner;
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::{Interface, Lab, PlantArgument};
 use crate::jump::reference::Reference;
 use crate::jump::task::Task;
 use indicatif::ProgressBar;
@@ -48,6 +49,9 @@ pub(super) struct Study<'a> {
     /// Runs over all shards.
     pub(super) samples: u64,
     pub(super) seed: u64,
+    /// What differs from the plan in every run; the lab of the run's seed where nothing is said.
+    pub(super) plant: Option<PlantArgument>,
+    pub(super) interface: Interface,
     pub(super) shard: Shard,
     /// Measures that planner and controller do without.
     pub(super) without: Vec<Measure>,
@@ -67,6 +71,12 @@ impl Study<'_> {
         if self.planner != Planner::WholeBody {
             title += " planner ";
             title += self.planner.name();
+        }
+        if let Some(plant) = &self.plant {
+            title += &format!(" plant {plant}");
+        }
+        if self.interface != Interface::Torque {
+            title += &format!(" interface {}", self.interface);
         }
         if !self.without.is_empty() {
             title += " without ";
@@ -127,20 +137,20 @@ impl Study<'_> {
         let seed = crate::noise::mix(self.seed, index).max(1);
         let trial = Trial {
             sim: self.sim,
+            disturbance: PlantArgument::plant(self.plant.as_ref(), Lab::A1, seed),
             seed,
+            interface: self.interface,
             without: &self.without,
         };
         let run = execute::run_watched(self.task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
-        let verdict = Verdict::of(self.task, &run);
-        let disturbance = Disturbance::draw(seed);
-        Ok(Sample::new(index, seed, &disturbance, &run, &verdict))
+        Ok(Sample::new(index, &trial, &Judged::of(self.task, reference, &run)))
     }
 
     /// The shard's file, at its end.
     fn open(&self, path: &Path) -> std::io::Result<File> {
         let mut file = OpenOptions::new().create(true).append(true).open(path)?;
         if file.metadata()?.len() == 0 {
-            writeln!(file, "{}\n{}", self.title(), Sample::HEADER)?;
+            writeln!(file, "{}\n{}", self.title(), Sample::header())?;
         }
         // A line that was cut by a stop must not swallow the next.
         if fs::read(path)?.last().is_some_and(|b| *b != b'\n') {

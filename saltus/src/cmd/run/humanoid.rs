@@ -3,15 +3,18 @@
 use super::{Args, Files, code};
 use crate::cmd::folder::must_be_new;
 use crate::humanoid::{Task, execute, judge::Verdict, log, report};
-use crate::jump::plant::Disturbance;
+use crate::lab::{Interface, Lab};
 use std::process::ExitCode;
 
 /// Runs the jump.
 pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
+    if args.interface != Interface::Torque {
+        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
+    }
     must_be_new(args.out.as_deref())?;
     let bar = args.output.spinner();
     bar.set_message("simulating");
-    let disturbance = args.plant.unwrap_or_else(|| Disturbance::draw(args.seed));
+    let disturbance = args.disturbance(Lab::Icub);
     let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
     let run = jump(task)?;
     let verdict = Verdict::of(&run);

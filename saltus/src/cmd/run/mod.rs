@@ -7,7 +7,8 @@ use super::folder::publish;
 use super::output::Output;
 use crate::humanoid as icub;
 use crate::jump::planned::Planner;
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::{Disturbance, Interface, Lab, PlantArgument};
 use crate::log::Log;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -25,7 +26,7 @@ pub(crate) struct Args {
     /// Simulator.
     #[arg(long, default_value = "native")]
     sim: Sim,
-    /// Seed of the disturbances: 0 is the nominal run, others draw masses, friction, rotor inertia, latency and noise.
+    /// Seed of the lab: 0 is the nominal run, others draw what differs from the plan, and the noise.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// How the legs are planned along the single rigid body's motion.
@@ -43,9 +44,13 @@ pub(crate) struct Args {
     /// Humanoid tasks: what holds the robot in flight and landing.
     #[arg(long, default_value = "qp")]
     landing: icub::Landing,
-    /// How the plant differs, instead of a seed's draw: mass=1.1,friction=0.4,latency=2,noise.
+    /// What differs from the plan, instead of a seed's draw: lab, noise or KEY=VALUE, separated by commas, such as
+    /// payload=2@0,0,0.05,ground=soft; `saltus verdicts --ranges` lists the keys.
     #[arg(long)]
-    plant: Option<Disturbance>,
+    plant: Option<PlantArgument>,
+    /// How the motors are commanded: torque (10 kHz), joint-pd (1 kHz over a link) or joint-pd@500.
+    #[arg(long, default_value = "torque")]
+    interface: Interface,
     #[command(flatten)]
     pub(crate) output: Output,
     /// File for the landing's quadratic programs, as numbers for other solvers.
@@ -85,6 +90,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         ..task
     };
     humanoid::run(args, &task)
+}
+
+impl Args {
+    /// What differs from the plan in the lab of this robot.
+    fn disturbance(&self, lab: Lab) -> Disturbance {
+        PlantArgument::plant(self.plant.as_ref(), lab, self.seed)
+    }
 }
 
 /// What a run leaves behind.

@@ -5,9 +5,9 @@ use crate::cmd::folder::{describe, must_be_new};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
-use crate::jump::judge::Verdict;
+use crate::jump::judge::Judged;
+use crate::lab::Lab;
 use crate::jump::planned::Origin;
-use crate::jump::plant::Sim;
 use crate::jump::programs::Programs;
 use crate::jump::reference::{Legs, Reference};
 use crate::jump::task::{SrbPlan, Task};
@@ -29,9 +29,6 @@ struct Made {
 
 /// Runs the jump.
 pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
-    if args.plant.is_some() {
-        return Err("--plant is for humanoid tasks: use --seed for this one".into());
-    }
     must_be_new(args.out.as_deref())?;
     let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
     let path = Path::new(&args.what);
@@ -54,33 +51,28 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
         bar.set_message(format!("simulating: {phase:?}"));
         bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
     };
-    let run = match args.programs.as_deref() {
-        None => execute::run(task, reference, args.sim, args.seed, progress)?,
-        Some(path) => {
-            let mut programs = Programs::default();
-            let watch = |memory: &_| programs.add(memory);
-            let trial = Trial {
-                sim: args.sim,
-                seed: args.seed,
-                without: &[],
-            };
-            let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
-            std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
-            run
+    let trial = Trial {
+        sim: args.sim,
+        disturbance: args.disturbance(Lab::A1),
+        seed: args.seed,
+        interface: args.interface,
+        without: &[],
+    };
+    let mut programs = Programs::default();
+    let watch = |memory: &_| {
+        if args.programs.is_some() {
+            programs.add(memory);
         }
     };
+    let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
+    if let Some(path) = args.programs.as_deref() {
+        std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
+    }
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    let verdict = Verdict::of(task, &run);
-    let result = verdict.json(
-        task,
-        made.srb.as_ref(),
-        reference,
-        &run,
-        args.sim,
-        args.seed,
-    );
-    let table = table(&made, &run, &verdict, args.sim, wall);
+    let judged = Judged::of(task, reference, &run);
+    let result = judged.json(task, made.srb.as_ref(), reference, &run, &trial);
+    let table = table(&made, &run, &judged, &trial, wall);
     if args.output.is_text() {
         for (name, value, _) in &table {
             println!("{name:18} {value}");
@@ -96,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
         strip: Some(strip::svg(task, &run, reference.takeoff)),
     };
     files.publish(args)?;
-    Ok(code(verdict.on_target()))
+    Ok(code(judged.verdict.on_target()))
 }
 
 /// Plans the task.
@@ -145,91 +137,33 @@ fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
 }
 
 /// The result for people.
-fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64) -> Vec<Line> {
-    let Made {
-        task,
-        srb,
-        reference,
-    } = made;
-    let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
+fn table(
+    made: &Made,
+    run: &execute::Run,
+    judged: &Judged,
+    trial: &Trial<'_>,
+    wall: f64,
+) -> Vec<Line> {
+    let plain = |name, value| (name, value, None);
     let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
     let span = run.samples.len() as f64 * 1e-3;
-    let plain = |name, value| (name, value, None);
-    let limit = a1_model::MOTORS[0].torque;
-    vec![
-        plain("task", task.name.clone()),
-        plain(
-            "body plan",
-            srb.as_ref().map_or_else(
-                || format!("stored, phases {:.3?} s", reference.durations),
-                |plan| {
-                    format!(
-                        "solved in {:.0} ms, {} iterations, phases {:.3?} s",
-                        plan.wall_ms, plan.iterations, reference.durations
-                    )
-                },
-            ),
-        ),
-        (
-            "leg plan",
-            format!(
-                "{}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
-                match reference.origin {
-                    Origin::Kinematics(Legs::Heavy) =>
-                        "leg kinematics, not a whole-body optimum".to_owned(),
-                    Origin::Kinematics(Legs::Massless) =>
-                        "legs without mass under a rigid body".to_owned(),
-                    Origin::WholeBody(solved) => format!(
-                        "whole body solved in {:.0} ms, {} iterations",
-                        solved.wall_ms, solved.iterations
-                    ),
-                    Origin::Stored => "stored".to_owned(),
-                },
-                reference.peak_torque,
-                reference.peak_friction
-            ),
-            Some(reference.peak_torque <= limit && reference.peak_friction <= 0.60),
-        ),
+    let mut lines = vec![plain("task", made.task.name.clone())];
+    lines.extend(judged.verdict.lines());
+    lines.extend(plan_lines(made));
+    lines.extend([
         plain(
             "simulated",
             format!(
-                "{span:.1} s in {wall:.1} s, {} simulator, 10 kHz",
-                sim.name()
+                "{span:.1} s in {wall:.1} s, {} simulator, interface {}",
+                trial.sim.name(),
+                trial.interface
             ),
         ),
-        ("landed", yes(verdict.landed), Some(verdict.landed)),
-        (
-            "upright after 2 s",
-            yes(verdict.upright),
-            Some(verdict.upright),
-        ),
+        plain("plant", format!("{}{}", trial.disturbance, if trial.is_nominal() { "nominal" } else { "" })),
         plain("first contact", seconds(run.first_contact)),
-        (
-            "position error",
-            format!("{:.3} m", verdict.position_error),
-            Some(verdict.position_error <= 0.10),
-        ),
-        (
-            "orientation error",
-            format!("{:.1} deg", verdict.orientation_error),
-            Some(verdict.orientation_error <= 10.0),
-        ),
-        plain("apex of the CoM", format!("{:.3} m", verdict.apex)),
+        plain("apex of the CoM", format!("{:.3} m", judged.apex)),
         plain("peak torque", format!("{:.1} N m", run.peak_torque)),
-        plain(
-            "torque saturation",
-            format!(
-                "{:.1} ms in the push-off, {:.1} ms in the landing",
-                run.push_off_saturation * 1e3,
-                run.landing_saturation * 1e3
-            ),
-        ),
         plain("peak foot force", format!("{:.0} N", run.peak_foot_force)),
-        (
-            "trunk touched",
-            if run.trunk_contact { "YES" } else { "no" }.to_owned(),
-            Some(verdict.trunk_is_right),
-        ),
         plain(
             "landing QP",
             format!(
@@ -237,5 +171,36 @@ fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64
                 run.qp_solves, run.qp_failures, run.qp_max_iterations
             ),
         ),
-    ]
+    ]);
+    lines
+}
+
+/// What was planned, for people.
+fn plan_lines(made: &Made) -> [Line; 2] {
+    let Made { srb, reference, .. } = made;
+    let limit = a1_model::MOTORS[0].torque;
+    let body = srb.as_ref().map_or_else(
+        || format!("stored, phases {:.3?} s", reference.durations),
+        |plan| {
+            format!(
+                "solved in {:.0} ms, {} iterations, phases {:.3?} s",
+                plan.wall_ms, plan.iterations, reference.durations
+            )
+        },
+    );
+    let legs = match reference.origin {
+        Origin::Kinematics(Legs::Heavy) => "leg kinematics, not a whole-body optimum".to_owned(),
+        Origin::Kinematics(Legs::Massless) => "legs without mass under a rigid body".to_owned(),
+        Origin::WholeBody(solved) => format!(
+            "whole body solved in {:.0} ms, {} iterations",
+            solved.wall_ms, solved.iterations
+        ),
+        Origin::Stored => "stored".to_owned(),
+    };
+    let peaks = format!(
+        "{legs}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
+        reference.peak_torque, reference.peak_friction
+    );
+    let good = reference.peak_torque <= limit && reference.peak_friction <= 0.60;
+    [("body plan", body, None), ("leg plan", peaks, Some(good))]
 }
