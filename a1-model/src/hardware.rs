@@ -64,7 +64,7 @@ pub(crate) const TORQUE_CONSTANT: f64 = 0.118;
 /// Resistance of the motor, Ω.
 pub(crate) const RESISTANCE: f64 = 25.0 * TORQUE_CONSTANT * TORQUE_CONSTANT;
 /// Supply voltage, V.
-pub(crate) const SUPPLY: f64 = 21.5;
+const SUPPLY: f64 = 21.5;
 /// Gear ratio that the motor model was fitted with.
 const MODEL_GEAR: f64 = 8.5;
 

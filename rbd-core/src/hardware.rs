@@ -141,7 +141,7 @@ pub struct Budgets {
     pub torque_constant: f64,
     /// Resistance of a motor's winding, Ω.
     pub resistance: f64,
-    /// Largest mean over 10 ms of the power that the supply gives, W.
+    /// Largest mean over 10 ms of the power that the supply gives, W; infinite where nobody knows.
     pub supply_power: f64,
 }
 

@@ -39,13 +39,14 @@ Exit codes: 0 the robot is good (warnings go to standard error); 2 the file, an 
 pub(crate) const RUN: &str = "\
 Examples:
   saltus run a1/barrel-roll                           report, log and result in out/a1-barrel-roll
-  saltus run a1/lateral --seed 3                      a disturbed robot with noisy sensors
+  saltus run a1/lateral --seed 3                      the lab of seed 3: masses, ground, motors, sensors, delays
+  saltus run a1/lateral --plant ground=soft,payload=2@0,0,0.05 --interface joint-pd
   saltus run out/lateral/plan.bin                     a stored plan, as `saltus plan --out` wrote it
   saltus run icub/velocity --height 0.03 --plant mass=1.05,noise
   saltus run my-task.toml --json --out out/mine
 
-Exit codes: 0 on target (landed, upright 2 s later, within 0.10 m and 10°; a humanoid: upright and high enough); 2 not on target, or
-proven to be impossible; 1 not executed, for the reason on standard error. The folder appears only when it is complete.";
+Exit codes: 0 on target (flown as planned, standing 2 s later within 0.10 m and 10°, hardware within its budgets; a humanoid: upright
+and high enough); 2 not on target, or proven to be impossible; 1 not executed, for the reason on standard error. The folder appears only when it is complete.";
 
 pub(crate) const ENVELOPE: &str = "\
 Examples:
@@ -56,6 +57,17 @@ Examples:
 
 Exit codes: 0 the study or its shard is complete; 130 stopped by Ctrl-C, with the table of the samples so far: the same command goes on;
 1 not done, for the reason on standard error.";
+
+pub(crate) const VERDICTS: &str = "\
+Examples:
+  saltus verdicts                                      the nine tasks of A1, every measure
+  saltus verdicts --plant ground=soft --interface joint-pd
+  saltus verdicts saltus/tasks/extra/*.toml            tasks of your own
+  saltus verdicts --conditions --lab 100               what each condition does, and a hundred seeds of the lab
+  saltus verdicts --ranges                             what may differ from the plan, and the lab's ranges
+  saltus verdicts --expect saltus/verdicts.toml        the gate: every verdict as expected
+
+Exit codes: 0 all on target, or all as expected; 2 one is not: it is named; 130 stopped by Ctrl-C.";
 
 pub(crate) const REPRODUCE: &str = "\
 Examples:

@@ -45,6 +45,9 @@ enum Command {
     /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
     #[command(after_help = examples::ENVELOPE)]
     Envelope(cmd::envelope::Args),
+    /// Run tasks in both simulators and print their verdicts as a table, or compare them with the expected ones.
+    #[command(after_help = examples::VERDICTS)]
+    Verdicts(cmd::verdicts::Args),
     /// Run both papers whole, and print their figures beside ours.
     #[command(after_help = examples::REPRODUCE)]
     Reproduce(cmd::reproduce::Args),
@@ -62,6 +65,7 @@ impl Command {
             Self::Import(args) => args.output.json,
             Self::Run(args) => args.output.json,
             Self::Envelope(args) => args.output.json,
+            Self::Verdicts(args) => args.output.json,
             Self::Reproduce(args) => args.output.json,
             Self::Completions(_) => false,
         }
@@ -76,6 +80,7 @@ fn main() -> ExitCode {
         Command::Import(args) => Ok(cmd::import::run(args)),
         Command::Run(args) => cmd::run::run(args),
         Command::Envelope(args) => cmd::envelope::run(args),
+        Command::Verdicts(args) => cmd::verdicts::run(args),
         Command::Reproduce(args) => cmd::reproduce::run(args),
         Command::Completions(args) => cmd::completions::run(args, Cli::command()),
     };

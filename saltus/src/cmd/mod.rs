@@ -9,4 +9,5 @@ mod output;
 pub(crate) mod plan;
 pub(crate) mod reproduce;
 pub(crate) mod run;
+pub(crate) mod verdicts;
 pub(crate) mod verify;

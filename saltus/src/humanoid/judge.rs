@@ -4,6 +4,7 @@ use super::execute::{Run, SETTLE};
 use super::log::Sample;
 use super::{GRAVITY, Task};
 use crate::report::Line;
+use crate::verdict;
 use jump_control::{Phase, takeoff_speed};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -27,6 +28,8 @@ pub(crate) struct Verdict {
     pub(crate) pitch_change: f64,
     /// Vertical speed of the centre of mass at the loss of contact, m/s.
     pub(crate) takeoff_speed: f64,
+    /// End of the run, s.
+    pub(crate) time: f64,
     /// No joint beyond its position, speed or torque limit in the push-off.
     pub(crate) within_limits: bool,
 }
@@ -63,6 +66,7 @@ impl Verdict {
             locked_rotation: turned.norm().to_degrees(),
             pitch_change: pitch(end) - pitch(loss),
             takeoff_speed: at(loss).map_or(f64::NAN, |s| s.com_velocity.z),
+            time: samples.last().map_or(0.0, |s| s.time),
             within_limits: run.launch.position <= 1.0
                 && run.launch.speed <= 1.0
                 && run.launch.torque <= 1.0 + 1e-9,
@@ -76,6 +80,26 @@ impl Verdict {
             && self.within_limits
             && (self.com_gain - task.height).abs() <= 0.005
             && self.sole_clearance >= task.height - 0.005
+    }
+
+    /// As the tables of all robots have it.
+    pub(crate) fn common(&self, task: &Task) -> verdict::Verdict {
+        let end = self.time;
+        let height = (self.com_gain - task.height).abs();
+        let checks = [
+            (self.landed, "no_touchdown", "the ground did not come, or a fault".to_owned()),
+            (self.within_limits, "launch.limits", "a joint left its limits".to_owned()),
+            (height <= 0.005, "flight.com_gain_m", format!("{:.4} of {} m", self.com_gain, task.height)),
+            (
+                self.sole_clearance >= task.height - 0.005,
+                "flight.sole_clearance_m",
+                format!("{:.4} of {} m", self.sole_clearance, task.height - 0.005),
+            ),
+            (self.upright, "stand.upright", "fell".to_owned()),
+        ];
+        let failed = checks.into_iter().filter(|(good, ..)| !good);
+        let failures = failed.map(|(_, name, found)| verdict::Failure::new(end, name, found));
+        verdict::Verdict::new(None, None, Default::default(), failures.collect())
     }
 
     /// The result for people.

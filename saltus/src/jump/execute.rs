@@ -7,7 +7,7 @@ use super::reference::{Reference, heading_matrix};
 use super::sensors::{Sensors, Told, World};
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, ROBOT, feet, kinematics, owner_name};
-use crate::lab::{Boards, Disturbance, Interface, Lab, Motors};
+use crate::lab::{Boards, Disturbance, Interface, Motors};
 use crate::verdict::{Hardware, Stage, Tick as HardwareTick};
 use a1_model::{BUDGETS, MOTORS, a1};
 use jump_control::{Fault, Phase, Plan, Torques, sample};
@@ -56,15 +56,6 @@ impl Trial<'_> {
     /// Nothing differs from the plan.
     pub(crate) fn is_nominal(&self) -> bool {
         self.disturbance == Disturbance::NOMINAL
-    }
-
-    /// The lab of a seed.
-    pub(crate) fn lab(sim: Sim, seed: u64) -> Self {
-        Self {
-            disturbance: Disturbance::draw(Lab::A1, seed),
-            seed,
-            ..Self::nominal(sim)
-        }
     }
 }
 

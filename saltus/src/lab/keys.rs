@@ -89,7 +89,7 @@ rows! {
         "torque constants of motors without torque sensors scatter by a tenth; iCub tracks torque by estimates";
     CurrentLag "current_lag_ms", "time constant of the torque, ms", Some(0.0), [0.0, 100.0], [0.2, 1.0], [1.0, 5.0],
         "current loops of motor boards; iCub's torque loop is slower";
-    Sag "sag", "share of the supply voltage that is lost at the supply's largest power", Some(0.0), [0.0, 0.9], [0.0, 0.15], [0.0, 0.0],
+    Sag "sag", "share of the supply voltage that is lost at 2 kW", Some(0.0), [0.0, 0.9], [0.0, 0.15], [0.0, 0.0],
         "a used lithium pack; iCub hangs on a cable";
     Latency "latency_ms", "age of a measurement when it arrives, or of both ways with --interface joint-pd, ms", Some(0.0), [0.0, 50.0],
         [1.0, 3.0], [1.0, 2.0], "bus, driver, scheduler";

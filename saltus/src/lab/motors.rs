@@ -8,14 +8,16 @@
 use super::{Disturbance, Key};
 use rbd_core::Motor;
 
+/// Supply power at which the whole sag is there, W: all knees of A1 at their corner speed and torque are 1.3 kW of motion and as much of
+/// heat.
+const FULL_POWER: f64 = 2000.0;
+
 /// The motors of `N` joints with their state.
 pub(crate) struct Motors<const N: usize> {
     motors: [Motor<f64>; N],
     gain: f64,
     lag: f64,
     sag: f64,
-    /// Supply power at which the whole sag is there, W.
-    full_power: f64,
     torques: [f64; N],
     /// Electrical power drawn in the last step, W.
     power: f64,
@@ -31,7 +33,6 @@ impl<const N: usize> Motors<N> {
             gain: disturbance.get(Key::TorqueGain),
             lag: disturbance.seconds(Key::CurrentLag),
             sag: disturbance.get(Key::Sag),
-            full_power: budgets.supply_power,
             torques: [0.0; N],
             power: 0.0,
             resistance: budgets.resistance,
@@ -42,7 +43,7 @@ impl<const N: usize> Motors<N> {
     /// Torques at the joints for the next `dt` seconds, N m.
     pub(crate) fn give(&mut self, asked: &[f64; N], speeds: &[f64; N], dt: f64) -> [f64; N] {
         let share = if self.lag > 0.0 { 1.0 - so3::math::exp(-dt / self.lag) } else { 1.0 };
-        let lost = self.sag * (self.power / self.full_power).clamp(0.0, 1.0);
+        let lost = self.sag * (self.power / FULL_POWER).clamp(0.0, 1.0);
         let joints = self.torques.iter_mut().zip(asked).zip(speeds).zip(&self.motors);
         for (((torque, asked), speed), motor) in joints {
             *torque += share * (asked - *torque);

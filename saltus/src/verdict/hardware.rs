@@ -283,7 +283,8 @@ mod tests {
 
     /// What fails when each of `ticks` ticks is changed by `change`.
     fn fails<'a>(ticks: u32, change: impl Fn(&mut Tick<'a, 12>)) -> Vec<String> {
-        let mut hardware = Hardware::new(BUDGETS, MOTORS, &a1::LIMITS, 100.0, DT);
+        let budgets = rbd_core::Budgets { supply_power: 1000.0, ..BUDGETS };
+        let mut hardware = Hardware::new(budgets, MOTORS, &a1::LIMITS, 100.0, DT);
         for k in 0..ticks {
             let mut one = tick(k);
             change(&mut one);
@@ -313,7 +314,7 @@ mod tests {
         // A blow of 1 ms with nine times the budget is less than the budget over 10 ms.
         assert!(fails(10, |t| t.ground = 9000.0).is_empty());
         assert_eq!(fails(100, |t| t.ground = 1010.0), ["hardware.ground_force_10ms_weights"]);
-        assert_eq!(fails(100, |t| t.power = 1900.0), ["hardware.supply_power_w"]);
+        assert_eq!(fails(100, |t| t.power = 1010.0), ["hardware.supply_power_w"]);
         assert_eq!(fails(50_000, |t| t.given = &full), ["hardware.heat_share"]);
     }
 
