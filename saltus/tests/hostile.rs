@@ -77,9 +77,9 @@ const MISTAKES: &[(&[&str], i32, &[&str])] = &[
     ),
     (&["run", "a1/lateral", "--seed", "-1"], 2, &["--seed"]),
     (
-        &["run", "a1/lateral", "--plant", "mass=2"],
-        1,
-        &["--plant", "--seed"],
+        &["run", "a1/lateral", "--plant", "wind=2"],
+        2,
+        &["wind=2", "payload"],
     ),
     (
         &["run", "a1/lateral", "--json", "--quiet"],
@@ -99,7 +99,7 @@ const MISTAKES: &[(&[&str], i32, &[&str])] = &[
     (
         &["run", "icub/velocity", "--plant", "mass=0"],
         2,
-        &["mass must be positive"],
+        &["mass=0", "from 0.1"],
     ),
     (
         &["run", "a1/lateral", "--out", "folder.urdf"],
