@@ -28,12 +28,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let folder = run::root().join("target/mujoco");
-    let library = folder.join(format!("libmujoco.so.{VERSION}"));
-    if !library.exists() {
-        fetch(&args.python, &folder, &library)?;
-    }
-    let search = search_path(&folder)?;
+    let (folder, search) = library(&args.python)?;
     if args.cargo.is_empty() {
         println!("export MUJOCO_DYNAMIC_LINK_DIR={}", folder.display());
         println!("export LD_LIBRARY_PATH={}", search.to_string_lossy());
@@ -43,6 +38,28 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     cargo.current_dir(env::current_dir()?).args(&args.cargo);
     cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
     run::succeed(cargo.env("LD_LIBRARY_PATH", search))
+}
+
+/// `cargo run` of saltus with both simulators; its arguments follow.
+pub(crate) fn saltus() -> Result<Command> {
+    let (folder, search) = library(Path::new("python3"))?;
+    let mut cargo = run::cargo();
+    cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
+    cargo.env("LD_LIBRARY_PATH", search);
+    let release = ["run", "--release", "--quiet", "--package", "saltus"];
+    cargo.args(release).args(["--features", "mujoco", "--"]);
+    Ok(cargo)
+}
+
+/// The folder of the library, fetched if it is not there, and the path on which programs look for it.
+fn library(python: &Path) -> Result<(PathBuf, OsString)> {
+    let folder = run::root().join("target/mujoco");
+    let library = folder.join(format!("libmujoco.so.{VERSION}"));
+    if !library.exists() {
+        fetch(python, &folder, &library)?;
+    }
+    let search = search_path(&folder)?;
+    Ok((folder, search))
 }
 
 /// The folder before whatever the caller has.

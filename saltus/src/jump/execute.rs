@@ -77,7 +77,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn new(task: &Task, tick: f64) -> Self {
+    pub(super) fn new(task: &Task, tick: f64) -> Self {
         let weight = task.problem.mass * task.problem.gravity;
         Self {
             samples: Vec::new(),
@@ -266,6 +266,7 @@ pub(crate) fn run_watched(
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&ROBOT, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
+    sensors.begin(-HOLD, &world);
     let mut drive = Drive::new(&trial);
     let mut run = Run::new(task, world.plant().tick());
     let end = reference.touchdown + SETTLE + 0.5;

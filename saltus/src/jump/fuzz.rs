@@ -39,7 +39,7 @@ fn spoil(told: &mut Told, place: usize, bad: f64) -> Option<Fault> {
         }
         3 if i < 4 => m.foot_forces[i] = bad,
         3 if i < 8 => m.age = bad,
-        3 => m.age = 0.006,
+        3 => m.age = 0.011,
         // Torques are only evidence: a jump goes on without them.
         _ => {
             told.felt[i] = bad;
@@ -105,7 +105,7 @@ proptest! {
 
 /// What is lost for good is lost safely too: sensors that fall silent at some tick.
 #[test]
-fn a_measurement_that_stops_coming_is_stale_after_five_milliseconds() {
+fn a_measurement_that_stops_coming_is_stale_after_ten_milliseconds() {
     let (task, reference) = jump();
     for silent in [100_u64, 700, 1000, 1500] {
         let run = run_watched(

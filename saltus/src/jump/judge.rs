@@ -194,3 +194,64 @@ fn plan_json(plan: Option<&SrbPlan>, reference: &Reference) -> Value {
         "base_residual": reference.base_residual,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
+    use crate::jump::{SPHERES, kinematics};
+    use jump_control::Phase;
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Transform};
+
+    fn sample(q: &State, time: f64) -> Sample {
+        Sample {
+            time,
+            phase: Phase::Stand,
+            position: q.base.translation,
+            orientation: so3::quat::from_rotation(&q.base.rotation),
+            velocity_w: Vector3::zeros(),
+            omega_b: Vector3::zeros(),
+            com: kinematics::com(q),
+            joints: q.joints,
+            joint_velocities: [0.0; 12],
+            torques: [0.0; 12],
+            forces_w: [Vector3::zeros(); SPHERES],
+            planned_position: Vector3::zeros(),
+            planned_joints: [0.0; 12],
+            planned_forces_w: [Vector3::zeros(); 4],
+        }
+    }
+
+    /// A body that leans over its goal while its feet stand 10 cm beside it: the base was judged, and was on target.
+    #[test]
+    fn a_lean_towards_the_goal_does_not_count() {
+        let task = Task::load("a1/lateral").unwrap();
+        let mut run = Run::new(&task, 1e-4);
+        run.final_phase = Phase::Stand;
+        let mut there = task.start;
+        there.base.translation += task.goal;
+        run.samples.push(sample(&there, SETTLE));
+        let good = stand(&task, &run, SETTLE).unwrap();
+        assert!(good.feet < 1e-12 && good.height < 1e-12 && good.upright);
+        // Legs turned at the hips, base where it was: the feet move aside.
+        let leaning: State = Configuration {
+            joints: core::array::from_fn(|i| there.joints[i] + if i % 3 == 0 { 0.4 } else { 0.0 }),
+            ..there
+        };
+        run.samples = vec![sample(&leaning, SETTLE)];
+        let bad = stand(&task, &run, SETTLE).unwrap();
+        assert!((leaning.base.translation - there.base.translation).norm() < 1e-12);
+        assert!(bad.feet > 0.09, "{}", bad.feet);
+    }
+
+    #[test]
+    fn the_middle_of_the_feet_moves_with_the_base() {
+        let task = Task::load("a1/lateral").unwrap();
+        let here = middle_of_feet(&task.start.base, &task.start.joints);
+        let shift = Vector3::new(0.1, -0.2, 0.3);
+        let base = Transform::new(task.start.base.rotation, task.start.base.translation + shift);
+        let there = middle_of_feet(&base, &task.start.joints);
+        assert!((there - here - shift).norm() < 1e-12);
+    }
+}

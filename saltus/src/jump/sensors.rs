@@ -18,6 +18,9 @@ pub(crate) type World = Ground<JOINTS, SPHERES>;
 /// Force at which a foot is certainly loaded, N.
 const LOADED: f64 = 15.0;
 
+/// Samples that are taken before the controller begins.
+const BEGIN: u32 = 5;
+
 /// The sensors of one run.
 pub(crate) struct Sensors {
     noise: Noise,
@@ -57,6 +60,15 @@ impl Sensors {
     pub(crate) fn encoders(&mut self, world: &World) -> ([f64; JOINTS], [f64; JOINTS]) {
         let (q, v) = (world.configuration(), world.velocity());
         self.encoders.read(&q.joints, &v.joints, &mut self.noise)
+    }
+
+    /// Before the controller begins at time `now`, s: the robot rests in its stand, and samples of it arrive by then.
+    pub(crate) fn begin(&mut self, now: f64, world: &World) {
+        let early = self.link.longest();
+        for earlier in (1..=BEGIN).rev() {
+            let before = now - early - f64::from(earlier) * 1e-3;
+            self.measure(before, world, &[0.0; JOINTS]);
+        }
     }
 
     /// Samples everything at time `now`, s, and hands over what arrives then, given the torques since the last sample.

@@ -35,6 +35,11 @@ impl<P: Copy> Link<P> {
         }
     }
 
+    /// Longest time under way, s.
+    pub(crate) const fn longest(&self) -> f64 {
+        self.latency + self.jitter
+    }
+
     /// Sends a packet at time `now`, s.
     pub(crate) fn send(&mut self, now: f64, load: P) {
         let late = self.latency + self.jitter * self.noise.uniform();

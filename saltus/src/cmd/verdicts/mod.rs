@@ -1,15 +1,15 @@
 //! `saltus verdicts`: many tasks in both simulators, judged, as one table; and the gate that compares them with what is expected.
 
 mod conditions;
-mod expected;
 mod measures;
 mod subject;
 
+use super::expected::{Expected, Found};
 use super::interrupt;
 use super::output::Output;
 use crate::jump::plant::Sim;
 use crate::lab::{Interface, PlantArgument, keys};
-use expected::Expected;
+
 use indicatif::ProgressBar;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::json;
@@ -102,7 +102,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         print!("{}", measures::table(&cells));
     }
     match expected {
-        Some(expected) => expected.compare(&cells),
+        Some(expected) => {
+            let found: Vec<Found> = cells.iter().map(Cell::found).collect();
+            Ok(expected.compare_verdicts(&found))
+        }
         None if cells.iter().all(Cell::on_target) => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::from(2)),
     }

@@ -1,5 +1,6 @@
 //! What is judged: a task with its plan, run under a condition.
 
+use crate::cmd::expected::Found;
 use crate::humanoid;
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
@@ -143,6 +144,15 @@ impl Cell {
         match &self.verdict {
             Ok(verdict) => verdict.first(),
             Err(why) => format!("NO: {}", why.replace('\n', " ")),
+        }
+    }
+
+    pub(super) fn found(&self) -> Found {
+        Found {
+            name: self.task.clone(),
+            sim: self.sim.name().to_owned(),
+            outcome: self.outcome().to_owned(),
+            words: self.words(),
         }
     }
 
