@@ -23,7 +23,9 @@ fn failures(output: &Output) -> Vec<String> {
         .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr)));
     assert_eq!(json["on_target"], output.status.success(), "{json}");
     let list = json["verdict"]["failures"].as_array().unwrap();
-    list.iter().map(|x| x["name"].as_str().unwrap().to_owned()).collect()
+    list.iter()
+        .map(|x| x["name"].as_str().unwrap().to_owned())
+        .collect()
 }
 
 /// A goal in the air: the jump ended 13 cm below it, on target.
@@ -42,5 +44,8 @@ fn a_goal_that_the_robot_does_not_stand_in_is_missed() {
     let turn = "[turn]\naxis = [0.0, 1.0, 0.0]\nangle_deg = -20.0\n\n[total]";
     let text = include_str!("../tasks/a1/lateral.toml").replace("[total]", turn);
     let failures = failures(&run("pitch", &text));
-    assert!(failures.contains(&"stand.rotation_deg".to_owned()), "{failures:?}");
+    assert!(
+        failures.contains(&"stand.rotation_deg".to_owned()),
+        "{failures:?}"
+    );
 }

@@ -237,12 +237,27 @@ fn the_result_has_every_field() {
         "heat_share",
     ];
     for (part, fields) in [
-        ("flight", ["position_m", "rotation_deg", "joints_deg"].as_slice()),
-        ("stand", &["feet_m", "heading_deg", "height_m", "rotation_deg", "upright"]),
+        (
+            "flight",
+            ["position_m", "rotation_deg", "joints_deg"].as_slice(),
+        ),
+        (
+            "stand",
+            &[
+                "feet_m",
+                "heading_deg",
+                "height_m",
+                "rotation_deg",
+                "upright",
+            ],
+        ),
         ("hardware", &hardware),
     ] {
         for field in fields {
-            assert!(!json["verdict"][part][field].is_null(), "{part}.{field} in {json}");
+            assert!(
+                !json["verdict"][part][field].is_null(),
+                "{part}.{field} in {json}"
+            );
         }
     }
     assert_eq!(json["plant"]["ground"], 2.0);

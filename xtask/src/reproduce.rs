@@ -18,8 +18,9 @@ pub(crate) fn run(_: &Args) -> Result<()> {
     run::remove_folder(&folder)?;
     let mut saltus = mujoco::saltus()?;
     saltus.args(["reproduce", "--expect", EXPECTED, "--out"]);
-    run::succeed(saltus.arg(&folder))
-        .context("an item changed: look at its row, and write the new answer down if it is right")?;
+    run::succeed(saltus.arg(&folder)).context(
+        "an item changed: look at its row, and write the new answer down if it is right",
+    )?;
     let page = fs::read_to_string(folder.join("index.html"))?;
     for report in page.split("src=\"").skip(1) {
         let name = report.split('"').next().unwrap_or_default();

@@ -47,7 +47,11 @@ impl Expected {
 
     /// The tasks as they are run: files are seen from the file of expected verdicts.
     pub(crate) fn tasks(&self) -> Vec<String> {
-        self.tables.verdicts.keys().map(|name| self.seen(name)).collect()
+        self.tables
+            .verdicts
+            .keys()
+            .map(|name| self.seen(name))
+            .collect()
     }
 
     /// A task that is a file, from where the program runs.
@@ -98,17 +102,31 @@ fn differences<'a>(
             match found.iter().find(|f| f.name == name && f.sim == *sim) {
                 Some(f) if f.outcome == *outcome => {}
                 Some(f) => {
-                    wrong.push(format!("{name} in {sim}: {outcome} is expected, found {}", f.words));
+                    wrong.push(format!(
+                        "{name} in {sim}: {outcome} is expected, found {}",
+                        f.words
+                    ));
                 }
                 None if found.iter().any(|f| f.sim == *sim) => {
-                    wrong.push(format!("{name} in {sim}: {outcome} is expected, and it was not run"));
+                    wrong.push(format!(
+                        "{name} in {sim}: {outcome} is expected, and it was not run"
+                    ));
                 }
                 None => {}
             }
         }
     }
-    let new = found.iter().filter(|f| !known.iter().any(|(name, sim)| *name == f.name && *sim == f.sim));
-    wrong.extend(new.map(|f| format!("{} in {}: nothing is expected, found {}", f.name, f.sim, f.words)));
+    let new = found.iter().filter(|f| {
+        !known
+            .iter()
+            .any(|(name, sim)| *name == f.name && *sim == f.sim)
+    });
+    wrong.extend(new.map(|f| {
+        format!(
+            "{} in {}: nothing is expected, found {}",
+            f.name, f.sim, f.words
+        )
+    }));
     wrong
 }
 
@@ -129,16 +147,24 @@ mod tests {
     #[test]
     fn every_difference_is_named() {
         let sims = BTreeMap::from([("native", "target"), ("mujoco", "fault")]);
-        let sims: BTreeMap<String, String> =
-            sims.into_iter().map(|(sim, word)| (sim.to_owned(), word.to_owned())).collect();
+        let sims: BTreeMap<String, String> = sims
+            .into_iter()
+            .map(|(sim, word)| (sim.to_owned(), word.to_owned()))
+            .collect();
         let expected = || core::iter::once(("a1/spin".to_owned(), &sims));
         let check = |found: &[Found]| differences(expected(), found);
-        let good = [found("a1/spin", "native", "target"), found("a1/spin", "mujoco", "fault")];
+        let good = [
+            found("a1/spin", "native", "target"),
+            found("a1/spin", "mujoco", "fault"),
+        ];
         assert!(check(&good).is_empty());
         // A build without MuJoCo compares what it has.
         assert!(check(&good[..1]).is_empty());
         let worse = check(&[found("a1/spin", "native", "stand.feet_m")]);
-        assert!(worse.len() == 1 && worse[0].contains("a1/spin in native"), "{worse:?}");
+        assert!(
+            worse.len() == 1 && worse[0].contains("a1/spin in native"),
+            "{worse:?}"
+        );
         assert_eq!(check(&[found("a1/roll", "native", "target")]).len(), 2);
     }
 }

@@ -87,9 +87,21 @@ impl Verdict {
         let end = self.time;
         let height = (self.com_gain - task.height).abs();
         let checks = [
-            (self.landed, "no_touchdown", "the ground did not come, or a fault".to_owned()),
-            (self.within_limits, "launch.limits", "a joint left its limits".to_owned()),
-            (height <= 0.005, "flight.com_gain_m", format!("{:.4} of {} m", self.com_gain, task.height)),
+            (
+                self.landed,
+                "no_touchdown",
+                "the ground did not come, or a fault".to_owned(),
+            ),
+            (
+                self.within_limits,
+                "launch.limits",
+                "a joint left its limits".to_owned(),
+            ),
+            (
+                height <= 0.005,
+                "flight.com_gain_m",
+                format!("{:.4} of {} m", self.com_gain, task.height),
+            ),
             (
                 self.sole_clearance >= task.height - 0.005,
                 "flight.sole_clearance_m",

@@ -181,7 +181,9 @@ pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_
 /// The robot in a simulator.
 pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
     let limits = LIMITS.map(|mut limits| {
-        limits.friction = disturbance.set_to(Key::JointFriction).unwrap_or(limits.friction);
+        limits.friction = disturbance
+            .set_to(Key::JointFriction)
+            .unwrap_or(limits.friction);
         limits
     });
     let mut settings = Settings::new(&limits, &task.motors());

@@ -36,7 +36,10 @@ impl Sample {
     /// Names of the columns.
     pub(crate) fn header() -> String {
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).collect();
-        format!("index,seed,{},feet_error_m,rotation_error_deg,outcome", names.join(","))
+        format!(
+            "index,seed,{},feet_error_m,rotation_error_deg,outcome",
+            names.join(",")
+        )
     }
 
     pub(crate) fn new(index: u64, trial: &Trial<'_>, judged: &Judged) -> Self {
@@ -57,7 +60,11 @@ impl Sample {
         for value in self.values {
             let _ = write!(out, "{value:.6},");
         }
-        let _ = write!(out, "{:.6},{:.4},{},", self.feet_error, self.rotation_error, self.outcome);
+        let _ = write!(
+            out,
+            "{:.6},{:.4},{},",
+            self.feet_error, self.rotation_error, self.outcome
+        );
         out
     }
 
@@ -112,8 +119,11 @@ impl Counts {
 
     /// What failed first, for people: `flight.rotation_deg 3, stand.upright 1`.
     pub(crate) fn failures(&self) -> String {
-        let words: Vec<String> =
-            self.failed.iter().map(|(name, count)| format!("{name} {count}")).collect();
+        let words: Vec<String> = self
+            .failed
+            .iter()
+            .map(|(name, count)| format!("{name} {count}"))
+            .collect();
         words.join(", ")
     }
 }

@@ -294,11 +294,16 @@ pub(crate) fn run_watched(
         }
         let planned = sample(&jump.plan, t, node);
         node = planned.node;
-        run.samples.push(record(&world, machine.phase(), &jump.plan, &planned, t));
+        run.samples
+            .push(record(&world, machine.phase(), &jump.plan, &planned, t));
         for i in 0..RATIO {
             let now = t + f64::from(i) * world.plant().tick();
             let (asked, speeds) = drive.step(&mut machine, (&mut world, &mut sensors), now)?;
-            let motors = MotorTick { asked: &asked, speeds: &speeds, power: drive.motors.power() };
+            let motors = MotorTick {
+                asked: &asked,
+                speeds: &speeds,
+                power: drive.motors.power(),
+            };
             run.observe(&world, &motors, machine.phase(), now + world.plant().tick());
         }
         if k.is_multiple_of(10) {

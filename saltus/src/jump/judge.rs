@@ -37,9 +37,15 @@ fn between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
 
 /// Middle of the feet, world axes.
 fn middle_of_feet(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Vector3<f64> {
-    let q = State { base: *base, joints: *joints };
+    let q = State {
+        base: *base,
+        joints: *joints,
+    };
     let poses = kinematics::poses(&q);
-    let sum: Vector3<f64> = feet().iter().map(|foot| poses.frame(foot).translation).sum();
+    let sum: Vector3<f64> = feet()
+        .iter()
+        .map(|foot| poses.frame(foot).translation)
+        .sum();
     sum / FOOT_COUNT as f64
 }
 
@@ -95,19 +101,27 @@ impl Judged {
         let mut gravest = Vec::new();
         if let Some(fault) = run.fault {
             let aborted = run.samples.iter().find(|s| s.phase == Phase::Abort);
-            gravest.push(Failure::new(aborted.map_or(end, |s| s.time), "fault", fault.to_string()));
+            gravest.push(Failure::new(
+                aborted.map_or(end, |s| s.time),
+                "fault",
+                fault.to_string(),
+            ));
         } else if run.first_contact.is_none() {
             gravest.push(Failure::new(end, "no_touchdown", "the ground did not come"));
         }
-        let allowed: &[&str] = if task.trunk_may_touch { &["trunk"] } else { &[] };
+        let allowed: &[&str] = if task.trunk_may_touch {
+            &["trunk"]
+        } else {
+            &[]
+        };
         let stand = run.first_contact.and_then(|t| stand(task, run, t + SETTLE));
         let after = |time: f64| run.samples.iter().filter(move |s| s.time >= time);
-        let upright_after = run.first_contact.and_then(|t| {
-            match after(t).rfind(|s| tilt(s) >= FALLEN) {
-                None => Some(0.0),
-                Some(s) => (s.time < end - 0.2).then_some(s.time - t),
-            }
-        });
+        let upright_after =
+            run.first_contact
+                .and_then(|t| match after(t).rfind(|s| tilt(s) >= FALLEN) {
+                    None => Some(0.0),
+                    Some(s) => (s.time < end - 0.2).then_some(s.time - t),
+                });
         let touched = run.first_contact.and_then(|t| after(t).next());
         let turned = |s: &Sample| between(&task.rot_goal, &s.orientation.to_rotation_matrix());
         Self {
@@ -120,7 +134,11 @@ impl Judged {
             landed: run.first_contact.is_some() && stands(run.final_phase),
             upright_after,
             touchdown_rotation: touched.map(turned),
-            apex: run.samples.iter().map(|s| s.com.z).fold(f64::NEG_INFINITY, f64::max),
+            apex: run
+                .samples
+                .iter()
+                .map(|s| s.com.z)
+                .fold(f64::NEG_INFINITY, f64::max),
         }
     }
 
@@ -250,7 +268,10 @@ mod tests {
         let task = Task::load("a1/lateral").unwrap();
         let here = middle_of_feet(&task.start.base, &task.start.joints);
         let shift = Vector3::new(0.1, -0.2, 0.3);
-        let base = Transform::new(task.start.base.rotation, task.start.base.translation + shift);
+        let base = Transform::new(
+            task.start.base.rotation,
+            task.start.base.translation + shift,
+        );
         let there = middle_of_feet(&base, &task.start.joints);
         assert!((there - here - shift).norm() < 1e-12);
     }

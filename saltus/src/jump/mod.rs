@@ -47,7 +47,8 @@ pub(crate) const ROBOT: A1Geared = A1Geared;
 /// Links with a shape of their own, for people; feet, shanks and the trunk.
 pub(crate) const fn owner_name(contact: usize) -> &'static str {
     const NAMES: [&str; TRUNK + 1] = [
-        "FL_foot", "FR_foot", "RL_foot", "RR_foot", "FL_shank", "FR_shank", "RL_shank", "RR_shank", "trunk",
+        "FL_foot", "FR_foot", "RL_foot", "RR_foot", "FL_shank", "FR_shank", "RL_shank", "RR_shank",
+        "trunk",
     ];
     NAMES[if contact < TRUNK { contact } else { TRUNK }]
 }

@@ -1,7 +1,7 @@
 //! The simulated robot: which simulator, in which world.
 
-use super::task::Task;
 use super::sensors::World;
+use super::task::Task;
 use super::{JOINTS, ROBOT, SPHERES, spheres};
 use crate::lab::{self, Disturbance, Key};
 use a1_model::{MOTORS, a1};
@@ -37,7 +37,9 @@ impl Sim {
 /// Ground, motors and joint losses of the plant.
 fn settings(disturbance: &Disturbance) -> Settings<f64, JOINTS> {
     let limits = a1::LIMITS.map(|mut limits| {
-        limits.friction = disturbance.set_to(Key::JointFriction).unwrap_or(limits.friction);
+        limits.friction = disturbance
+            .set_to(Key::JointFriction)
+            .unwrap_or(limits.friction);
         limits
     });
     let mut settings = Settings::new(&limits, &MOTORS);
@@ -59,7 +61,11 @@ pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<
     plant.reset(&task.start, &Tangent::ZERO);
     // A box has its own height; a floor that is start and landing has to move.
     let boxed = task.edge.is_some_and(|edge| edge.drop != 0.0);
-    let moves = if boxed { 0.0 } else { height_error(disturbance) };
+    let moves = if boxed {
+        0.0
+    } else {
+        height_error(disturbance)
+    };
     Ok(World::new(plant, moves))
 }
 

@@ -72,7 +72,12 @@ impl Sensors {
     }
 
     /// Samples everything at time `now`, s, and hands over what arrives then, given the torques since the last sample.
-    pub(crate) fn measure(&mut self, now: f64, world: &World, felt: &[f64; JOINTS]) -> Option<Told> {
+    pub(crate) fn measure(
+        &mut self,
+        now: f64,
+        world: &World,
+        felt: &[f64; JOINTS],
+    ) -> Option<Told> {
         let (joints, joint_velocities) = self.encoders(world);
         let forces = world.plant().contact_forces_w();
         let forces = core::array::from_fn(|i| forces[i].norm());

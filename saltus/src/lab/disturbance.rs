@@ -62,7 +62,12 @@ impl Disturbance {
     pub(crate) fn json(&self) -> Value {
         let all: Map<String, Value> = ROWS
             .iter()
-            .map(|row| (row.name.to_owned(), json!(self.set_to(row.key).or(row.nominal))))
+            .map(|row| {
+                (
+                    row.name.to_owned(),
+                    json!(self.set_to(row.key).or(row.nominal)),
+                )
+            })
             .collect();
         Value::Object(all)
     }
@@ -70,14 +75,23 @@ impl Disturbance {
     fn set(&mut self, item: &str, name: &str, value: &str) -> Result<(), String> {
         let row = ROWS.iter().find(|row| row.name == name).ok_or_else(|| {
             let names: Vec<&str> = ROWS.iter().map(|row| row.name).collect();
-            format!("`{item}`: there is no such key; there are lab, noise, {}", names.join(", "))
+            format!(
+                "`{item}`: there is no such key; there are lab, noise, {}",
+                names.join(", ")
+            )
         })?;
-        let named = GROUNDS.iter().find(|(word, _)| row.key == Key::Ground && *word == value);
+        let named = GROUNDS
+            .iter()
+            .find(|(word, _)| row.key == Key::Ground && *word == value);
         let number = named.map_or_else(|| value.parse().ok(), |(_, ms)| Some(*ms));
         let [low, high] = row.allowed;
         let number = number.filter(|x: &f64| (low..=high).contains(x));
-        self.0[row.key as usize] =
-            Some(number.ok_or_else(|| format!("`{item}`: {name} is {}; give a number from {low} to {high}", row.what))?);
+        self.0[row.key as usize] = Some(number.ok_or_else(|| {
+            format!(
+                "`{item}`: {name} is {}; give a number from {low} to {high}",
+                row.what
+            )
+        })?);
         Ok(())
     }
 
@@ -87,9 +101,14 @@ impl Disturbance {
         self.set(item, "payload", mass)?;
         let axes: Vec<&str> = place.split(',').collect();
         if axes.len() != 3 {
-            return Err(format!("`{item}`: write payload=KG@X,Y,Z, such as payload=2@0,0,0.05"));
+            return Err(format!(
+                "`{item}`: write payload=KG@X,Y,Z, such as payload=2@0,0,0.05"
+            ));
         }
-        for (name, x) in ["payload_x", "payload_y", "payload_z"].into_iter().zip(axes) {
+        for (name, x) in ["payload_x", "payload_y", "payload_z"]
+            .into_iter()
+            .zip(axes)
+        {
             self.set(item, name, x)?;
         }
         Ok(())
@@ -99,7 +118,9 @@ impl Disturbance {
 impl fmt::Display for Disturbance {
     /// As `--plant` takes it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let set = ROWS.iter().filter_map(|row| Some((row.name, self.set_to(row.key)?)));
+        let set = ROWS
+            .iter()
+            .filter_map(|row| Some((row.name, self.set_to(row.key)?)));
         for (i, (name, value)) in set.enumerate() {
             let comma = if i == 0 { "" } else { "," };
             write!(f, "{comma}{name}={value}")?;
@@ -117,7 +138,11 @@ pub(crate) struct PlantArgument {
 
 impl fmt::Display for PlantArgument {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let comma = if self.over == Disturbance::NOMINAL { "" } else { "," };
+        let comma = if self.over == Disturbance::NOMINAL {
+            ""
+        } else {
+            ","
+        };
         let lab = if self.lab { "lab" } else { "" };
         write!(f, "{lab}{}{}", if self.lab { comma } else { "" }, self.over)
     }
@@ -139,12 +164,21 @@ impl FromStr for PlantArgument {
 
     /// `lab`, `noise` and `KEY=VALUE`, separated by commas.
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut out = Self { lab: false, over: Disturbance::NOMINAL };
+        let mut out = Self {
+            lab: false,
+            over: Disturbance::NOMINAL,
+        };
         for item in items(text) {
             match item.split_once('=') {
                 None if item == "lab" => out.lab = true,
                 None if item == "noise" => {
-                    for key in [Key::EncoderNoise, Key::SpeedNoise, Key::GyroNoise, Key::AccelerometerNoise, Key::ImuBias] {
+                    for key in [
+                        Key::EncoderNoise,
+                        Key::SpeedNoise,
+                        Key::GyroNoise,
+                        Key::AccelerometerNoise,
+                        Key::ImuBias,
+                    ] {
                         out.over.0[key as usize] = Some(key.row().lab[Lab::A1 as usize][1]);
                     }
                 }
@@ -201,7 +235,17 @@ mod tests {
         }
         assert_eq!(read.set_to(Key::JointFriction), None);
         assert_eq!(plant(""), Disturbance::NOMINAL);
-        for wrong in ["mass", "mass=x", "mass=0", "friction=-1", "wind=3", "noise=1", "payload=1@2", "ground=mud", "loss=nan"] {
+        for wrong in [
+            "mass",
+            "mass=x",
+            "mass=0",
+            "friction=-1",
+            "wind=3",
+            "noise=1",
+            "payload=1@2",
+            "ground=mud",
+            "loss=nan",
+        ] {
             let error = wrong.parse::<PlantArgument>().unwrap_err();
             assert!(error.contains(wrong), "{wrong}: {error}");
         }
@@ -225,6 +269,9 @@ mod tests {
         }
         let mixed = plant("lab,ground=hard");
         assert_eq!(mixed.get(Key::Ground), 2.0);
-        assert_eq!(mixed.get(Key::Mass), Disturbance::draw(Lab::A1, 7).get(Key::Mass));
+        assert_eq!(
+            mixed.get(Key::Mass),
+            Disturbance::draw(Lab::A1, 7).get(Key::Mass)
+        );
     }
 }

@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 use rbd_core::{Configuration, Tangent};
 
 /// A simulator of `N` joints and `C` contacts.
-pub(crate) type Plant<const N: usize, const C: usize> = Box<dyn Simulator<f64, N, C, Error = Error>>;
+pub(crate) type Plant<const N: usize, const C: usize> =
+    Box<dyn Simulator<f64, N, C, Error = Error>>;
 
 /// The plant with its ground.
 pub(crate) struct Ground<const N: usize, const C: usize> {
@@ -22,7 +23,11 @@ pub(crate) struct Ground<const N: usize, const C: usize> {
 impl<const N: usize, const C: usize> Ground<N, C> {
     /// A plant whose floor is to be `higher` after the flight, m.
     pub(crate) const fn new(plant: Plant<N, C>, higher: f64) -> Self {
-        Self { plant, waiting: higher, moved: 0.0 }
+        Self {
+            plant,
+            waiting: higher,
+            moved: 0.0,
+        }
     }
 
     /// The simulator; its robot is where its own floor is.
@@ -47,7 +52,11 @@ impl<const N: usize, const C: usize> Ground<N, C> {
         let q = *self.plant.configuration();
         let v = *self.plant.velocity();
         let falls = (q.base.rotation * v.base.linear).z <= 0.0;
-        let touches = self.plant.contact_forces_w().iter().any(|f| *f != Vector3::zeros());
+        let touches = self
+            .plant
+            .contact_forces_w()
+            .iter()
+            .any(|f| *f != Vector3::zeros());
         if self.waiting != 0.0 && flies && falls && !touches {
             let mut lower = q;
             lower.base.translation.z -= self.waiting;
@@ -71,7 +80,8 @@ mod tests {
     fn the_floor_moves_and_the_robot_does_not() {
         let feet = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
         let settings = Settings::new(&a1::LIMITS, &MOTORS);
-        let mut plant = NativeSimulator::<f64, _, 12, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
+        let mut plant =
+            NativeSimulator::<f64, _, 12, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
         let mut start = Configuration::<f64, 12>::NEUTRAL;
         start.base.translation.z = 0.6;
         start.joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);

@@ -28,7 +28,11 @@ pub(crate) fn robot<M: Tree<f64, N>, const N: usize>(
     let shift = Vector3::new(disturbance.get(Key::ComX), disturbance.get(Key::ComY), 0.0) * total;
     move_com(&mut base, &shift);
     let place = [Key::PayloadX, Key::PayloadY, Key::PayloadZ].map(|key| disturbance.get(key));
-    add_point(&mut base, disturbance.get(Key::Payload), &Vector3::from(place));
+    add_point(
+        &mut base,
+        disturbance.get(Key::Payload),
+        &Vector3::from(place),
+    );
     TableModel::new(BaseKind::Floating, base, &bodies).map_err(|error| error.to_string())
 }
 

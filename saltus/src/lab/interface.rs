@@ -32,10 +32,16 @@ impl FromStr for Interface {
             "torque" => Ok(Self::Torque),
             "joint-pd" => Ok(Self::JointPd { rate: 1000 }),
             _ => {
-                let rate = text.strip_prefix("joint-pd@").and_then(|hz| hz.parse().ok());
+                let rate = text
+                    .strip_prefix("joint-pd@")
+                    .and_then(|hz| hz.parse().ok());
                 rate.filter(|rate| RATES.contains(rate))
                     .map(|rate| Self::JointPd { rate })
-                    .ok_or_else(|| format!("`{text}`: the interfaces are torque, joint-pd (1 kHz) and joint-pd@500"))
+                    .ok_or_else(|| {
+                        format!(
+                            "`{text}`: the interfaces are torque, joint-pd (1 kHz) and joint-pd@500"
+                        )
+                    })
             }
         }
     }
@@ -124,7 +130,10 @@ mod tests {
         for text in ["torque", "joint-pd", "joint-pd@500"] {
             assert_eq!(text.parse::<Interface>().unwrap().to_string(), text);
         }
-        assert_eq!("joint-pd@1000".parse(), Ok(Interface::JointPd { rate: 1000 }));
+        assert_eq!(
+            "joint-pd@1000".parse(),
+            Ok(Interface::JointPd { rate: 1000 })
+        );
         for wrong in ["", "pd", "joint-pd@", "joint-pd@50", "joint-pd@-1"] {
             assert!(wrong.parse::<Interface>().is_err(), "{wrong}");
         }

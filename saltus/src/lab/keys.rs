@@ -137,11 +137,18 @@ pub(crate) fn markdown() -> String {
             format!("{low} to {high}")
         }
     };
-    let mut out = String::from("| key | what | nominal | A1's lab | iCub's lab | why |\n|---|---|---|---|---|---|\n");
+    let mut out = String::from(
+        "| key | what | nominal | A1's lab | iCub's lab | why |\n|---|---|---|---|---|---|\n",
+    );
     for row in &ROWS {
-        let nominal = row.nominal.map_or("the robot's".to_owned(), |x| x.to_string());
+        let nominal = row
+            .nominal
+            .map_or("the robot's".to_owned(), |x| x.to_string());
         let [a1, icub] = row.lab.map(range);
-        out += &format!("| `{}` | {} | {nominal} | {a1} | {icub} | {} |\n", row.name, row.what, row.reason);
+        out += &format!(
+            "| `{}` | {} | {nominal} | {a1} | {icub} | {} |\n",
+            row.name, row.what, row.reason
+        );
     }
     out
 }
@@ -159,7 +166,11 @@ mod tests {
             for [from, to] in row.lab {
                 assert!(low <= from && from <= to && to <= high, "{}", row.name);
             }
-            assert!(row.nominal.is_none_or(|x| low <= x && x <= high), "{}", row.name);
+            assert!(
+                row.nominal.is_none_or(|x| low <= x && x <= high),
+                "{}",
+                row.name
+            );
         }
     }
 }

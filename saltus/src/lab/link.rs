@@ -44,7 +44,11 @@ impl<P: Copy> Link<P> {
     pub(crate) fn send(&mut self, now: f64, load: P) {
         let late = self.latency + self.jitter * self.noise.uniform();
         if self.noise.uniform() >= self.loss {
-            self.under_way.push(Packet { sent: now, arrives: now + late, load });
+            self.under_way.push(Packet {
+                sent: now,
+                arrives: now + late,
+                load,
+            });
         }
     }
 

@@ -12,8 +12,8 @@ mod link;
 mod motors;
 mod sensors;
 
-pub(crate) use ground::{Ground, Plant};
 pub(crate) use disturbance::{Disturbance, Lab, PlantArgument};
+pub(crate) use ground::{Ground, Plant};
 pub(crate) use inertia::robot;
 pub(crate) use interface::{Boards, Interface};
 pub(crate) use keys::Key;

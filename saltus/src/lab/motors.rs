@@ -27,7 +27,11 @@ pub(crate) struct Motors<const N: usize> {
 
 impl<const N: usize> Motors<N> {
     /// At rest.
-    pub(crate) fn new(disturbance: &Disturbance, motors: [Motor<f64>; N], budgets: &rbd_core::Budgets) -> Self {
+    pub(crate) fn new(
+        disturbance: &Disturbance,
+        motors: [Motor<f64>; N],
+        budgets: &rbd_core::Budgets,
+    ) -> Self {
         Self {
             motors,
             gain: disturbance.get(Key::TorqueGain),
@@ -42,9 +46,18 @@ impl<const N: usize> Motors<N> {
 
     /// Torques at the joints for the next `dt` seconds, N m.
     pub(crate) fn give(&mut self, asked: &[f64; N], speeds: &[f64; N], dt: f64) -> [f64; N] {
-        let share = if self.lag > 0.0 { 1.0 - so3::math::exp(-dt / self.lag) } else { 1.0 };
+        let share = if self.lag > 0.0 {
+            1.0 - so3::math::exp(-dt / self.lag)
+        } else {
+            1.0
+        };
         let lost = self.sag * (self.power / FULL_POWER).clamp(0.0, 1.0);
-        let joints = self.torques.iter_mut().zip(asked).zip(speeds).zip(&self.motors);
+        let joints = self
+            .torques
+            .iter_mut()
+            .zip(asked)
+            .zip(speeds)
+            .zip(&self.motors);
         for (((torque, asked), speed), motor) in joints {
             *torque += share * (asked - *torque);
             let faster = speed + speed.signum() * lost * motor.no_load_speed;
@@ -107,7 +120,7 @@ mod tests {
         for _ in 0..10 {
             given = motors.give(&[10.0; 12], &[0.0; 12], 1e-4);
         }
-        let share = 1.0 - (-1.0_f64).exp();
+        let share = 1.0 - so3::math::exp(-1.0);
         assert!((motors.measured()[0] - 10.0 * share).abs() < 1e-12);
         assert!((given[0] - 9.0 * share).abs() < 1e-12);
     }
@@ -127,6 +140,10 @@ mod tests {
         let motor = MOTORS[0];
         let slope = motor.torque / (motor.no_load_speed - motor.corner_speed);
         let wanted = motor.torque - 0.1 * motor.no_load_speed * slope;
-        assert!((sagging.measured()[0] - wanted).abs() < 1e-9, "{}", sagging.measured()[0]);
+        assert!(
+            (sagging.measured()[0] - wanted).abs() < 1e-9,
+            "{}",
+            sagging.measured()[0]
+        );
     }
 }

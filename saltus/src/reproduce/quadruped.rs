@@ -268,8 +268,12 @@ fn spin(plans: &mut Plans, sim: Sim, folder: &Path) -> Row {
         kinematics.and_then(|planned| fly(&planned, sim, folder, "-kinematics")),
     ) {
         (Ok((_, whole)), Ok((_, kinematic))) => {
-            let missed =
-                |judged: &Judged| judged.verdict.flight.map_or(f64::NAN, |flight| flight.rotation);
+            let missed = |judged: &Judged| {
+                judged
+                    .verdict
+                    .flight
+                    .map_or(f64::NAN, |flight| flight.rotation)
+            };
             let (whole, kinematic) = (missed(&whole), missed(&kinematic));
             row.ours(
                 format!("{whole:.1}° off at touchdown; {kinematic:.1}° off"),
@@ -357,7 +361,10 @@ fn outcome(judged: &Judged) -> String {
     let verdict = &judged.verdict;
     let end = verdict.stand.map_or("no touchdown".to_owned(), |stand| {
         let up = if stand.upright { "upright" } else { "fallen" };
-        format!("{up}, feet {:.3} m and {:.1}° off the goal", stand.feet, stand.rotation)
+        format!(
+            "{up}, feet {:.3} m and {:.1}° off the goal",
+            stand.feet, stand.rotation
+        )
     });
     format!("{end}; {}", verdict.first())
 }

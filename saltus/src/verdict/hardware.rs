@@ -51,7 +51,12 @@ struct Window {
 impl Window {
     fn new(tick: f64) -> Self {
         let length = (WINDOW / tick).round().max(1.0) as usize;
-        Self { values: vec![0.0; length], next: 0, sum: 0.0, peak: 0.0 }
+        Self {
+            values: vec![0.0; length],
+            next: 0,
+            sum: 0.0,
+            peak: 0.0,
+        }
     }
 
     fn add(&mut self, value: f64) {
@@ -142,7 +147,10 @@ impl<const N: usize> Hardware<N> {
             let stage = tick.stage as usize;
             self.saturation[stage].add(dt, b.saturation[stage], time);
         }
-        let stop = tick.stops.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
+        let stop = tick
+            .stops
+            .iter()
+            .fold(0.0, |most, x| f64::max(most, x.abs()));
         if stop > 0.0 {
             self.stop_time.add(dt, b.stop_time, time);
             self.stop_torque.reach(stop, b.stop_torque, time);
@@ -182,17 +190,31 @@ impl<const N: usize> Hardware<N> {
             }
         };
         for (i, stage) in STAGES.iter().enumerate() {
-            check(&self.saturation[i], &format!("saturation_ms.{stage}"), b.saturation[i], 1e3);
+            check(
+                &self.saturation[i],
+                &format!("saturation_ms.{stage}"),
+                b.saturation[i],
+                1e3,
+            );
         }
         check(&self.stop_time, "stop_ms", b.stop_time, 1e3);
         check(&self.stop_torque, "stop_torque_nm", b.stop_torque, 1.0);
         check(&self.overspeed, "overspeed_ms", b.overspeed, 1e3);
-        check(&self.ground, "ground_force_10ms_weights", b.ground_force, 1.0);
+        check(
+            &self.ground,
+            "ground_force_10ms_weights",
+            b.ground_force,
+            1.0,
+        );
         check(&self.heat_share, "heat_share", 1.0, 1.0);
         check(&self.power, "supply_power_w", b.supply_power, 1.0);
         for (name, time) in &self.touched {
             if !allowed.contains(name) {
-                exceeded.push(Failure::new(*time, format!("hardware.links_touched.{name}"), "touched"));
+                exceeded.push(Failure::new(
+                    *time,
+                    format!("hardware.links_touched.{name}"),
+                    "touched",
+                ));
             }
         }
         Found {
@@ -211,11 +233,19 @@ impl<const N: usize> Hardware<N> {
 }
 
 /// Whether a motor is asked for all that it can give at this speed.
-fn saturated<const N: usize>(asked: &[f64; N], speeds: &[f64; N], motors: &[Motor<f64>; N]) -> bool {
-    asked.iter().zip(speeds).zip(motors).any(|((tau, qd), motor)| {
-        let [low, high] = motor.torque_range(*qd);
-        *tau <= low + 1e-9 || *tau >= high - 1e-9
-    })
+fn saturated<const N: usize>(
+    asked: &[f64; N],
+    speeds: &[f64; N],
+    motors: &[Motor<f64>; N],
+) -> bool {
+    asked
+        .iter()
+        .zip(speeds)
+        .zip(motors)
+        .any(|((tau, qd), motor)| {
+            let [low, high] = motor.torque_range(*qd);
+            *tau <= low + 1e-9 || *tau >= high - 1e-9
+        })
 }
 
 /// The account of a run that has ended; s, N m, rad/s, weights, W.
@@ -283,7 +313,10 @@ mod tests {
 
     /// What fails when each of `ticks` ticks is changed by `change`.
     fn fails<'a>(ticks: u32, change: impl Fn(&mut Tick<'a, 12>)) -> Vec<String> {
-        let budgets = rbd_core::Budgets { supply_power: 1000.0, ..BUDGETS };
+        let budgets = rbd_core::Budgets {
+            supply_power: 1000.0,
+            ..BUDGETS
+        };
         let mut hardware = Hardware::new(budgets, MOTORS, &a1::LIMITS, 100.0, DT);
         for k in 0..ticks {
             let mut one = tick(k);
@@ -292,7 +325,11 @@ mod tests {
         }
         let found = hardware.found(&["trunk"]);
         assert_eq!(found.within(), found.exceeded.is_empty());
-        found.exceeded.into_iter().map(|failure| failure.name).collect()
+        found
+            .exceeded
+            .into_iter()
+            .map(|failure| failure.name)
+            .collect()
     }
 
     /// Each budget is kept up to its limit and fails just beyond, and nothing else fails with it.
@@ -304,23 +341,39 @@ mod tests {
         let hard = [34.0; 12];
         assert!(fails(1000, |_| {}).is_empty());
         assert!(fails(100, |t| t.asked = &full).is_empty());
-        assert_eq!(fails(101, |t| t.asked = &full), ["hardware.saturation_ms.flight"]);
+        assert_eq!(
+            fails(101, |t| t.asked = &full),
+            ["hardware.saturation_ms.flight"]
+        );
         assert!(fails(500, |t| (t.asked, t.stage) = (&full, Stage::Landing)).is_empty());
-        assert!(fails(50, |t| t.speeds = &fast).iter().all(|name| !name.contains("overspeed")));
+        assert!(
+            fails(50, |t| t.speeds = &fast)
+                .iter()
+                .all(|name| !name.contains("overspeed"))
+        );
         assert!(fails(51, |t| t.speeds = &fast).contains(&"hardware.overspeed_ms".to_owned()));
         assert!(fails(100, |t| t.stops = &stop).is_empty());
         assert_eq!(fails(101, |t| t.stops = &stop), ["hardware.stop_ms"]);
         assert_eq!(fails(1, |t| t.stops = &hard), ["hardware.stop_torque_nm"]);
         // A blow of 1 ms with nine times the budget is less than the budget over 10 ms.
         assert!(fails(10, |t| t.ground = 9000.0).is_empty());
-        assert_eq!(fails(100, |t| t.ground = 1010.0), ["hardware.ground_force_10ms_weights"]);
-        assert_eq!(fails(100, |t| t.power = 1010.0), ["hardware.supply_power_w"]);
+        assert_eq!(
+            fails(100, |t| t.ground = 1010.0),
+            ["hardware.ground_force_10ms_weights"]
+        );
+        assert_eq!(
+            fails(100, |t| t.power = 1010.0),
+            ["hardware.supply_power_w"]
+        );
         assert_eq!(fails(50_000, |t| t.given = &full), ["hardware.heat_share"]);
     }
 
     #[test]
     fn a_touch_is_named_unless_it_is_allowed() {
         const TOUCHES: &[(&str, f64)] = &[("trunk", 50.0), ("FL_shank", 2.0), ("FR_hip", 0.5)];
-        assert_eq!(fails(2, |t| t.touches = TOUCHES), ["hardware.links_touched.FL_shank"]);
+        assert_eq!(
+            fails(2, |t| t.touches = TOUCHES),
+            ["hardware.links_touched.FL_shank"]
+        );
     }
 }

@@ -63,7 +63,11 @@ pub(crate) struct Failure {
 
 impl Failure {
     pub(crate) fn new(time: f64, name: impl Into<String>, found: impl Into<String>) -> Self {
-        Self { time, name: name.into(), found: found.into() }
+        Self {
+            time,
+            name: name.into(),
+            found: found.into(),
+        }
     }
 }
 
@@ -88,9 +92,12 @@ impl Verdict {
         let mut failures = gravest;
         failures.extend(hardware.exceeded.iter().cloned());
         let mut judge = |time: f64, name: &str, value: f64, most: f64, unit: &str| {
-            // Also true for a value that is not a number.
-            if !(value <= most) {
-                failures.push(Failure::new(time, name, format!("{value:.3} of {most} {unit}")));
+            if value > most || value.is_nan() {
+                failures.push(Failure::new(
+                    time,
+                    name,
+                    format!("{value:.3} of {most} {unit}"),
+                ));
             }
         };
         if let Some(f) = &flight {
@@ -107,7 +114,12 @@ impl Verdict {
             judge(s.time, "stand.rotation_deg", s.rotation, ANGLE, "deg");
         }
         failures.sort_by(|a, b| a.time.total_cmp(&b.time));
-        Self { flight, stand, hardware, failures }
+        Self {
+            flight,
+            stand,
+            hardware,
+            failures,
+        }
     }
 
     /// Nothing failed.
@@ -117,7 +129,9 @@ impl Verdict {
 
     /// What failed first, in a word: `stand.feet_m`, or `target` where nothing did.
     pub(crate) fn outcome(&self) -> &str {
-        self.failures.first().map_or(TARGET, |failure| &failure.name)
+        self.failures
+            .first()
+            .map_or(TARGET, |failure| &failure.name)
     }
 
     /// The robot stands in the end, wherever that is.
@@ -158,12 +172,28 @@ mod tests {
     use super::hardware::Found;
     use super::{Failure, Flight, Stand, Verdict};
 
-    const FLIGHT: Flight = Flight { time: 0.7, position: 0.05, rotation: 5.0, joints: 90.0 };
-    const STAND: Stand =
-        Stand { time: 2.7, feet: 0.05, heading: 5.0, height: 0.01, rotation: 5.0, upright: true };
+    const FLIGHT: Flight = Flight {
+        time: 0.7,
+        position: 0.05,
+        rotation: 5.0,
+        joints: 90.0,
+    };
+    const STAND: Stand = Stand {
+        time: 2.7,
+        feet: 0.05,
+        heading: 5.0,
+        height: 0.01,
+        rotation: 5.0,
+        upright: true,
+    };
 
     fn outcome(flight: Flight, stand: Stand, gravest: &[Failure]) -> String {
-        let verdict = Verdict::new(Some(flight), Some(stand), Found::default(), gravest.to_vec());
+        let verdict = Verdict::new(
+            Some(flight),
+            Some(stand),
+            Found::default(),
+            gravest.to_vec(),
+        );
         assert_eq!(verdict.on_target(), verdict.outcome() == "target");
         verdict.outcome().to_owned()
     }
@@ -174,23 +204,82 @@ mod tests {
         assert_eq!(outcome(FLIGHT, STAND, &[]), "target");
         let bad = [0.11, f64::NAN];
         for x in bad {
-            assert_eq!(outcome(Flight { position: x, ..FLIGHT }, STAND, &[]), "flight.position_m");
-            assert_eq!(outcome(FLIGHT, Stand { feet: x, ..STAND }, &[]), "stand.feet_m");
-            assert_eq!(outcome(FLIGHT, Stand { height: x, ..STAND }, &[]), "stand.height_m");
+            assert_eq!(
+                outcome(
+                    Flight {
+                        position: x,
+                        ..FLIGHT
+                    },
+                    STAND,
+                    &[]
+                ),
+                "flight.position_m"
+            );
+            assert_eq!(
+                outcome(FLIGHT, Stand { feet: x, ..STAND }, &[]),
+                "stand.feet_m"
+            );
+            assert_eq!(
+                outcome(FLIGHT, Stand { height: x, ..STAND }, &[]),
+                "stand.height_m"
+            );
             let angle = 100.0 * x;
-            assert_eq!(outcome(Flight { rotation: angle, ..FLIGHT }, STAND, &[]), "flight.rotation_deg");
-            assert_eq!(outcome(FLIGHT, Stand { heading: angle, ..STAND }, &[]), "stand.heading_deg");
-            assert_eq!(outcome(FLIGHT, Stand { rotation: angle, ..STAND }, &[]), "stand.rotation_deg");
+            assert_eq!(
+                outcome(
+                    Flight {
+                        rotation: angle,
+                        ..FLIGHT
+                    },
+                    STAND,
+                    &[]
+                ),
+                "flight.rotation_deg"
+            );
+            assert_eq!(
+                outcome(
+                    FLIGHT,
+                    Stand {
+                        heading: angle,
+                        ..STAND
+                    },
+                    &[]
+                ),
+                "stand.heading_deg"
+            );
+            assert_eq!(
+                outcome(
+                    FLIGHT,
+                    Stand {
+                        rotation: angle,
+                        ..STAND
+                    },
+                    &[]
+                ),
+                "stand.rotation_deg"
+            );
         }
-        assert_eq!(outcome(FLIGHT, Stand { upright: false, ..STAND }, &[]), "stand.upright");
+        assert_eq!(
+            outcome(
+                FLIGHT,
+                Stand {
+                    upright: false,
+                    ..STAND
+                },
+                &[]
+            ),
+            "stand.upright"
+        );
     }
 
     #[test]
     fn what_happened_first_is_named_first() {
         let fault = Failure::new(1.0, "fault", "stale");
-        let off = Flight { rotation: 20.0, ..FLIGHT };
+        let off = Flight {
+            rotation: 20.0,
+            ..FLIGHT
+        };
         let far = Stand { feet: 1.0, ..STAND };
-        assert_eq!(outcome(off, far, &[fault.clone()]), "flight.rotation_deg");
+        assert_eq!(outcome(off, far, core::slice::from_ref(&fault)), "flight.rotation_deg");
         assert_eq!(outcome(FLIGHT, far, &[fault]), "fault");
     }
 }

@@ -59,15 +59,21 @@ pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Stri
 
 /// The rows as a file.
 fn csv(rows: &[Row]) -> String {
-    let mut out = String::from("without,samples,on_target,rate,low95,high95,failed_first,no_plan\n");
+    let mut out =
+        String::from("without,samples,on_target,rate,low95,high95,failed_first,no_plan\n");
     for Row { without, result } in rows {
         let _ = match result {
             Ok(counts) => {
-                let Counts { samples, on_target, .. } = counts;
+                let Counts {
+                    samples, on_target, ..
+                } = counts;
                 let rate = *on_target as f64 / (*samples).max(1) as f64;
                 let [low, high] = wilson(*on_target, *samples);
                 let failed = counts.failures();
-                writeln!(out, "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},\"{failed}\",")
+                writeln!(
+                    out,
+                    "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},\"{failed}\","
+                )
             }
             Err(error) => {
                 let error = error.replace('"', "'").replace('\n', " ");
@@ -80,7 +86,10 @@ fn csv(rows: &[Row]) -> String {
 
 /// The rows for people.
 pub(super) fn text(rows: &[Row]) -> String {
-    let mut out = format!("{:10} {:>9} {:>15}  failed first\n", "without", "on target", "95 %");
+    let mut out = format!(
+        "{:10} {:>9} {:>15}  failed first\n",
+        "without", "on target", "95 %"
+    );
     for Row { without, result } in rows {
         let _ = match result {
             Ok(counts) => {

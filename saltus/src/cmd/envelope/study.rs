@@ -11,9 +11,9 @@ use crate::jump::judge::Judged;
 use crate::jump::measure::Measure;
 use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
-use crate::lab::{Interface, Lab, PlantArgument};
 use crate::jump::reference::Reference;
 use crate::jump::task::Task;
+use crate::lab::{Interface, Lab, PlantArgument};
 use indicatif::ProgressBar;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::HashSet;
@@ -143,7 +143,11 @@ impl Study<'_> {
             without: &self.without,
         };
         let run = execute::run_watched(self.task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
-        Ok(Sample::new(index, &trial, &Judged::of(self.task, reference, &run)))
+        Ok(Sample::new(
+            index,
+            &trial,
+            &Judged::of(self.task, reference, &run),
+        ))
     }
 
     /// The shard's file, at its end.

@@ -6,12 +6,12 @@ use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
 use crate::jump::judge::Judged;
-use crate::lab::Lab;
 use crate::jump::planned::Origin;
 use crate::jump::programs::Programs;
 use crate::jump::reference::{Legs, Reference};
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, report, stored, strip};
+use crate::lab::Lab;
 use crate::report::Line;
 use crate::robot::Quadruped;
 use indicatif::ProgressBar;
@@ -159,7 +159,14 @@ fn table(
                 trial.interface
             ),
         ),
-        plain("plant", format!("{}{}", trial.disturbance, if trial.is_nominal() { "nominal" } else { "" })),
+        plain(
+            "plant",
+            format!(
+                "{}{}",
+                trial.disturbance,
+                if trial.is_nominal() { "nominal" } else { "" }
+            ),
+        ),
         plain("first contact", seconds(run.first_contact)),
         plain("apex of the CoM", format!("{:.3} m", judged.apex)),
         plain("peak torque", format!("{:.1} N m", run.peak_torque)),

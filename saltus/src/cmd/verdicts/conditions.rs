@@ -50,10 +50,17 @@ pub(super) fn run(
         };
         let cells = judge(subjects, sims, &condition, bar);
         let word = |cell: &Cell| {
-            let word = if cell.on_target() { "yes" } else { cell.outcome() };
+            let word = if cell.on_target() {
+                "yes"
+            } else {
+                cell.outcome()
+            };
             (word.to_owned(), cell.on_target())
         };
-        columns.push(Column { title, cells: cells.iter().map(word).collect() });
+        columns.push(Column {
+            title,
+            cells: cells.iter().map(word).collect(),
+        });
         if interrupt::asked() {
             break;
         }
@@ -103,9 +110,16 @@ fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Col
     let cells = good.iter().zip(&failed).map(|(good, failed)| {
         let mut causes: Vec<(&String, &u64)> = failed.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
-        let causes: Vec<String> = causes.iter().map(|(name, n)| format!("{name} {n}")).collect();
+        let causes: Vec<String> = causes
+            .iter()
+            .map(|(name, n)| format!("{name} {n}"))
+            .collect();
         let text = format!("{good} of {done}");
-        let text = if causes.is_empty() { text } else { format!("{text} ({})", causes.join(", ")) };
+        let text = if causes.is_empty() {
+            text
+        } else {
+            format!("{text} ({})", causes.join(", "))
+        };
         (text, *good == done)
     });
     Column {

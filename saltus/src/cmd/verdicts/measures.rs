@@ -11,7 +11,10 @@ pub(super) fn table(cells: &[Cell]) -> String {
          | stops ms | too fast ms | ground, weights | touched | verdict |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for cell in cells {
-        let measures = cell.verdict.as_ref().map_or_else(|_| " | | | | | |".to_owned(), measures);
+        let measures = cell
+            .verdict
+            .as_ref()
+            .map_or_else(|_| " | | | | | |".to_owned(), measures);
         let _ = writeln!(
             out,
             "| `{}` | {} | {measures} | {} |",
@@ -33,7 +36,10 @@ fn measures(verdict: &Verdict) -> String {
         .map_or_else(none, |f| format!("{:.3}, {:.1}", f.position, f.rotation));
     let stand = verdict.stand.map_or_else(none, |s| {
         let fell = if s.upright { "" } else { "fell: " };
-        format!("{fell}{:.3}, {:.1}, {:.3}, {:.1}", s.feet, s.heading, s.height, s.rotation)
+        format!(
+            "{fell}{:.3}, {:.1}, {:.3}, {:.1}",
+            s.feet, s.heading, s.height, s.rotation
+        )
     });
     let h = &verdict.hardware;
     let [push_off, air, landing] = h.saturation.map(|x| 1e3 * x);

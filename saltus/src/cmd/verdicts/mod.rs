@@ -82,7 +82,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         None if args.tasks.is_empty() => subject::A1.map(str::to_owned).to_vec(),
         None => args.tasks.clone(),
     };
-    let bar = args.output.bar(names.len() as u64, "{msg:9} [{bar:40}] {pos}/{len} {elapsed}")?;
+    let bar = args.output.bar(
+        names.len() as u64,
+        "{msg:9} [{bar:40}] {pos}/{len} {elapsed}",
+    )?;
     bar.set_message("planning");
     let subjects = names.par_iter().map(|name| {
         let subject = Subject::load(name);
@@ -97,7 +100,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let cells = judge(&subjects, &sims, &args.condition(), &bar);
     bar.finish_and_clear();
     if args.output.json {
-        println!("{}", json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() }));
+        println!(
+            "{}",
+            json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() })
+        );
     } else if !args.output.quiet {
         print!("{}", measures::table(&cells));
     }

@@ -59,7 +59,9 @@ impl Subject {
     /// Reads a task and plans it; a task that has no plan is a subject too. Humanoid tasks may name paper B's own landing:
     /// `icub/velocity+stiff`.
     pub(super) fn load(name: &str) -> Result<Self, String> {
-        let (base, stiff) = name.strip_suffix("+stiff").map_or((name, false), |base| (base, true));
+        let (base, stiff) = name
+            .strip_suffix("+stiff")
+            .map_or((name, false), |base| (base, true));
         let kind = match humanoid::Task::named(base) {
             Some(task) if stiff => Kind::Humanoid(humanoid::Task {
                 landing: humanoid::Landing::Stiff,
@@ -93,7 +95,9 @@ fn quadruped(task: Task) -> Kind {
     if let Some(proof) = impossible(&task) {
         return Kind::NoPlan(Answer::proven(proof).text());
     }
-    let planned = task.solve().and_then(|srb| Planner::WholeBody.plan(&task, &srb));
+    let planned = task
+        .solve()
+        .and_then(|srb| Planner::WholeBody.plan(&task, &srb));
     match planned {
         Ok(reference) => Kind::Quadruped(Box::new(task), Box::new(reference)),
         Err(why) => Kind::NoPlan(why),
