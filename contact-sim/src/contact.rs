@@ -1,79 +1,41 @@
-//! Compliant contact of one sphere: normal force and friction.
+//! Compliant contact of one point: normal force and friction.
+//!
+//! The law is MuJoCo's soft contact, written as the force of a spring and a damper, so that one time constant t_c says how soft the ground
+//! is in both simulators. MuJoCo asks for the acceleration a_r = −b v − k r of a contact with penetration −r and rate v, where
+//! b = 2/(d₁ t_c) and k = 1/(d₁ t_c)², and lets it have the share d of that against the acceleration that there would be without contact;
+//! d grows with the penetration from d₀ to d₁ (MuJoCo, computation, "solver parameters", `solref` and `solimp`). At rest the force of a
+//! contact whose effective mass is m is therefore that of a spring m k d/(1 − d), and what slips under friction's share of the load
+//! creeps as in a damper.
 //!
 //! # Normal force
-//! With penetration d and its rate ḋ, f_n = k d max(0, 1 + c ḋ) (Hunt and Crossley 1975): zero at first touch,
-//! never adhesive, and its damping grows with the load, so that a hard impact loses more than a soft one.
+//! f_n = m d/(1 − d) (k δ − b' δ̇), never adhesive; b' is b, or less where a step of the integrator could not follow it.
 //!
 //! # Friction
-//! A bristle with deflection s in the tangent plane resists slip: ṡ = v_t, f_t = −(k_t s + c_t v_t). Where
-//! |f_t| would exceed μ f_n it is cut to μ f_n, and s is set to what the cut force says (Dahl's idea, as in
-//! elasto-plastic friction models): sticking is exact, a foot under a steady load does not creep, and a ball that rolls
-//! has v_t = 0 at its lowest point and meets no resistance.
+//! A bristle with deflection s in the tangent plane resists slip: ṡ = v_t − s k_t c, f_t = −(k_t s + c_t v_t), with the creep c of
+//! MuJoCo's friction. Where |f_t| would exceed μ f_n it is cut to μ f_n, and s is set to what the cut force says (Dahl's idea, as in
+//! elasto-plastic friction models). A ball that rolls has v_t = 0 at its lowest point and meets no resistance.
 
 use nalgebra::Vector3;
-use rbd_core::{Contact, ContactShape, Link};
 use so3::{Scalar, math};
 
 use crate::Touch;
 
-/// A sphere on the robot that may touch the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSphere<T> {
-    /// The link it is fixed to.
-    pub link: Link,
-    /// Its centre in the link's frame, m.
-    pub offset: [T; 3],
-    /// Its radius, m.
-    pub radius: T,
-}
+/// Penetration at which d has reached d₁, m: `solimp`'s width.
+pub(crate) const WIDTH: f64 = 1e-3;
+/// How much harder friction is than the normal force: MuJoCo's `impratio`.
+pub(crate) const FRICTION_RATIO: f64 = 10.0;
+/// Frequency of a bristle with the contact's effective mass, rad/s: stiffer than any ground is soft, and slow beside a step.
+const BRISTLE: f64 = 1000.0;
+/// Largest damping of a contact's speed in one step, share.
+const MOST_DAMPING: f64 = 0.3;
+/// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
+const HARD: f64 = 0.0025;
 
-impl<T: Scalar> ContactSphere<T> {
-    /// A robot's contact as a sphere; `None` for other shapes.
-    #[must_use]
-    pub fn of(contact: &Contact<T>) -> Option<Self> {
-        match contact.shape {
-            ContactShape::Sphere { radius } => Some(Self {
-                link: contact.frame.link,
-                offset: contact.frame.offset,
-                radius,
-            }),
-            ContactShape::Rectangle { .. } => None,
-        }
-    }
-
-    /// A robot's rectangular sole as four balls inside its corners that touch the sole's plane from above, in the order
-    /// (x⁻, y⁻), (x⁻, y⁺), (x⁺, y⁻), (x⁺, y⁺); `None` for other shapes. Several points of friction resist a turn about
-    /// the normal, so a sole needs no torsional friction of its own.
-    #[must_use]
-    pub fn corners(contact: &Contact<T>, radius: T) -> Option<[Self; 4]> {
-        let ContactShape::Rectangle {
-            x: [xl, xh],
-            y: [yl, yh],
-        } = contact.shape
-        else {
-            return None;
-        };
-        let (xl, xh, yl, yh) = (xl + radius, xh - radius, yl + radius, yh - radius);
-        let placement = contact.frame.placement();
-        Some([(xl, yl), (xl, yh), (xh, yl), (xh, yh)].map(|(x, y)| Self {
-            link: contact.frame.link,
-            offset: placement.point(&Vector3::new(x, y, radius)).into(),
-            radius,
-        }))
-    }
-}
-
-/// Stiffness, dissipation and friction of the ground.
+/// Softness and friction of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw<T> {
-    /// Normal stiffness k, N/m.
-    pub stiffness: T,
-    /// Dissipation c, s/m.
-    pub dissipation: T,
-    /// Tangential stiffness k_t, N/m.
-    pub tangential_stiffness: T,
-    /// Tangential damping c_t, N s/m.
-    pub tangential_damping: T,
+    /// Time in which a contact that is pressed in comes back, s: 2 ms is concrete, 20 ms (MuJoCo's default) a gym mat.
+    pub time_constant: T,
     /// Coulomb coefficient μ.
     pub friction: T,
 }
@@ -105,24 +67,45 @@ impl<T: Scalar> ContactState<T> {
 }
 
 impl<T: Scalar> ContactLaw<T> {
-    /// Rubber foot on a hard floor: 1 mm of penetration at 100 N.
+    /// A rubber foot on concrete.
     pub fn new(friction: T) -> Self {
         Self {
-            stiffness: T::of(1.0e5),
-            dissipation: T::of(1.0),
-            tangential_stiffness: T::of(8.0e4),
-            tangential_damping: T::of(60.0),
+            time_constant: T::of(0.002),
             friction,
         }
     }
 
-    /// Advances one contact by `dt`, given where it touches and the velocity of its material point.
+    /// d₀ and d₁.
+    #[must_use]
+    pub fn impedance(&self) -> [T; 2] {
+        if self.time_constant <= T::of(HARD) {
+            [T::of(0.95), T::of(0.99)]
+        } else {
+            [T::of(0.9), T::of(0.95)]
+        }
+    }
+
+    /// d/(1 − d) at a penetration.
+    fn share(&self, depth: T) -> T {
+        let [d0, d1] = self.impedance();
+        let x = math::min(depth / T::of(WIDTH), T::ONE);
+        // MuJoCo's default: two parabolas that meet in the middle.
+        let y = if x < T::HALF {
+            T::TWO * x * x
+        } else {
+            T::ONE - T::TWO * (T::ONE - x) * (T::ONE - x)
+        };
+        let d = d0 + (d1 - d0) * y;
+        d / (T::ONE - d)
+    }
+
+    /// Advances one contact by `dt`, given where it touches, the velocity of its material point and its effective mass, kg.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,
         touch: &Touch<T>,
-        point_w: &Vector3<T>,
-        velocity_w: &Vector3<T>,
+        (point_w, velocity_w): (&Vector3<T>, &Vector3<T>),
+        mass: T,
         dt: T,
     ) {
         state.depth = touch.depth;
@@ -137,12 +120,19 @@ impl<T: Scalar> ContactLaw<T> {
         }
         let n = &touch.normal_w;
         let rate = velocity_w.dot(n);
-        let gain = math::max(T::ZERO, T::ONE - self.dissipation * rate);
-        let normal = self.stiffness * touch.depth * gain;
+        let reach = self.impedance()[1] * self.time_constant;
+        let share = self.share(touch.depth);
+        let damping = math::min(share * T::TWO / reach, T::of(MOST_DAMPING) / dt) * mass;
+        let stiffness = share / (reach * reach) * mass;
+        let normal = math::max(stiffness * touch.depth - damping * rate, T::ZERO);
         let slip = velocity_w - n * rate;
-        let mut bristle = state.bristle_w + slip * dt;
+        let bristle_stiffness = T::of(BRISTLE * BRISTLE) * mass;
+        let bristle_damping = T::of(BRISTLE) * mass;
+        let creep = reach / (T::TWO * share * mass * T::of(FRICTION_RATIO));
+        let leak = math::min(bristle_stiffness * creep * dt, T::ONE);
+        let mut bristle = state.bristle_w * (T::ONE - leak) + slip * dt;
         bristle -= n * bristle.dot(n);
-        let wanted = -(bristle * self.tangential_stiffness + slip * self.tangential_damping);
+        let wanted = -(bristle * bristle_stiffness + slip * bristle_damping);
         let limit = self.friction * normal;
         let size = math::sqrt(wanted.norm_squared());
         state.sliding = size > limit;
@@ -152,7 +142,7 @@ impl<T: Scalar> ContactLaw<T> {
             wanted
         };
         if state.sliding {
-            bristle = -(friction + slip * self.tangential_damping) / self.tangential_stiffness;
+            bristle = -(friction + slip * bristle_damping) / bristle_stiffness;
         }
         state.bristle_w = bristle;
         state.force_w = n * normal + friction;

@@ -9,6 +9,7 @@ pub mod linear;
 pub mod manifold;
 pub mod model;
 pub mod robot;
+mod shape;
 pub mod spatial;
 pub mod state;
 pub mod table;
@@ -46,6 +47,7 @@ pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
 pub use hardware::{Budgets, Contact, ContactShape, Motor};
+pub use shape::Shape;
 pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 pub use robot::Model;

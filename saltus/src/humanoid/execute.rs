@@ -138,7 +138,7 @@ fn record(plant: &Plant, controller: &Controller, time: f64) -> Sample {
     centroidal_map(&ROBOT, &posture, &mut map);
     let poses = poses(q);
     let heights = spheres()
-        .map(|ball| poses.link(ball.link).point(&Vector3::from(ball.offset)).z - ball.radius);
+        .map(|ball| poses.link(ball.link).point(&Vector3::from(ball.from)).z - ball.radius);
     Sample {
         time,
         phase: controller.phase,

@@ -9,7 +9,7 @@ pub(crate) mod sensors;
 
 use crate::jump::plant::Sim;
 use crate::lab::{self, Disturbance, Key};
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use icub_model::gazebo::joint;
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, takeoff_speed};
@@ -167,8 +167,8 @@ pub(crate) fn landing_posture() -> [f64; JOINTS] {
 }
 
 /// The corners of the soles.
-pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
-    let corners = SOLES.map(|sole| ContactSphere::corners(&sole, CORNER_RADIUS));
+pub(crate) fn spheres() -> [Shape<f64>; SPHERES] {
+    let corners: [_; 2] = core::array::from_fn(|i| Shape::corners(&SOLES[i], CORNER_RADIUS, 4 * i));
     core::array::from_fn(|i| match &corners[i / 4] {
         Some(balls) => balls[i % 4],
         None => unreachable!("the soles are rectangles"),
@@ -188,6 +188,7 @@ pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<
     });
     let mut settings = Settings::new(&limits, &task.motors());
     settings.contact.friction = disturbance.get(Key::Friction);
+    settings.contact.time_constant = disturbance.seconds(Key::Ground);
     let robot = lab::robot(disturbance, &ROBOT)?;
     Ok(match sim {
         Sim::Native => Box::new(NativeSimulator::new(
@@ -215,7 +216,7 @@ fn mujoco(
         .map(|(i, sole)| Geom::of(sole, 4 * i))
         .collect();
     settings.substeps = 1;
-    let sim = MujocoSimulator::new(robot, &geoms, &Terrain::FLAT, settings);
+    let sim = MujocoSimulator::new(robot, (&geoms, &[]), &Terrain::FLAT, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 

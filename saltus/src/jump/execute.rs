@@ -6,10 +6,10 @@ use super::plant::{Sim, plant};
 use super::reference::{Reference, heading_matrix};
 use super::sensors::{Sensors, Told, World};
 use super::task::Task;
-use super::{FOOT_COUNT, JOINTS, ROBOT, feet, kinematics, owner_name};
+use super::{FOOT_COUNT, JOINTS, ROBOT, feet, kinematics};
 use crate::lab::{Boards, Disturbance, Interface, Motors};
 use crate::verdict::{Hardware, Stage, Tick as HardwareTick};
-use a1_model::{BUDGETS, MOTORS, a1};
+use a1_model::{BUDGETS, MOTORS, OWNERS, a1};
 use jump_control::{Fault, Phase, Plan, Torques, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use landing::Outcome;
@@ -130,10 +130,15 @@ impl Run {
         if self.first_contact.is_none() && looking && foot > TOUCHDOWN {
             self.first_contact = Some(time);
         }
-        let touching = forces.iter().enumerate().skip(FOOT_COUNT);
-        let touches: Vec<(&'static str, f64)> = touching
-            .filter(|(_, f)| **f != Vector3::zeros())
-            .map(|(i, f)| (owner_name(i), f.norm()))
+        let owners = OWNERS.iter().zip(forces).zip(plant.link_forces());
+        let touches: Vec<(&'static str, f64)> = owners
+            .enumerate()
+            // A foot may touch the ground, and no link.
+            .map(|(i, ((name, ground), link))| {
+                let ground = if i < FOOT_COUNT { 0.0 } else { ground.norm() };
+                (*name, ground + link)
+            })
+            .filter(|(_, force)| *force > 0.0)
             .collect();
         self.hardware.add(&HardwareTick {
             time,
@@ -142,7 +147,7 @@ impl Run {
             asked: motors.asked,
             given: delivered,
             speeds: motors.speeds,
-            stops: &[0.0; JOINTS],
+            stops: plant.stop_torques(),
             ground: forces.iter().sum::<Vector3<f64>>().norm(),
             power: motors.power,
             touches: &touches,

@@ -217,7 +217,7 @@ fn plan_json(plan: Option<&SrbPlan>, reference: &Reference) -> Value {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
-    use crate::jump::{SPHERES, kinematics};
+    use crate::jump::{OWNERS, kinematics};
     use jump_control::Phase;
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Transform};
@@ -234,7 +234,7 @@ mod tests {
             joints: q.joints,
             joint_velocities: [0.0; 12],
             torques: [0.0; 12],
-            forces_w: [Vector3::zeros(); SPHERES],
+            forces_w: [Vector3::zeros(); OWNERS],
             planned_position: Vector3::zeros(),
             planned_joints: [0.0; 12],
             planned_forces_w: [Vector3::zeros(); 4],

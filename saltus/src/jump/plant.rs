@@ -2,9 +2,9 @@
 
 use super::sensors::World;
 use super::task::Task;
-use super::{JOINTS, ROBOT, SPHERES, spheres};
+use super::{JOINTS, OWNERS, ROBOT};
 use crate::lab::{self, Disturbance, Key};
-use a1_model::{MOTORS, a1};
+use a1_model::{MOTORS, SHAPES, a1};
 use contact_sim::{Block, NativeSimulator, Settings, Terrain};
 use nalgebra::Vector3;
 use rbd_core::Tangent;
@@ -13,7 +13,7 @@ use rbd_core::Tangent;
 const AROUND: f64 = 0.6;
 
 /// A simulator of A1.
-type Plant = lab::Plant<JOINTS, SPHERES>;
+type Plant = lab::Plant<JOINTS, OWNERS>;
 
 /// The simulators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -44,18 +44,19 @@ fn settings(disturbance: &Disturbance) -> Settings<f64, JOINTS> {
     });
     let mut settings = Settings::new(&limits, &MOTORS);
     settings.contact.friction = disturbance.get(Key::Friction);
+    settings.contact.time_constant = disturbance.seconds(Key::Ground);
     settings
 }
 
 /// The plant at the start of a task.
 pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
     let mut plant: Plant = match sim {
-        Sim::Native => Box::new(NativeSimulator::new(
-            lab::robot(disturbance, &ROBOT)?,
-            spheres(),
-            terrain(task, height_error(disturbance)),
-            settings(disturbance),
-        )),
+        Sim::Native => {
+            let terrain = terrain(task, height_error(disturbance));
+            let robot = lab::robot(disturbance, &ROBOT)?;
+            let native = NativeSimulator::new(robot, SHAPES, terrain, settings(disturbance));
+            Box::new(native.colliding(pairs(task)))
+        }
         Sim::Mujoco => mujoco(task, disturbance)?,
     };
     plant.reset(&task.start, &Tangent::ZERO);
@@ -69,28 +70,22 @@ pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<
     Ok(World::new(plant, moves))
 }
 
-/// MuJoCo: feet and knees as the native simulator has them, the trunk as the published box.
+/// Shapes that touch each other: those that do not where the robot stands.
+fn pairs(task: &Task) -> [u64; SHAPES.len()] {
+    contact_sim::self_contacts(&ROBOT, &SHAPES, &task.start)
+}
+
+/// MuJoCo, with the same shapes.
 #[cfg(feature = "mujoco")]
 fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
-    use contact_sim::{Geom, GeomShape, MujocoSimulator};
-    use rbd_core::Frame;
+    use contact_sim::{Geom, MujocoSimulator};
 
-    let balls = spheres();
-    let mut geoms: Vec<Geom> = balls[..super::TRUNK]
-        .iter()
-        .enumerate()
-        .map(|(i, sphere)| Geom::sphere(sphere, i))
-        .collect();
-    geoms.push(Geom {
-        frame: Frame::IDENTITY,
-        shape: GeomShape::Box(super::TRUNK_SIZE.map(|x| 0.5 * x)),
-        contact: super::TRUNK,
-    });
+    let geoms = SHAPES.map(Geom::Swept);
     let mut settings = settings(disturbance);
     settings.substeps = 1;
     let robot = lab::robot(disturbance, &ROBOT)?;
     let terrain = terrain(task, height_error(disturbance));
-    let sim = MujocoSimulator::new(&robot, &geoms, &terrain, settings);
+    let sim = MujocoSimulator::new(&robot, (&geoms, &pairs(task)), &terrain, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 

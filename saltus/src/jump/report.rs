@@ -65,7 +65,7 @@ fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
 pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
     let terrain = super::plant::terrain(task, 0.0);
     let scene = Scene {
-        trunk: super::TRUNK_SIZE,
+        trunk: a1_model::shapes::TRUNK,
         foot_radius: a1_model::FOOT_RADIUS,
         floor: terrain.floor,
         block: terrain.block.map(|block| [block.lower, block.upper]),
@@ -102,7 +102,7 @@ fn scene(task: &Task) -> Value {
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),
         "foot_radius": a1_model::FOOT_RADIUS,
-        "trunk": super::TRUNK_SIZE,
+        "trunk": a1_model::shapes::TRUNK,
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })

@@ -1,7 +1,7 @@
 //! What the controller is told: encoders, foot sensors, an IMU, and the base as `state-est` makes it of them; never the truth. In a
 //! nominal run the sensors are without error.
 
-use super::{FOOT_COUNT, JOINTS, ROBOT, SPHERES, State, feet};
+use super::{FOOT_COUNT, JOINTS, ROBOT, OWNERS, State, feet};
 use crate::lab::{Disturbance, Encoders, FootSensors, Ground, Interface, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};
@@ -13,7 +13,7 @@ use state_est::{Foot, Status};
 pub(crate) type Told = jump_machine::Inputs<f64, JOINTS, FOOT_COUNT>;
 
 /// The robot in its lab.
-pub(crate) type World = Ground<JOINTS, SPHERES>;
+pub(crate) type World = Ground<JOINTS, OWNERS>;
 
 /// Force at which a foot is certainly loaded, N.
 const LOADED: f64 = 15.0;

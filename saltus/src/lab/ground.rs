@@ -72,16 +72,16 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::Ground;
     use a1_model::{A1Geared, FEET, MOTORS, a1};
-    use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+    use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
     use rbd_core::{Configuration, Tangent};
 
     /// A robot that is dropped sees no jump in its own height, and meets the floor where it was moved to.
     #[test]
     fn the_floor_moves_and_the_robot_does_not() {
-        let feet = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
+        let feet = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
         let settings = Settings::new(&a1::LIMITS, &MOTORS);
         let mut plant =
-            NativeSimulator::<f64, _, 12, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
+            NativeSimulator::<f64, _, 12, 4, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
         let mut start = Configuration::<f64, 12>::NEUTRAL;
         start.base.translation.z = 0.6;
         start.joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);
