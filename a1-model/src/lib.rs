@@ -15,5 +15,5 @@ pub use a1::A1;
 pub use a1_reference::A1Reference;
 pub use budgets::BUDGETS;
 pub use geared::A1Geared;
-pub use shapes::{OWNERS, SHAPES};
 pub use hardware::{FEET, FEET_F32, FOOT_RADIUS, MOTORS, MOTORS_F32};
+pub use shapes::{OWNERS, SHAPES};

@@ -7,8 +7,9 @@ use crate::hardware::FOOT_RADIUS;
 
 /// What forces count for: feet, shanks, thighs and hips by leg (FL FR RL RR), and the trunk.
 pub static OWNERS: [&str; 17] = [
-    "FL_foot", "FR_foot", "RL_foot", "RR_foot", "FL_shank", "FR_shank", "RL_shank", "RR_shank", "FL_thigh", "FR_thigh", "RL_thigh",
-    "RR_thigh", "FL_hip", "FR_hip", "RL_hip", "RR_hip", "trunk",
+    "FL_foot", "FR_foot", "RL_foot", "RR_foot", "FL_shank", "FR_shank", "RL_shank", "RR_shank",
+    "FL_thigh", "FR_thigh", "RL_thigh", "RR_thigh", "FL_hip", "FR_hip", "RL_hip", "RR_hip",
+    "trunk",
 ];
 
 /// Size of the trunk's box in the URDF, m.
@@ -33,7 +34,12 @@ pub static SHAPES: [Shape<f64>; 26] = shapes();
 
 const fn shapes() -> [Shape<f64>; 26] {
     let mut out = [Shape::ball(Link::Base, [0.0; 3], 0.0, 0); 26];
-    let feet = [frame::FL_FOOT, frame::FR_FOOT, frame::RL_FOOT, frame::RR_FOOT];
+    let feet = [
+        frame::FL_FOOT,
+        frame::FR_FOOT,
+        frame::RL_FOOT,
+        frame::RR_FOOT,
+    ];
     let mut leg = 0;
     while leg < 4 {
         let foot = &feet[leg];

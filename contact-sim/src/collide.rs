@@ -7,8 +7,8 @@ use rbd_core::{
 };
 use so3::{Scalar, math};
 
-use crate::Shape;
 use crate::shape::Swept;
+use crate::{ContactMass, Shape};
 
 /// Most shapes of one robot: a bit each.
 pub const MOST_SHAPES: usize = 64;
@@ -30,7 +30,10 @@ pub(crate) fn place<T: Scalar, const N: usize>(
 fn are_neighbours<T: Scalar, M: Tree<T, N>, const N: usize>(model: &M, a: Link, b: Link) -> bool {
     let hangs = |link: Link, from: Link| match link {
         Link::Base => false,
-        Link::Joint(i) => model.bodies().get(i).is_some_and(|body| body.parent == from),
+        Link::Joint(i) => model
+            .bodies()
+            .get(i)
+            .is_some_and(|body| body.parent == from),
     };
     a == b || hangs(a, b) || hangs(b, a)
 }
@@ -61,24 +64,49 @@ pub fn self_contacts<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
     pairs
 }
 
-/// Effective mass of a link at its centre of mass, with the joints at zero, mean of three directions, kg: 3/tr(J M⁻¹ Jᵀ), the inverse of
-/// what MuJoCo calls `body_invweight0`.
+/// How hard it is to push a shape: its link at its centre of mass, and the shape's ends, of which the lighter counts.
+pub(crate) fn contact_mass<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    shape: &Shape<T>,
+) -> ContactMass<T> {
+    let inertia = match shape.link {
+        Link::Base => Some(model.base().inertia()),
+        Link::Joint(i) => model.bodies().get(i).map(rbd_core::Body::inertia),
+    };
+    let com = inertia
+        .filter(|i| i.mass > T::ZERO)
+        .map(|i| i.first / i.mass);
+    let com = com.unwrap_or_else(Vector3::zeros).into();
+    let [from, to] = [shape.from, shape.to].map(|end| effective_mass(model, shape.link, end));
+    ContactMass {
+        link: effective_mass(model, shape.link, com),
+        point: math::min(from, to),
+    }
+}
+
+/// Effective mass of a link's point with the joints at zero, mean of three directions, kg: 3/tr(J M⁻¹ Jᵀ). At the link's centre of mass it
+/// is the inverse of what MuJoCo calls `body_invweight0`.
 #[must_use]
-pub fn effective_mass<T: Scalar, M: Tree<T, N>, const N: usize>(model: &M, link: Link) -> T {
+pub fn effective_mass<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    link: Link,
+    point: [T; 3],
+) -> T {
     let neutral = Configuration::NEUTRAL;
     let posture = Posture::new(model, &neutral);
     let mut kinematics = Kinematics::IDENTITY;
     forward_kinematics(model, &posture, &mut kinematics);
-    let inertia = match link {
-        Link::Base => Some(model.base().inertia()),
-        Link::Joint(i) => model.bodies().get(i).map(rbd_core::Body::inertia),
-    };
-    let com = inertia.filter(|i| i.mass > T::ZERO).map(|i| i.first / i.mass);
     let mut frame = Frame::IDENTITY;
     frame.link = link;
-    frame.offset = com.unwrap_or_else(Vector3::zeros).into();
+    frame.offset = point;
     let mut jac = FrameJacobian::ZERO;
-    frame_jacobian(model, &kinematics, &frame, Axes::LocalWorldAligned, &mut jac);
+    frame_jacobian(
+        model,
+        &kinematics,
+        &frame,
+        Axes::LocalWorldAligned,
+        &mut jac,
+    );
     let mut workspace = AbaWorkspace::new();
     let mut mobility = T::ZERO;
     for axis in 0..3 {
@@ -86,7 +114,8 @@ pub fn effective_mass<T: Scalar, M: Tree<T, N>, const N: usize>(model: &M, link:
         let effort = jac.tr_mul(&Force::new(unit, Vector3::zeros()));
         let motion = mass_solve(model, &posture, &effort, &mut workspace);
         let joints = effort.joints.iter().zip(&motion.joints);
-        mobility += motion.base.dot(&effort.base) + joints.fold(T::ZERO, |sum, (a, b)| sum + *a * *b);
+        mobility +=
+            motion.base.dot(&effort.base) + joints.fold(T::ZERO, |sum, (a, b)| sum + *a * *b);
     }
     T::of(3.0) / math::max(mobility, T::of(1e-9))
 }

@@ -26,8 +26,9 @@ pub(crate) const WIDTH: f64 = 1e-3;
 pub(crate) const FRICTION_RATIO: f64 = 10.0;
 /// Frequency of a bristle with the contact's effective mass, rad/s: stiffer than any ground is soft, and slow beside a step.
 const BRISTLE: f64 = 1000.0;
-/// Largest damping of a contact's speed in one step, share.
+/// Largest damping of a contact's speed in one step, share, and largest phase of its spring, rad: an explicit step follows no more.
 const MOST_DAMPING: f64 = 0.3;
+const MOST_PHASE: f64 = 0.5;
 /// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
 const HARD: f64 = 0.0025;
 
@@ -66,6 +67,15 @@ impl<T: Scalar> ContactState<T> {
     };
 }
 
+/// How hard it is to push a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactMass<T> {
+    /// Effective mass of its link, by which MuJoCo scales a contact's softness, kg.
+    pub link: T,
+    /// Effective mass of the point of contact, which bounds what an explicit step can follow, kg.
+    pub point: T,
+}
+
 impl<T: Scalar> ContactLaw<T> {
     /// A rubber foot on concrete.
     pub fn new(friction: T) -> Self {
@@ -99,13 +109,13 @@ impl<T: Scalar> ContactLaw<T> {
         d / (T::ONE - d)
     }
 
-    /// Advances one contact by `dt`, given where it touches, the velocity of its material point and its effective mass, kg.
+    /// Advances one contact by `dt`, given where it touches, the velocity of its material point and how hard it is to push.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,
         touch: &Touch<T>,
         (point_w, velocity_w): (&Vector3<T>, &Vector3<T>),
-        mass: T,
+        mass: ContactMass<T>,
         dt: T,
     ) {
         state.depth = touch.depth;
@@ -122,13 +132,21 @@ impl<T: Scalar> ContactLaw<T> {
         let rate = velocity_w.dot(n);
         let reach = self.impedance()[1] * self.time_constant;
         let share = self.share(touch.depth);
-        let damping = math::min(share * T::TWO / reach, T::of(MOST_DAMPING) / dt) * mass;
-        let stiffness = share / (reach * reach) * mass;
+        let quick = T::of(MOST_PHASE) / dt;
+        let damping = math::min(
+            share * T::TWO / reach * mass.link,
+            T::of(MOST_DAMPING) / dt * mass.point,
+        );
+        let stiffness = math::min(
+            share / (reach * reach) * mass.link,
+            quick * quick * mass.point,
+        );
         let normal = math::max(stiffness * touch.depth - damping * rate, T::ZERO);
         let slip = velocity_w - n * rate;
-        let bristle_stiffness = T::of(BRISTLE * BRISTLE) * mass;
-        let bristle_damping = T::of(BRISTLE) * mass;
-        let creep = reach / (T::TWO * share * mass * T::of(FRICTION_RATIO));
+        let least = math::min(mass.link, mass.point);
+        let bristle_stiffness = T::of(BRISTLE * BRISTLE) * least;
+        let bristle_damping = T::of(BRISTLE) * least;
+        let creep = reach / (T::TWO * share * mass.link * T::of(FRICTION_RATIO));
         let leak = math::min(bristle_stiffness * creep * dt, T::ONE);
         let mut bristle = state.bristle_w * (T::ONE - leak) + slip * dt;
         bristle -= n * bristle.dot(n);

@@ -19,7 +19,7 @@ mod simulator;
 mod terrain;
 
 pub use collide::{MOST_SHAPES, effective_mass, self_contacts};
-pub use contact::{ContactLaw, ContactState};
+pub use contact::{ContactLaw, ContactMass, ContactState};
 pub use error::Error;
 pub use joints::Stops;
 #[cfg(feature = "mujoco")]
@@ -27,7 +27,7 @@ pub use mjcf::{Geom, mjcf};
 #[cfg(feature = "mujoco")]
 pub use mujoco::{ModelRefused, MujocoSimulator};
 pub use native::NativeSimulator;
-pub use settings::Settings;
 pub use rbd_core::Shape;
+pub use settings::Settings;
 pub use simulator::Simulator;
 pub use terrain::{Block, Terrain, Touch};

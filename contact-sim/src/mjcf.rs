@@ -175,7 +175,9 @@ pub(crate) fn stopped<const N: usize>(
     settings: &Settings<f64, N>,
 ) -> impl Iterator<Item = usize> {
     let joints = settings.limits.iter().enumerate().take(count);
-    joints.filter(|(_, limits)| has_stops(limits)).map(|(i, _)| i)
+    joints
+        .filter(|(_, limits)| has_stops(limits))
+        .map(|(i, _)| i)
 }
 
 /// Options. Contacts are damped critically, friction is a true cone, stops are stiff (time constant 4 ms).
@@ -219,7 +221,10 @@ fn inertial(out: &mut String, inertia: &Inertia<f64>) {
 }
 
 fn shapes(out: &mut String, geoms: &[Geom], link: Link) {
-    let here = geoms.iter().enumerate().filter(|(_, geom)| geom.link() == link);
+    let here = geoms
+        .iter()
+        .enumerate()
+        .filter(|(_, geom)| geom.link() == link);
     for (index, geom) in here {
         let shape = match geom {
             Geom::Swept(ball) if ball.is_ball() => std::format!(
@@ -273,7 +278,10 @@ fn pairs_and_stops(out: &mut String, pairs: &[u64], settings: &ContactLaw<f64>, 
 /// `solref` and `solimp` of the ground.
 fn softness(law: &ContactLaw<f64>) -> String {
     let [d0, d1] = law.impedance();
-    std::format!("solref=\"{:?} 1\" solimp=\"{d0:?} {d1:?} {WIDTH:?}\"", law.time_constant)
+    std::format!(
+        "solref=\"{:?} 1\" solimp=\"{d0:?} {d1:?} {WIDTH:?}\"",
+        law.time_constant
+    )
 }
 
 /// A rotation by its first two columns.

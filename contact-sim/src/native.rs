@@ -8,13 +8,14 @@
 use nalgebra::Vector3;
 use rbd_core::{
     AbaWorkspace, BodyMotions, Configuration, Effort, Force, Kinematics, Link, Posture, Tangent,
-    Transform, Tree, aba_with_forces, forward_kinematics, forward_velocities, integrate, joint_friction,
+    Transform, Tree, aba_with_forces, forward_kinematics, forward_velocities, integrate,
+    joint_friction,
 };
 use so3::{Scalar, math, orthonormalize_step};
 
-use crate::collide::{effective_mass, place};
+use crate::collide::{contact_mass, place};
 use crate::shape::Swept;
-use crate::{ContactState, Error, Settings, Shape, Simulator, Terrain, Touch};
+use crate::{ContactMass, ContactState, Error, Settings, Shape, Simulator, Terrain, Touch};
 
 /// Contacts that one shape may have with the world: at both its ends, and where an edge meets it between them.
 const SLOTS: usize = 3;
@@ -34,8 +35,8 @@ pub struct NativeSimulator<T: Scalar, M, const N: usize, const S: usize, const C
     pub settings: Settings<T, N>,
     /// Pairs of shapes that may touch each other, as [`self_contacts`](crate::self_contacts) finds them.
     pairs: [u64; S],
-    /// Effective masses of the shapes' links, kg.
-    masses: [T; S],
+    /// How hard it is to push each shape.
+    masses: [ContactMass<T>; S],
     configuration: Configuration<T, N>,
     velocity: Tangent<T, N>,
     acceleration: Tangent<T, N>,
@@ -91,7 +92,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
             terrain,
             settings,
             pairs: [0; S],
-            masses: [T::ZERO; S],
+            masses: [ContactMass {
+                link: T::ZERO,
+                point: T::ZERO,
+            }; S],
             configuration: Configuration::NEUTRAL,
             velocity: Tangent::ZERO,
             acceleration: Tangent::ZERO,
@@ -188,7 +192,9 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 let arm_w = center_w - touch.normal_w * swept.radius - xf_wl.translation;
                 let velocity_w = self.point_velocity(shape.link, &xf_wl, &arm_w);
                 let point_w = xf_wl.translation + arm_w;
-                let mass = self.masses.get(i).copied().unwrap_or(T::ZERO);
+                let Some(mass) = self.masses.get(i).copied() else {
+                    continue;
+                };
                 let law = self.settings.contact;
                 let Some(state) = self.contacts.get_mut(i).and_then(|c| c.get_mut(slot)) else {
                     continue;
@@ -206,7 +212,11 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
     }
 
     /// Where a shape is nearest to the world: slot, touch, centre of the ball that touches.
-    fn touches(&self, shape: &Shape<T>, swept: &Swept<T>) -> [(usize, Touch<T>, Vector3<T>); SLOTS] {
+    fn touches(
+        &self,
+        shape: &Shape<T>,
+        swept: &Swept<T>,
+    ) -> [(usize, Touch<T>, Vector3<T>); SLOTS] {
         let nothing = Touch {
             depth: -T::ONE,
             normal_w: Vector3::z(),
@@ -223,7 +233,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         last.1 = self.terrain.touch(&swept.to_w, swept.radius);
         last.2 = swept.to_w;
         let (center_w, reach) = swept.bound();
-        let near = self.terrain.block.filter(|block| block.is_near(&center_w, reach));
+        let near = self
+            .terrain
+            .block
+            .filter(|block| block.is_near(&center_w, reach));
         if let Some(block) = near {
             let share = block.deepest(&swept.from_w, &swept.to_w);
             if share > T::of(END) && share < T::of(1.0 - END) {
@@ -285,9 +298,15 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let velocity_w =
             self.point_velocity(a.link, &xf_a, &arm_a) - self.point_velocity(b.link, &xf_b, &arm_b);
         let mut state = ContactState::NONE;
-        let mass = *m_a * *m_b / (*m_a + *m_b);
+        let both = |a: T, b: T| a * b / (a + b);
+        let mass = ContactMass {
+            link: both(m_a.link, m_b.link),
+            point: both(m_a.point, m_b.point),
+        };
         let touch = Touch { depth, normal_w };
-        self.settings.contact.advance(&mut state, &touch, (&point_w, &velocity_w), mass, h);
+        self.settings
+            .contact
+            .advance(&mut state, &touch, (&point_w, &velocity_w), mass, h);
         wrenches.add(a.link, &xf_a, &arm_a, &state.force_w);
         wrenches.add(b.link, &xf_b, &arm_b, &-state.force_w);
         let size = math::sqrt(state.force_w.norm_squared()) * share;
@@ -304,8 +323,11 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let mut torques = joint_friction(&s.limits, &self.velocity.joints, s.friction_smoothing);
         let given = self.delivered.iter_mut().zip(command).zip(&s.motors);
         let state = q.iter().zip(&self.velocity.joints).zip(&s.limits);
-        for (((tau, ((delivered, wanted), motor)), ((q, qd), limits)), stop) in
-            torques.iter_mut().zip(given).zip(state).zip(&mut self.stops)
+        for (((tau, ((delivered, wanted), motor)), ((q, qd), limits)), stop) in torques
+            .iter_mut()
+            .zip(given)
+            .zip(state)
+            .zip(&mut self.stops)
         {
             let [low, high] = motor.torque_range(*qd);
             *delivered = math::clamp(*wanted, low, high);
@@ -352,7 +374,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize> S
         self.stops = [T::ZERO; N];
         self.ticks = 0;
         for (mass, shape) in self.masses.iter_mut().zip(&self.shapes) {
-            *mass = effective_mass(&self.model, shape.link);
+            *mass = contact_mass(&self.model, shape);
         }
     }
 

@@ -154,13 +154,19 @@ mod tests {
     /// A rod over the block's edge is deepest at the edge, not at its ends.
     #[test]
     fn a_rod_over_an_edge_touches_between_its_ends() {
-        let block = BOX.block.unwrap_or(Block { lower: [0.0; 3], upper: [0.0; 3] });
+        let block = BOX.block.unwrap_or(Block {
+            lower: [0.0; 3],
+            upper: [0.0; 3],
+        });
         let (from, to) = (Vector3::new(0.8, 0.0, 0.59), Vector3::new(1.2, 0.0, 0.39));
         let share = block.deepest(&from, &to);
         let middle = from + (to - from) * share;
         let depth = block.touch(&middle, 0.0).depth;
         assert!(depth > block.touch(&from, 0.0).depth && depth > block.touch(&to, 0.0).depth);
-        assert!((share - 0.5).abs() < 0.1 && (-0.01..0.0).contains(&depth), "{share} {depth}");
+        assert!(
+            (share - 0.5).abs() < 0.1 && (0.0..0.01).contains(&depth),
+            "{share} {depth}"
+        );
     }
 
     #[test]

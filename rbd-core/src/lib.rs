@@ -47,10 +47,10 @@ pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
 pub use hardware::{Budgets, Contact, ContactShape, Motor};
-pub use shape::Shape;
 pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
 pub use robot::Model;
+pub use shape::Shape;
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};
 pub use table::{TableError, TableModel};

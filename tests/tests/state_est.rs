@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use a1_model::{A1Geared, FEET, MOTORS, a1};
-use contact_sim::{ContactSphere, Error, NativeSimulator, Simulator, Terrain};
+use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use icub_model::{Icub23Cad, SOLES};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, ContactShape, Model, Motion, Tangent, Transform, Tree};
@@ -215,8 +215,8 @@ const CROUCH: [f64; 12] = [
 ];
 
 fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [Errors; 3] {
-    let spheres: [ContactSphere<f64>; 4] = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
-    let mut plant = NativeSimulator::<f64, _, 12, 4>::new(
+    let spheres: [Shape<f64>; 4] = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
+    let mut plant = NativeSimulator::<f64, _, 12, 4, 4>::new(
         A1Geared,
         spheres,
         Terrain::FLAT,
@@ -239,7 +239,9 @@ fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [
         &A1Geared,
         &mut plant,
         &a1_estimator(imu),
-        |plant: &NativeSimulator<f64, A1Geared, 12, 4>| plant.contact_forces_w().map(|f| f.norm()),
+        |plant: &NativeSimulator<f64, A1Geared, 12, 4, 4>| {
+            plant.contact_forces_w().map(|f| f.norm())
+        },
         &start,
         &flight,
         Sensors::new(seed, scale, imu),
@@ -297,21 +299,18 @@ fn a_stuck_foot_sensor_does_not_hold_the_flying_robot() {
 /// iCub: soles, 23 joints, IMU at the root.
 #[test]
 fn icub_is_followed_through_a_hop() {
-    let spheres: [ContactSphere<f64>; 8] = core::array::from_fn(|i| {
+    let spheres: [Shape<f64>; 8] = core::array::from_fn(|i| {
         let sole = &SOLES[i / 4];
         let ContactShape::Rectangle { x, y } = sole.shape else {
             unreachable!()
         };
         let corner = Vector3::new(x[i & 1], y[(i >> 1) & 1], 0.005);
-        ContactSphere {
-            link: sole.frame.link,
-            offset: sole.frame.placement().point(&corner).into(),
-            radius: 0.005,
-        }
+        let center = sole.frame.placement().point(&corner).into();
+        Shape::ball(sole.frame.link, center, 0.005, i)
     });
     let limits = Model::<f64, 23>::limits(&Icub23Cad);
     let motors = Model::<f64, 23>::motors(&Icub23Cad).unwrap();
-    let mut plant = NativeSimulator::<f64, _, 23, 8>::new(
+    let mut plant = NativeSimulator::<f64, _, 23, 8, 8>::new(
         Icub23Cad,
         spheres,
         Terrain::FLAT,
@@ -342,7 +341,7 @@ fn icub_is_followed_through_a_hop() {
             &Icub23Cad,
             &mut plant,
             &estimator,
-            |plant: &NativeSimulator<f64, Icub23Cad, 23, 8>| {
+            |plant: &NativeSimulator<f64, Icub23Cad, 23, 8, 8>| {
                 let f = plant.contact_forces_w();
                 [0, 4].map(|k| f[k..k + 4].iter().map(|f| f.z).sum())
             },

@@ -1,7 +1,7 @@
 //! What the controller is told: encoders, foot sensors, an IMU, and the base as `state-est` makes it of them; never the truth. In a
 //! nominal run the sensors are without error.
 
-use super::{FOOT_COUNT, JOINTS, ROBOT, OWNERS, State, feet};
+use super::{FOOT_COUNT, JOINTS, OWNERS, ROBOT, State, feet};
 use crate::lab::{Disturbance, Encoders, FootSensors, Ground, Interface, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};

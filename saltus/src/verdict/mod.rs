@@ -279,7 +279,10 @@ mod tests {
             ..FLIGHT
         };
         let far = Stand { feet: 1.0, ..STAND };
-        assert_eq!(outcome(off, far, core::slice::from_ref(&fault)), "flight.rotation_deg");
+        assert_eq!(
+            outcome(off, far, core::slice::from_ref(&fault)),
+            "flight.rotation_deg"
+        );
         assert_eq!(outcome(FLIGHT, far, &[fault]), "fault");
     }
 }

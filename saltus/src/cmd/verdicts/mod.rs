@@ -1,5 +1,6 @@
 //! `saltus verdicts`: many tasks in both simulators, judged, as one table; and the gate that compares them with what is expected.
 
+mod agreement;
 mod conditions;
 mod measures;
 mod subject;
@@ -41,6 +42,9 @@ pub(crate) struct Args {
     /// With --conditions: one column more, so many seeds of the lab.
     #[arg(long, default_value_t = 0, requires = "conditions")]
     lab: u64,
+    /// How far both simulators are apart at take-off, in flight and at touchdown, on hard and firm ground.
+    #[arg(long, conflicts_with_all = ["plant", "seed", "interface", "conditions"])]
+    agreement: bool,
     /// A file of expected verdicts, which replaces the tasks: exit code 2 where one differs, and its name.
     #[arg(long, conflicts_with_all = ["tasks", "conditions"])]
     expect: Option<PathBuf>,
@@ -93,6 +97,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         subject
     });
     let subjects: Vec<Subject> = subjects.collect::<Result<_, String>>()?;
+    if args.agreement {
+        bar.finish_and_clear();
+        return agreement::run(args, &subjects);
+    }
     let sims = args.sims();
     if args.conditions {
         return conditions::run(args, &subjects, &sims, &bar);

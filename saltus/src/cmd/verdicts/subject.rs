@@ -12,6 +12,7 @@ use crate::jump::reference::Reference;
 use crate::jump::task::Task;
 use crate::lab::{Interface, Lab, PlantArgument};
 use crate::verdict::{TARGET, Verdict};
+use rbd_core::Transform;
 use serde_json::{Value, json};
 
 /// The nine tasks of A1, as the tables list them.
@@ -88,6 +89,38 @@ impl Subject {
             sim,
             verdict,
         }
+    }
+}
+
+impl Subject {
+    /// Poses of a quadruped's base at the take-off, in the middle of the flight and at the planned touchdown.
+    pub(super) fn poses(
+        &self,
+        sim: Sim,
+        plant: PlantArgument,
+    ) -> Result<[Transform<f64>; 3], String> {
+        let Kind::Quadruped(task, reference) = &self.kind else {
+            return Err(format!(
+                "{}: only jumps of a quadruped that were planned are compared",
+                self.name
+            ));
+        };
+        let trial = Trial {
+            disturbance: PlantArgument::plant(Some(&plant), Lab::A1, 0),
+            ..Trial::nominal(sim)
+        };
+        let run = execute::run_watched(task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
+        let (takeoff, touchdown) = (reference.takeoff, reference.touchdown);
+        let pose = |time: f64| {
+            let sample = run.samples.iter().find(|s| s.time >= time);
+            let sample = sample.ok_or_else(|| format!("{}: the run ended early", self.name))?;
+            Ok(Transform::new(
+                sample.orientation.to_rotation_matrix(),
+                sample.position,
+            ))
+        };
+        let [a, b, c] = [takeoff, 0.5 * (takeoff + touchdown), touchdown].map(pose);
+        Ok::<_, String>([a?, b?, c?])
     }
 }
 
