@@ -114,13 +114,13 @@ impl Subject {
         let pose = |time: f64| {
             let sample = run.samples.iter().find(|s| s.time >= time);
             let sample = sample.ok_or_else(|| format!("{}: the run ended early", self.name))?;
-            Ok(Transform::new(
+            Ok::<_, String>(Transform::new(
                 sample.orientation.to_rotation_matrix(),
                 sample.position,
             ))
         };
         let [a, b, c] = [takeoff, 0.5 * (takeoff + touchdown), touchdown].map(pose);
-        Ok::<_, String>([a?, b?, c?])
+        Ok([a?, b?, c?])
     }
 }
 
