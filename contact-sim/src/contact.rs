@@ -1,19 +1,25 @@
-//! Compliant contact of one point: normal force and friction.
+//! Compliant contact of one point: normal force and friction, by MuJoCo's own equations.
 //!
-//! The law is MuJoCo's soft contact, written as the force of a spring and a damper, so that one time constant t_c says how soft the ground
-//! is in both simulators. MuJoCo asks for the acceleration a_r = −b v − k r of a contact with penetration −r and rate v, where
-//! b = 2/(d₁ t_c) and k = 1/(d₁ t_c)², and lets it have the share d of that against the acceleration that there would be without contact;
-//! d grows with the penetration from d₀ to d₁ (MuJoCo, computation, "solver parameters", `solref` and `solimp`). At rest the force of a
-//! contact whose effective mass is m is therefore that of a spring m k d/(1 − d), and what slips under friction's share of the load
-//! creeps as in a damper.
+//! MuJoCo asks for the acceleration a_r = −b v + d k δ of a contact with penetration δ and velocity v, where b = 2/(d₁ t_c) and k = 1/(d₁ t_c)²
+//! follow from one time constant t_c; a force f of the contact costs R f on top of the acceleration a that it leads to:
 //!
-//! # Normal force
-//! f_n = m d/(1 − d) (k δ − b' δ̇), never adhesive; b' is b, or less where a step of the integrator could not follow it.
+//! ```text
+//! a + R f = a_r,   R = (1 − d)/(d m),   f_n ≥ 0,   |f_t| ≤ μ f_n
+//! ```
 //!
-//! # Friction
-//! A bristle with deflection s in the tangent plane resists slip: ṡ = v_t − s k_t c, f_t = −(k_t s + c_t v_t), with the creep c of
-//! MuJoCo's friction. Where |f_t| would exceed μ f_n it is cut to μ f_n, and s is set to what the cut force says (Dahl's idea, as in
-//! elasto-plastic friction models). A ball that rolls has v_t = 0 at its lowest point and meets no resistance.
+//! with the effective mass m of the contact's link and a share d that grows with the penetration from d₀ to d₁; friction has R/10 and no
+//! k (MuJoCo, computation, "solver parameters": `solref`, `solimp`, `impratio`). So a soft ground gives way, and a foot creeps on it under
+//! friction's share of its load.
+//!
+//! MuJoCo solves this for all contacts at once. Here each contact takes one relaxation step per step of the integrator: with the
+//! acceleration that its point had in the last one under the last force,
+//!
+//! ```text
+//! f ← f + ω (a_r − a − R f)/(1/m_p + R)
+//! ```
+//!
+//! where m_p is the effective mass of the point. What all contacts settle at within a millisecond is the solution above, however they are
+//! coupled.
 
 use nalgebra::Vector3;
 use so3::{Scalar, math};
@@ -24,11 +30,8 @@ use crate::Touch;
 pub(crate) const WIDTH: f64 = 1e-3;
 /// How much harder friction is than the normal force: MuJoCo's `impratio`.
 pub(crate) const FRICTION_RATIO: f64 = 10.0;
-/// Frequency of a bristle with the contact's effective mass, rad/s: stiffer than any ground is soft, and slow beside a step.
-const BRISTLE: f64 = 1000.0;
-/// Largest damping of a contact's speed in one step, share, and largest phase of its spring, rad: an explicit step follows no more.
-const MOST_DAMPING: f64 = 0.3;
-const MOST_PHASE: f64 = 0.5;
+/// ω: below one, since the other contacts of a link answer as well, and its effective mass changes with the posture.
+const RELAXATION: f64 = 0.5;
 /// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
 const HARD: f64 = 0.0025;
 
@@ -44,8 +47,8 @@ pub struct ContactLaw<T> {
 /// What a contact remembers and shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState<T: Scalar> {
-    /// Bristle deflection s, world axes, m.
-    pub bristle_w: Vector3<T>,
+    /// Velocity of the material point, world axes, m/s.
+    pub velocity_w: Vector3<T>,
     /// Force of the ground on the robot, N.
     pub force_w: Vector3<T>,
     /// Point of contact in the world, m.
@@ -59,7 +62,7 @@ pub struct ContactState<T: Scalar> {
 impl<T: Scalar> ContactState<T> {
     /// No contact.
     pub const NONE: Self = Self {
-        bristle_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
+        velocity_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         force_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         point_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         depth: T::ZERO,
@@ -72,7 +75,7 @@ impl<T: Scalar> ContactState<T> {
 pub struct ContactMass<T> {
     /// Effective mass of its link, by which MuJoCo scales a contact's softness, kg.
     pub link: T,
-    /// Effective mass of the point of contact, which bounds what an explicit step can follow, kg.
+    /// Effective mass of the point of contact, by which its force is relaxed, kg.
     pub point: T,
 }
 
@@ -95,7 +98,7 @@ impl<T: Scalar> ContactLaw<T> {
         }
     }
 
-    /// d/(1 − d) at a penetration.
+    /// d at a penetration.
     fn share(&self, depth: T) -> T {
         let [d0, d1] = self.impedance();
         let x = math::min(depth / T::of(WIDTH), T::ONE);
@@ -105,8 +108,7 @@ impl<T: Scalar> ContactLaw<T> {
         } else {
             T::ONE - T::TWO * (T::ONE - x) * (T::ONE - x)
         };
-        let d = d0 + (d1 - d0) * y;
-        d / (T::ONE - d)
+        d0 + (d1 - d0) * y
     }
 
     /// Advances one contact by `dt`, given where it touches, the velocity of its material point and how hard it is to push.
@@ -118,8 +120,6 @@ impl<T: Scalar> ContactLaw<T> {
         mass: ContactMass<T>,
         dt: T,
     ) {
-        state.depth = touch.depth;
-        state.point_w = *point_w;
         if touch.depth <= T::ZERO {
             *state = ContactState {
                 depth: touch.depth,
@@ -128,41 +128,38 @@ impl<T: Scalar> ContactLaw<T> {
             };
             return;
         }
+        // Not in the step of the first touch: there is no force yet that an acceleration could answer to.
+        let acceleration_w = if state.depth > T::ZERO {
+            (velocity_w - state.velocity_w) / dt
+        } else {
+            Vector3::zeros()
+        };
         let n = &touch.normal_w;
-        let rate = velocity_w.dot(n);
         let reach = self.impedance()[1] * self.time_constant;
         let share = self.share(touch.depth);
-        let quick = T::of(MOST_PHASE) / dt;
-        let damping = math::min(
-            share * T::TWO / reach * mass.link,
-            T::of(MOST_DAMPING) / dt * mass.point,
-        );
-        let stiffness = math::min(
-            share / (reach * reach) * mass.link,
-            quick * quick * mass.point,
-        );
-        let normal = math::max(stiffness * touch.depth - damping * rate, T::ZERO);
-        let slip = velocity_w - n * rate;
-        let least = math::min(mass.link, mass.point);
-        let bristle_stiffness = T::of(BRISTLE * BRISTLE) * least;
-        let bristle_damping = T::of(BRISTLE) * least;
-        let creep = reach / (T::TWO * share * mass.link * T::of(FRICTION_RATIO));
-        let leak = math::min(bristle_stiffness * creep * dt, T::ONE);
-        let mut bristle = state.bristle_w * (T::ONE - leak) + slip * dt;
-        bristle -= n * bristle.dot(n);
-        let wanted = -(bristle * bristle_stiffness + slip * bristle_damping);
-        let limit = self.friction * normal;
-        let size = math::sqrt(wanted.norm_squared());
-        state.sliding = size > limit;
-        let friction = if state.sliding {
-            wanted * (limit / size)
-        } else {
-            wanted
+        let spring = share * touch.depth / (reach * reach);
+        let wanted_w = n * spring - velocity_w * (T::TWO / reach);
+        let missing_w = wanted_w - acceleration_w;
+        let soft = (T::ONE - share) / (share * mass.link);
+        let relax = |last: &Vector3<T>, missing: &Vector3<T>, soft: T| {
+            let step = T::of(RELAXATION) / (T::ONE / mass.point + soft);
+            last + (missing - last * soft) * step
         };
+        let last = state.force_w.dot(n);
+        let normal_w = relax(&(n * last), &(n * missing_w.dot(n)), soft);
+        let normal = math::max(normal_w.dot(n), T::ZERO);
+        let across = |x: &Vector3<T>| x - n * x.dot(n);
+        let harder = soft / T::of(FRICTION_RATIO);
+        let mut friction_w = relax(&across(&state.force_w), &across(&missing_w), harder);
+        let limit = self.friction * normal;
+        let size = math::sqrt(friction_w.norm_squared());
+        state.sliding = size > limit;
         if state.sliding {
-            bristle = -(friction + slip * bristle_damping) / bristle_stiffness;
+            friction_w *= limit / size;
         }
-        state.bristle_w = bristle;
-        state.force_w = n * normal + friction;
+        state.depth = touch.depth;
+        state.point_w = *point_w;
+        state.velocity_w = *velocity_w;
+        state.force_w = n * normal + friction_w;
     }
 }

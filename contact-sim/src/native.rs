@@ -189,7 +189,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
             let (shape, swept) = (*shape, *swept);
             let xf_wl = self.kinematics.link(shape.link);
             for (slot, touch, center_w) in self.touches(&shape, &swept) {
-                let arm_w = center_w - touch.normal_w * swept.radius - xf_wl.translation;
+                // The force acts in the middle of what overlaps, as in MuJoCo.
+                let overlap = math::max(touch.depth, T::ZERO) * T::HALF;
+                let arm_w =
+                    center_w - touch.normal_w * (swept.radius - overlap) - xf_wl.translation;
                 let velocity_w = self.point_velocity(shape.link, &xf_wl, &arm_w);
                 let point_w = xf_wl.translation + arm_w;
                 let Some(mass) = self.masses.get(i).copied() else {
@@ -269,7 +272,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         }
     }
 
-    /// The contact of two shapes: the ground's law without a memory, so that friction is a damper.
+    /// The contact of two shapes: the ground's law without a memory, which makes a stiff spring and a damper of it.
     fn touch_pair(
         &mut self,
         (i, j): (usize, usize),
@@ -292,7 +295,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
             return;
         }
         let normal_w = apart / distance;
-        let point_w = point_b + normal_w * at_b.radius;
+        let point_w = point_b + normal_w * (at_b.radius - depth * T::HALF);
         let (xf_a, xf_b) = (self.kinematics.link(a.link), self.kinematics.link(b.link));
         let (arm_a, arm_b) = (point_w - xf_a.translation, point_w - xf_b.translation);
         let velocity_w =
