@@ -226,7 +226,10 @@ fn inside_the_cone_a_foot_sticks_and_hardly_creeps() {
     assert!(x < 1e-3 && v.abs() < 2e-4, "moved {x} m, still at {v} m/s");
     let (_, _, a) = pulled(0.33, slope);
     let expected = (slope - 0.33) * 10.0;
-    assert!((a / expected - 1.0).abs() < 0.02, "{a} m/s², not {expected}");
+    assert!(
+        (a / expected - 1.0).abs() < 0.02,
+        "{a} m/s², not {expected}"
+    );
 }
 
 #[test]

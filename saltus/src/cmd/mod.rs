@@ -2,7 +2,7 @@
 
 pub(crate) mod completions;
 pub(crate) mod envelope;
-mod expected;
+pub(crate) mod expected;
 mod folder;
 pub(crate) mod import;
 mod interrupt;

@@ -1,5 +1,6 @@
 //! `saltus reproduce`: both papers, item by item.
 
+use super::expected::{Expected, Found};
 use super::folder::{create, describe, write};
 use super::interrupt;
 use super::output::Output;
@@ -15,6 +16,9 @@ pub(crate) struct Args {
     /// Only the native simulator; the whole run adds MuJoCo, which needs a build with the feature `mujoco`.
     #[arg(long)]
     quick: bool,
+    /// A file of expected verdicts: exit code 2 where an item does not come out as it says, whatever it is.
+    #[arg(long)]
+    expect: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) output: Output,
     /// New folder for the page and its reports; by default out/reproduce, or out/reproduce-2 and so on.
@@ -35,6 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
             );
         }
     };
+    let expected = args.expect.as_deref().map(Expected::read).transpose()?;
     let folder = create(args.out.as_deref(), "reproduce")?;
     interrupt::listen()?;
     let bar = args.output.spinner();
@@ -74,6 +79,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     }
     Ok(if !complete {
         ExitCode::from(interrupt::CODE)
+    } else if let Some(expected) = expected {
+        let found: Vec<Found> = rows.iter().map(Row::found).collect();
+        expected.compare_papers(&found)
     } else if rows.iter().any(Row::is_refuted) {
         ExitCode::from(2)
     } else {

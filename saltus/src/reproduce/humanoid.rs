@@ -3,7 +3,7 @@
 use super::{Row, write_report};
 use crate::humanoid::execute::{self, Run};
 use crate::humanoid::judge::Verdict;
-use crate::humanoid::{GRAVITY, Task, report};
+use crate::humanoid::{GRAVITY, Landing, Task, report};
 use crate::jump::plant::Sim;
 use crate::lab::Disturbance;
 use core::ops::ControlFlow;
@@ -64,6 +64,12 @@ pub(crate) fn rows(
             }
         }
     }
+    for &sim in sims {
+        for name in ["icub/velocity", "icub/torque"] {
+            tell("paper B's own landing")?;
+            rows.extend(own_landing(name, sim));
+        }
+    }
     rows.push(
         Row::new(
             'B',
@@ -76,6 +82,35 @@ pub(crate) fn rows(
         ),
     );
     ControlFlow::Continue(())
+}
+
+/// III-F: minimum jerk in the air and stiff servos on the ground, as the paper lands.
+fn own_landing(name: &str, sim: Sim) -> Option<Row> {
+    let task = Task {
+        landing: Landing::Stiff,
+        ..Task::named(name)?
+    };
+    let row = Row::new(
+        'B',
+        format!("III-F, {name}: landing of the paper, minimum jerk and a stiff hold"),
+        "lands",
+    )
+    .simulated(sim);
+    Some(match run(&task, sim) {
+        Ok(run) => {
+            let verdict = Verdict::of(&run);
+            let end = if verdict.upright { "upright" } else { "fell" };
+            row.ours(
+                format!(
+                    "{end}, asks for {:.1} of a torque limit",
+                    run.landing_demand
+                ),
+                verdict.landed && verdict.upright,
+                "holds when the robot stands 2 s later",
+            )
+        }
+        Err(error) => row.failed(error),
+    })
 }
 
 /// II-D and III-A: figures without a simulator.

@@ -6,6 +6,7 @@ pub(crate) mod humanoid;
 pub(crate) mod page;
 pub(crate) mod quadruped;
 
+use crate::cmd::expected::Found;
 use crate::jump::plant::Sim;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -88,6 +89,21 @@ impl Row {
             "holds": self.holds,
             "reason": self.reason,
         })
+    }
+
+    /// As the file of expected verdicts has it: `A: Table II, ...`, and `unjudged` where this program cannot judge.
+    pub(crate) fn found(&self) -> Found {
+        let outcome = match self.holds {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None => "unjudged",
+        };
+        Found {
+            name: format!("{}: {}", self.paper, self.item),
+            sim: self.sim.map_or("any", Sim::name).to_owned(),
+            outcome: outcome.to_owned(),
+            words: format!("{outcome}: {} ({})", self.ours, self.reason),
+        }
     }
 
     /// For a terminal.
