@@ -14,6 +14,9 @@ pub mod state;
 pub mod table;
 pub mod tree;
 
+// The vectors and matrices of this crate's interface: use them from here and the versions agree.
+pub use nalgebra;
+
 pub use algo::aba::{AbaWorkspace, aba, aba_with_forces, mass_solve};
 pub use algo::aba_derivatives::{
     AbaDerivatives, AbaDerivativesWorkspace, aba_derivatives, aba_derivatives_with_forces,
