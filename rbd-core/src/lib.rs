@@ -8,6 +8,7 @@ pub mod joint;
 pub mod linear;
 pub mod manifold;
 pub mod model;
+pub mod reduction;
 pub mod robot;
 pub mod spatial;
 pub mod state;
@@ -51,6 +52,7 @@ pub use algo::rnea_derivatives::{
 pub use hardware::{Budgets, Contact, ContactShape, Motor};
 pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
+pub use reduction::{CoupledWorkspace, Coupling, Reduction, ReductionError, coupled_dynamics};
 pub use robot::Model;
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};
