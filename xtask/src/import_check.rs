@@ -166,20 +166,26 @@ fn robots(python: &Path, root: &Path, folder: &Path, only: Option<&str>) -> Resu
     Ok(robots)
 }
 
-/// Runs `saltus import`. A robot that it refuses for its mimic joints or its inertias is imported with the
-/// options that its message offers, and the table says so.
+/// Runs `saltus import`. A robot that it refuses for its inertias is imported with the option that its message offers, and
+/// the table says so.
 fn import(saltus: &Path, root: &Path, crates: &Path, robot: &Robot) -> Result<Imported> {
     let package = format!("{}-model", robot.name.replace('_', "-"));
     let mut note = "";
     let mut output = None;
     for (extra, said) in [
         (&[][..], ""),
-        (&["--mimic", "free"], "mimic joints freed"),
         (&["--inertia", "as-written"], "unphysical inertias kept"),
     ] {
         let mut command = Command::new(saltus);
         command.arg("import").arg(&robot.urdf);
-        command.args(["--json", "--base", &robot.base, "--package", &package]);
+        command.args([
+            "--json",
+            "--base",
+            &robot.base,
+            "--package",
+            &package,
+            "--member",
+        ]);
         command.arg("--out").arg(crates.join(&robot.name));
         command.arg("--rbd-core").arg(root.join("rbd-core"));
         if !robot.locks.is_empty() {
