@@ -81,11 +81,11 @@ impl Robot {
         (0..self.joints.len()).filter(free).collect()
     }
 
-    /// q = G q_r + g: the joints as functions of the independent ones, for a run-time model of the same capacity `CAP`; `R`
-    /// must be their number.
+    /// q = G q_r + g: the joints as functions of the independent ones, for a run-time model of the same capacity `CAP`. `R` may
+    /// exceed their number: coordinates beyond it move nothing.
     ///
     /// # Errors
-    /// [`ReductionError`] if `R` is not the number of independent joints, or `CAP` is too small.
+    /// [`ReductionError::NoSuchCoordinate`] if `R` or `CAP` is too small.
     pub fn reduction<T: Scalar, const CAP: usize, const R: usize>(
         &self,
     ) -> Result<Reduction<T, CAP, R>, ReductionError> {
@@ -96,18 +96,17 @@ impl Robot {
                 None => (joint, 1.0, 0.0),
                 Some(c) => (c.leader, c.ratio, c.offset),
             };
-            let coordinate = independent.binary_search(&leader);
-            let (Ok(coordinate), Some(row)) = (coordinate, rows.get_mut(joint)) else {
-                return Err(ReductionError::NoSuchCoordinate { joint });
-            };
-            *row = Coupling {
-                coordinate,
-                ratio: T::of(ratio),
-                offset: T::of(offset),
-            };
+            match (independent.binary_search(&leader), rows.get_mut(joint)) {
+                (Ok(coordinate), Some(row)) if coordinate < R => {
+                    *row = Coupling {
+                        coordinate,
+                        ratio: T::of(ratio),
+                        offset: T::of(offset),
+                    };
+                }
+                _ => return Err(ReductionError::NoSuchCoordinate { joint }),
+            }
         }
-        let reduction = Reduction { rows };
-        reduction.validate(self.joints.len())?;
-        Ok(reduction)
+        Ok(Reduction { rows })
     }
 }

@@ -56,9 +56,10 @@ fn a_chain_of_followers_is_resolved() {
             .iter()
             .all(|w| matches!(w, Warning::MimicFreed { .. }))
     );
+    assert_eq!(robot.reduction::<f64, 8, 2>().unwrap().rows, reduction.rows);
     assert!(matches!(
-        robot.reduction::<f64, 8, 2>(),
-        Err(ReductionError::MovesNothing { coordinate: 1 })
+        robot.reduction::<f64, 8, 0>(),
+        Err(ReductionError::NoSuchCoordinate { joint: 0 })
     ));
     assert!(matches!(
         robot.reduction::<f64, 2, 1>(),

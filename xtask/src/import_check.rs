@@ -2,7 +2,8 @@
 //!
 //! Robots: those of `models/`, and those that `tests/peers/golden.py --others` picks from pip `example-robot-data`.
 //! All crates stand in one workspace in `target/import-check`, with one program that compares them, so that the
-//! dynamics are compiled once.
+//! dynamics are compiled once. With `--all`, every URDF of that package at run time instead, and every quantity, on both bases;
+//! a robot is refused only if Pinocchio refuses it as well or has no forward dynamics of it.
 
 use core::fmt::Write as _;
 use std::fs;
@@ -22,6 +23,9 @@ pub(crate) struct Args {
     /// Only robots whose name contains this.
     #[arg(long)]
     only: Option<String>,
+    /// Every URDF of pip example-robot-data, at run time, and every quantity: instead of the crates.
+    #[arg(long)]
+    all: bool,
 }
 
 /// One robot to import.
@@ -49,6 +53,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let root = run::root();
     let folder = root.join("target/import-check");
     let python = python(args, &root)?;
+    if args.all {
+        return every_urdf(&python, &root, &folder.join("all"));
+    }
     let robots = robots(&python, &root, &folder, args.only.as_deref())?;
     let crates = folder.join("crates");
     run::remove_folder(&crates)?;
@@ -69,6 +76,28 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     // One target folder for all runs, whatever the caller's is.
     check.env("CARGO_TARGET_DIR", folder.join("target"));
     run::succeed(&mut check)
+}
+
+/// Every URDF that the package has, on both bases, without crates of their own.
+fn every_urdf(python: &Path, root: &Path, golden: &Path) -> Result<()> {
+    fs::create_dir_all(golden)?;
+    let mut make = Command::new(python);
+    make.arg(root.join("tests/peers/golden.py"));
+    let result = run::output(make.arg("--all").arg(golden))?;
+    if !result.status.success() {
+        bail!("{}", String::from_utf8_lossy(&result.stderr));
+    }
+    let mut check = run::cargo();
+    check.args([
+        "run",
+        "--quiet",
+        "--package",
+        "saltus-tests",
+        "--bin",
+        "every-urdf",
+        "--",
+    ]);
+    run::succeed(check.arg(golden))
 }
 
 fn target(root: &Path) -> PathBuf {
