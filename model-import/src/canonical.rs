@@ -188,6 +188,7 @@ fn canonical_body(
     let mut body = Body::<f64> {
         parent,
         offset: placement.translation.map(clean).into(),
+        rotor_inertia: joint.rotor_inertia,
         ..Body::EMPTY
     };
     if let Some((k, sign)) = aligned {

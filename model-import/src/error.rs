@@ -1,4 +1,4 @@
-//! What can be wrong with a URDF, and what is only worth a word.
+//! What can be wrong with a URDF or an MJCF, and what is only worth a word.
 
 use thiserror::Error;
 
@@ -16,9 +16,9 @@ pub enum ImportError {
         /// The parser's words.
         message: String,
     },
-    /// The root element is not `<robot>`.
+    /// The root element is not `<robot>`, or not `<mujoco>` of an MJCF.
     #[error(
-        "the root element is <{found}>, not <robot>: give a URDF (run xacro first if it is a macro file)"
+        "the root element is <{found}>, not <robot> or <mujoco>: give a URDF (run xacro first if it is a macro file) or an MJCF"
     )]
     NotARobot {
         /// Name of the root element.
@@ -80,6 +80,14 @@ pub enum ImportError {
         element: String,
         /// Its type.
         kind: String,
+    },
+    /// Something in an MJCF that a tree of rigid bodies cannot keep, or this crate does not read.
+    #[error("{element}: {what}")]
+    Unsupported {
+        /// The element, by kind, name and line.
+        element: String,
+        /// What it is, and the remedy.
+        what: String,
     },
     /// A link is the child of two joints.
     #[error(
@@ -291,6 +299,12 @@ pub enum Warning {
         leader: String,
         /// What is wrong with the leader.
         why: &'static str,
+    },
+    /// Something in an MJCF that changes how the robot moves and is not kept.
+    #[error("not kept: {what}")]
+    NotKept {
+        /// What it is.
+        what: String,
     },
     /// A joint axis that is nearly a coordinate axis of the body above, and kept as it is.
     #[error(

@@ -4,6 +4,7 @@ pub mod couplings;
 pub mod emit;
 pub mod error;
 pub mod limbs;
+pub mod mjcf;
 pub mod options;
 pub mod robot;
 pub mod urdf;

@@ -10,6 +10,7 @@ use crate::canonical;
 use crate::couplings::{JointCoupling, couplings};
 use crate::error::{ImportError, Warning};
 use crate::locks::locked_positions;
+use crate::mjcf;
 use crate::options::{InertiaPolicy, Options};
 use crate::tree::LinkTree;
 use crate::urdf::Urdf;
@@ -75,7 +76,21 @@ impl Robot {
     /// # Errors
     /// Names the first element that does not make a robot, and what to do about it.
     pub fn from_urdf(text: &str, options: &Options) -> Result<Self, ImportError> {
-        let mut urdf = Urdf::parse(text)?;
+        Self::of(Urdf::parse(text)?, options.base, options)
+    }
+
+    /// Imports the text of an MJCF, its includes resolved by [`mjcf::read`](crate::mjcf::read).
+    ///
+    /// The file says whether the base floats: by a free joint, which `options.base` fixed welds to the world.
+    ///
+    /// # Errors
+    /// Names the first element that does not make a robot, and what to do about it.
+    pub fn from_mjcf(text: &str, options: &Options) -> Result<Self, ImportError> {
+        let (urdf, base) = mjcf::parse(text, options.base)?;
+        Self::of(urdf, base, options)
+    }
+
+    fn of(mut urdf: Urdf, base: BaseKind, options: &Options) -> Result<Self, ImportError> {
         let tree = LinkTree::new(&urdf)?;
         let mut warnings = core::mem::take(&mut urdf.warnings);
         let at = locked_positions(&urdf, options, &mut warnings)?;
@@ -85,7 +100,7 @@ impl Robot {
         let locked = urdf.joints.iter().zip(&at);
         let mut robot = Self {
             name: urdf.name.clone(),
-            base_kind: options.base,
+            base_kind: base,
             base: tables.base,
             bodies: tables.bodies,
             joints: tables.joints,

@@ -26,6 +26,9 @@ pub(crate) struct Args {
     /// Every URDF of pip example-robot-data, at run time, and every quantity: instead of the crates.
     #[arg(long)]
     all: bool,
+    /// MJCF files of pip gymnasium and dm_control (`pip install --no-deps`) beside MuJoCo: instead of the crates.
+    #[arg(long, conflicts_with = "all")]
+    mjcf: bool,
 }
 
 /// One robot to import.
@@ -53,8 +56,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let root = run::root();
     let folder = root.join("target/import-check");
     let python = python(args, &root)?;
-    if args.all {
-        return every_urdf(&python, &root, &folder.join("all"));
+    if args.all || args.mjcf {
+        return at_run_time(&python, &root, &folder, args.mjcf);
     }
     let robots = robots(&python, &root, &folder, args.only.as_deref())?;
     let crates = folder.join("crates");
@@ -78,12 +81,17 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     run::succeed(&mut check)
 }
 
-/// Every URDF that the package has, on both bases, without crates of their own.
-fn every_urdf(python: &Path, root: &Path, golden: &Path) -> Result<()> {
-    fs::create_dir_all(golden)?;
+/// Every URDF or MJCF that the packages have, without crates of their own.
+fn at_run_time(python: &Path, root: &Path, folder: &Path, mjcf: bool) -> Result<()> {
+    let golden = folder.join(if mjcf { "mjcf" } else { "all" });
+    fs::create_dir_all(&golden)?;
     let mut make = Command::new(python);
-    make.arg(root.join("tests/peers/golden.py"));
-    let result = run::output(make.arg("--all").arg(golden))?;
+    if mjcf {
+        make.arg(root.join("tests/peers/golden_mjcf.py"));
+    } else {
+        make.arg(root.join("tests/peers/golden.py")).arg("--all");
+    }
+    let result = run::output(make.arg(&golden))?;
     if !result.status.success() {
         bail!("{}", String::from_utf8_lossy(&result.stderr));
     }

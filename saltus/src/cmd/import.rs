@@ -1,4 +1,4 @@
-//! `saltus import`: turn a URDF into a `no_std` model crate.
+//! `saltus import`: turn a URDF or an MJCF into a `no_std` model crate.
 //!
 //! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
 //! folder is not.
@@ -11,19 +11,19 @@ use std::process::ExitCode;
 use model_import::emit::{Crate, Dependency, Provenance, commands, type_name, write_crate};
 use model_import::limbs::{expression, structure};
 use model_import::options::AXIS_EXACT;
-use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, parse_lock};
+use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, mjcf, parse_lock};
 use rbd_core::BaseKind;
 use serde_json::{Value, json};
 
 /// Options of `saltus import`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The URDF.
+    /// The URDF, or the MJCF (`.xml` with a `<mujoco>` in it).
     urdf: PathBuf,
     /// Lock joints at a position, rad or m.
     #[arg(long, num_args = 1.., value_name = "JOINT=VALUE")]
     lock: Vec<String>,
-    /// Whether the base moves.
+    /// Whether the base moves; of an MJCF, whether its free joint is kept.
     #[arg(long, default_value = "floating", value_parser = ["floating", "fixed"])]
     base: String,
     /// What becomes of joints that follow another: joints of their own with the coupling beside them (`REDUCTION`), locked, or an
@@ -73,9 +73,18 @@ pub(crate) fn run(args: &Args) -> ExitCode {
 }
 
 fn import(args: &Args) -> Result<(Robot, Provenance), String> {
-    let text = std::fs::read_to_string(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
+    let read = |path: &Path| match path.extension().is_some_and(|e| e == "xml") {
+        true => mjcf::read(path),
+        false => std::fs::read_to_string(path),
+    };
+    let text = read(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)
-        .and_then(|options| Robot::from_urdf(&text, &options))
+        .and_then(
+            |options| match text.contains("<mujoco") && !text.contains("<robot") {
+                true => Robot::from_mjcf(&text, &options),
+                false => Robot::from_urdf(&text, &options),
+            },
+        )
         .map_err(|error| format!("{}: {error}", args.urdf.display()))?;
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
@@ -159,6 +168,10 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         eprintln!("warning: {warning}");
     }
     let limbs = expression(&structure(&robot.bodies));
+    let base = match robot.base_kind {
+        BaseKind::Floating => "floating",
+        BaseKind::Fixed => "fixed",
+    };
     if args.output.json {
         let locked: Value = (robot.locked.iter())
             .map(|(joint, value)| (joint.clone(), json!(value)))
@@ -168,7 +181,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         let object = json!({
             "robot": robot.name,
             "type": type_name(&robot.name),
-            "base": args.base,
+            "base": base,
             "joints": robot.joints.iter().map(|j| &j.name).collect::<Vec<_>>(),
             "frames": robot.frames.len(),
             "mass_kg": robot.mass(),
@@ -187,7 +200,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
     println!(
         "{}: {joints} joints on a {} base, {frames} frames, {:.6} kg",
         robot.name,
-        args.base,
+        base,
         robot.mass()
     );
     println!("limbs: {limbs}");
