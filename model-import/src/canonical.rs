@@ -118,14 +118,19 @@ pub(crate) fn tables(
             });
         }
     }
-    (out.base.mass, out.base.first, out.base.second) = moments(&base);
+    fill(&mut out, &base, &inertias);
+    out
+}
+
+/// Writes the lumped moments and the extents of the subtrees.
+fn fill(out: &mut Tables, base: &Inertia<f64>, inertias: &[Inertia<f64>]) {
+    (out.base.mass, out.base.first, out.base.second) = moments(base);
     for (i, inertia) in inertias.iter().enumerate() {
         let end = subtree_end(&out.bodies, i);
         let body = &mut out.bodies[i];
         (body.mass, body.first, body.second) = moments(inertia);
         body.subtree_end = end;
     }
-    out
 }
 
 fn is_still(joint: &UrdfJoint, locked: Option<f64>) -> bool {

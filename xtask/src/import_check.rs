@@ -124,7 +124,7 @@ fn python(args: &Args, root: &Path) -> Result<PathBuf> {
         run::succeed(
             Command::new("bash")
                 .arg(root.join("tests/peers/setup.sh"))
-                .arg("venv"),
+                .arg(if args.mjcf { "mjcf" } else { "venv" }),
         )?;
     }
     if !python.exists() {
