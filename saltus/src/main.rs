@@ -1,5 +1,9 @@
 //! Plans jumps of legged robots.
 
+// Before all others: its macros print for them.
+#[macro_use]
+mod stream;
+
 mod audit;
 mod cmd;
 mod examples;
@@ -86,9 +90,9 @@ fn main() -> ExitCode {
     };
     outcome.unwrap_or_else(|message| {
         if command.is_json() {
-            println!("{}", json!({ "status": "Error", "error": message }));
+            say!("{}", json!({ "status": "Error", "error": message }));
         }
-        eprintln!("saltus: {message}");
+        tell!("saltus: {message}");
         ExitCode::from(1)
     })
 }

@@ -79,7 +79,7 @@ fn tell<'a>(
 ) -> ExitCode {
     let wrong = differences(expected, found);
     for line in &wrong {
-        eprintln!("saltus: {line}");
+        tell!("saltus: {line}");
     }
     ExitCode::from(if wrong.is_empty() { 0 } else { 2 })
 }

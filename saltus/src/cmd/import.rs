@@ -56,9 +56,9 @@ pub(crate) fn run(args: &Args) -> ExitCode {
         }
         Err(message) => {
             if args.output.json {
-                println!("{}", json!({ "status": "Error", "error": message }));
+                say!("{}", json!({ "status": "Error", "error": message }));
             }
-            eprintln!("saltus: {message}");
+            tell!("saltus: {message}");
             ExitCode::from(2)
         }
     }
@@ -141,7 +141,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         return;
     }
     for warning in &robot.warnings {
-        eprintln!("warning: {warning}");
+        tell!("warning: {warning}");
     }
     let limbs = expression(&structure(&robot.bodies));
     if args.output.json {
@@ -164,18 +164,18 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
             "sha256": provenance.sha256,
             "out": args.out,
         });
-        println!("{object}");
+        say!("{object}");
         return;
     }
     let (joints, frames) = (robot.joints.len(), robot.frames.len());
-    println!(
+    say!(
         "{}: {joints} joints on a {} base, {frames} frames, {:.6} kg",
         robot.name,
         args.base,
         robot.mass()
     );
-    println!("limbs: {limbs}");
+    say!("limbs: {limbs}");
     if let Some(folder) = &args.out {
-        println!("wrote {}", folder.display());
+        say!("wrote {}", folder.display());
     }
 }

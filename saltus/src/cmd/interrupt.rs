@@ -15,7 +15,7 @@ pub(crate) fn listen() -> Result<(), String> {
         if ASKED.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(CODE));
         }
-        eprintln!("saltus: stopping after what runs now; Ctrl-C again stops at once");
+        tell!("saltus: stopping after what runs now; Ctrl-C again stops at once");
     })
     .map_err(|error| format!("Ctrl-C cannot be listened to: {error}"))
 }

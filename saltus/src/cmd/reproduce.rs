@@ -67,10 +67,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         page::html(&rows, &reports).as_bytes(),
     )?;
     if args.output.json {
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
         rows.iter().for_each(Row::print);
-        println!("page: {}", folder.join("index.html").display());
+        say!("page: {}", folder.join("index.html").display());
     }
     Ok(if !complete {
         ExitCode::from(interrupt::CODE)

@@ -33,9 +33,9 @@ pub(crate) fn run(args: &Args) -> ExitCode {
         Ok(false) => ExitCode::from(2),
         Err(message) => {
             if args.output.json {
-                println!("{}", json!({ "status": "Error", "error": message }));
+                say!("{}", json!({ "status": "Error", "error": message }));
             }
-            eprintln!("saltus: {message}");
+            tell!("saltus: {message}");
             ExitCode::from(2)
         }
     }
@@ -64,12 +64,12 @@ fn verify(args: &Args) -> Result<bool, String> {
             "status": status,
             "audit": audit.details(&robot),
         });
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{} for {}: {status}", header.task, header.robot);
-        println!("  {}", audit.summary());
+        say!("{} for {}: {status}", header.task, header.robot);
+        say!("  {}", audit.summary());
         if !audit.passes() {
-            println!("  {}", audit.complaint());
+            say!("  {}", audit.complaint());
         }
     }
     Ok(audit.passes())

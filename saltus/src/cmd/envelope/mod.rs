@@ -138,9 +138,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
             report.extend(result);
         }
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}\nfolder: {}", text.trim_end(), study.folder.display());
+        say!("{}\nfolder: {}", text.trim_end(), study.folder.display());
     }
     Ok(if complete {
         ExitCode::SUCCESS

@@ -144,9 +144,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         report["status"] = json!(planned.status);
         report["phases"] = planned.durations.iter().map(phase).collect();
         report[key] = planned.report;
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!(
+        say!(
             "{name}: {} in {:.2} ms, {} iterations, cost {:.6}, violation {:.1e}, durations {:.3?} s",
             planned.status,
             planned.number("wall_ms"),
@@ -189,7 +189,7 @@ impl Args {
     fn observe(&self, progress: &Progress<f64>) -> ControlFlow<()> {
         if self.trace {
             let r = &progress.residual;
-            eprintln!(
+            tell!(
                 "{:3} cost {:12.6} primal {:.1e} dual {:.1e} compl {:.1e} mu {:.1e} step {:.3} {:.3} shift {:.0e}",
                 progress.iteration,
                 progress.cost,

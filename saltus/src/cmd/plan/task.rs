@@ -34,7 +34,7 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
     bar.finish_and_clear();
     let result = result.and_then(|()| write(args, &report));
     if args.output.json {
-        println!("{}", report.json(name, result.as_ref().err()));
+        say!("{}", report.json(name, result.as_ref().err()));
     } else if result.is_ok() && !args.output.quiet {
         report.print(name);
     }
@@ -42,7 +42,7 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
         Ok(()) if report.answer.is_none() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::from(2),
         Err(message) => {
-            eprintln!("saltus: {message}");
+            tell!("saltus: {message}");
             ExitCode::from(2)
         }
     }
@@ -185,21 +185,21 @@ impl Report {
 
     /// The report for people.
     fn print(&self, name: &str) {
-        println!("{name}: {}", self.status());
+        say!("{name}: {}", self.status());
         let phases: Vec<String> = (self.phases().iter())
             .map(|(name, t)| format!("{name} {t:.3} s"))
             .collect();
         if !phases.is_empty() {
-            println!("  phases      {}", phases.join(", "));
+            say!("  phases      {}", phases.join(", "));
         }
         if let Some(plan) = &self.srb {
-            println!(
+            say!(
                 "  body        {:.1} ms, {} iterations, cost {:.4}, violation {:.1e}",
                 plan.wall_ms, plan.iterations, plan.cost, plan.max_violation
             );
         }
         if let Some((plan, wall_ms)) = &self.whole_body {
-            println!(
+            say!(
                 "  whole body  {wall_ms:.0} ms, {} iterations, cost {:.4}, violation {:.1e}, peak torque {:.1} N m",
                 plan.outcome.iterations,
                 plan.judged.cost,
@@ -208,10 +208,10 @@ impl Report {
             );
         }
         if let Some(audit) = &self.audit {
-            println!("  audit       {}", audit.summary());
+            say!("  audit       {}", audit.summary());
         }
         if let Some(answer) = &self.answer {
-            println!("{}", answer.text());
+            say!("{}", answer.text());
         }
     }
 }

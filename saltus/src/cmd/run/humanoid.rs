@@ -33,7 +33,7 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
     let table = verdict.table(task, &run, args.sim.name());
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:26} {value}");
+            say!("{name:26} {value}");
         }
     }
     let log = log::table(&run.samples);

@@ -126,9 +126,9 @@ impl Files<'_> {
         files.extend(strip.map(|svg| ("strip.svg", svg.as_bytes())));
         let folder = publish(args.out.as_deref(), self.task, &files)?;
         if args.output.json {
-            println!("{}", self.result);
+            say!("{}", self.result);
         } else if !args.output.quiet {
-            println!("report: {}", folder.join("report.html").display());
+            say!("report: {}", folder.join("report.html").display());
         }
         Ok(())
     }

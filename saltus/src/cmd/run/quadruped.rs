@@ -75,7 +75,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     let table = table(&made, &run, &judged, &trial, wall);
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:18} {value}");
+            say!("{name:18} {value}");
         }
     }
     let log = log::table(&run.samples);
@@ -129,9 +129,9 @@ fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
 fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
     if args.output.json {
         let report = json!({ "task": task.name, "status": answer.status, "answer": answer.json() });
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}: {}\n{}", task.name, answer.status, answer.text());
+        say!("{}: {}\n{}", task.name, answer.status, answer.text());
     }
     code(false)
 }

@@ -67,9 +67,9 @@ pub(super) fn run(
         .flat_map(|subject| sims.iter().map(|sim| (subject.name.as_str(), *sim)))
         .collect();
     if args.output.json {
-        println!("{}", json(&rows, &columns));
+        say!("{}", json(&rows, &columns));
     } else if !args.output.quiet {
-        print!("{}", markdown(&rows, &columns));
+        put!("{}", markdown(&rows, &columns));
     }
     Ok(if interrupt::asked() {
         ExitCode::from(interrupt::CODE)

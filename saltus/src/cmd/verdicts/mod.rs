@@ -72,7 +72,7 @@ impl Args {
 /// Runs the command. Exit code 0 when every verdict is on target, or as expected; 2 when one is not.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     if args.ranges {
-        print!("{}", keys::markdown());
+        put!("{}", keys::markdown());
         return Ok(ExitCode::SUCCESS);
     }
     interrupt::listen()?;
@@ -97,9 +97,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let cells = judge(&subjects, &sims, &args.condition(), &bar);
     bar.finish_and_clear();
     if args.output.json {
-        println!("{}", json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() }));
+        say!("{}", json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() }));
     } else if !args.output.quiet {
-        print!("{}", measures::table(&cells));
+        put!("{}", measures::table(&cells));
     }
     match expected {
         Some(expected) => {
