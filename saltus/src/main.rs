@@ -1,5 +1,8 @@
 //! Plans jumps of legged robots.
 
+// They panic where nobody reads: `say`, `put` and `tell` do not.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 // Before all others: its macros print for them.
 #[macro_use]
 mod stream;
@@ -7,6 +10,7 @@ mod stream;
 mod audit;
 mod cmd;
 mod examples;
+mod file;
 mod humanoid;
 mod jump;
 mod lab;
@@ -21,8 +25,8 @@ mod robot;
 mod track;
 mod verdict;
 
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use serde_json::json;
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -77,24 +81,35 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    let command = Cli::parse().command;
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(error) => return stream::finish(grammar(&error)),
+    };
     let outcome = match &command {
         Command::Plan(args) => cmd::plan::run(args),
-        Command::Verify(args) => Ok(cmd::verify::run(args)),
-        Command::Import(args) => Ok(cmd::import::run(args)),
+        Command::Verify(args) => cmd::verify::run(args),
+        Command::Import(args) => cmd::import::run(args),
         Command::Run(args) => cmd::run::run(args),
         Command::Envelope(args) => cmd::envelope::run(args),
         Command::Verdicts(args) => cmd::verdicts::run(args),
         Command::Reproduce(args) => cmd::reproduce::run(args),
         Command::Completions(args) => cmd::completions::run(args, Cli::command()),
     };
-    outcome.unwrap_or_else(|message| {
-        if command.is_json() {
-            say!("{}", json!({ "status": "Error", "error": message }));
-        }
-        tell!("saltus: {message}");
-        ExitCode::from(1)
-    })
+    stream::finish(outcome.unwrap_or_else(|failure| failure.tell(command.is_json())))
+}
+
+/// Help, version, and what the grammar of the command line refuses.
+fn grammar(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    // Help is as long as it is; what repeats an argument is cut, and then goes without colours.
+    let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    let told = cmd::failure::brief(&text);
+    if is_help || !error.use_stderr() || told.len() + text.lines().count() >= text.len() {
+        stream::clap(error);
+    } else {
+        tell!("{told}");
+    }
+    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
 }
 
 #[cfg(test)]

@@ -40,9 +40,10 @@ pub(crate) fn err(text: Arguments<'_>) {
     attempt(&ERR, || io::stderr().lock().write_fmt(text));
 }
 
-/// Writes through somebody else's printer, such as clap's, which chooses stream and colours.
-pub(crate) fn through(print: impl FnOnce() -> io::Result<()>) {
-    attempt(&OUT, print);
+/// Writes through clap, which chooses stream and colours.
+pub(crate) fn clap(message: &clap::Error) {
+    let lost = if message.use_stderr() { &ERR } else { &OUT };
+    attempt(lost, || message.print());
 }
 
 fn attempt(lost: &Lost, write: impl FnOnce() -> io::Result<()>) {
@@ -58,7 +59,7 @@ fn take(lost: &Lost) -> Option<io::Error> {
 
 /// The exit code of the program: `code` if everything was said, 141 in silence where the reader has gone, else 1 with the reason.
 pub(crate) fn finish(code: ExitCode) -> ExitCode {
-    through(|| io::stdout().flush());
+    attempt(&OUT, || io::stdout().flush());
     let streams = [
         ("standard output", take(&OUT)),
         ("standard error", take(&ERR)),

@@ -1,10 +1,12 @@
 //! `saltus import`: turn a URDF into a `no_std` model crate.
 //!
 //! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
-//! folder is not.
+//! folder is not, 1 if the crate cannot be written.
 
+use super::failure::{Failure, brief};
 use super::folder::describe;
 use super::output::Output;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -48,34 +50,23 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> ExitCode {
-    match import(args) {
-        Ok((robot, provenance)) => {
-            report(args, &robot, &provenance);
-            ExitCode::SUCCESS
-        }
-        Err(message) => {
-            if args.output.json {
-                say!("{}", json!({ "status": "Error", "error": message }));
-            }
-            tell!("saltus: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn import(args: &Args) -> Result<(Robot, Provenance), String> {
-    let text = std::fs::read_to_string(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let text = crate::file::read_text(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)
         .and_then(|options| Robot::from_urdf(&text, &options))
         .map_err(|error| format!("{}: {error}", args.urdf.display()))?;
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
-        write_crate(folder, &robot, &about(args, &robot)?, &provenance)
-            .map_err(|error| error.to_string())?;
+        write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(|error| {
+            match error.kind() {
+                ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
+                _ => Failure::Outside(describe(folder, &error)),
+            }
+        })?;
     }
-    Ok((robot, provenance))
+    report(args, &robot, &provenance);
+    Ok(ExitCode::SUCCESS)
 }
 
 fn options(args: &Args) -> Result<Options, ImportError> {
@@ -141,7 +132,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         return;
     }
     for warning in &robot.warnings {
-        tell!("warning: {warning}");
+        tell!("warning: {}", brief(&warning.to_string()));
     }
     let limbs = expression(&structure(&robot.bodies));
     if args.output.json {

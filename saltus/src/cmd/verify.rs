@@ -2,6 +2,7 @@
 //!
 //! Exit code 0 for a plan that passes, 2 for one that does not or cannot be read.
 
+use super::failure::Failure;
 use super::folder::describe;
 use super::output::Output;
 use crate::audit::Audit;
@@ -27,28 +28,13 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> ExitCode {
-    match verify(args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(2),
-        Err(message) => {
-            if args.output.json {
-                say!("{}", json!({ "status": "Error", "error": message }));
-            }
-            tell!("saltus: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Whether the plan passes.
-fn verify(args: &Args) -> Result<bool, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let robot = match &args.robot {
         Some(path) => Quadruped::from_urdf(path, &args.lock),
         None => Quadruped::a1(),
     };
     let robot = robot.map_err(|error| error.to_string())?;
-    let bytes = std::fs::read(&args.file).map_err(|error| describe(&args.file, &error))?;
+    let bytes = crate::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
     let audit = Audit::of(&robot, &plan)?;
     let header = plan.header();
@@ -72,5 +58,5 @@ fn verify(args: &Args) -> Result<bool, String> {
             say!("  {}", audit.complaint());
         }
     }
-    Ok(audit.passes())
+    Ok(ExitCode::from(if audit.passes() { 0 } else { 2 }))
 }

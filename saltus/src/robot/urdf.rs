@@ -62,7 +62,7 @@ pub(crate) enum RobotError {
 impl Quadruped {
     /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
     pub(crate) fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
-        let text = std::fs::read_to_string(path)?;
+        let text = crate::file::read_text(path)?;
         let locks = locks.iter().map(|lock| parse_lock(lock));
         let mut options = Options {
             base: BaseKind::Floating,

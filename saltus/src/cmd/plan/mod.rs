@@ -5,7 +5,8 @@ mod srb;
 mod task;
 mod whole_body;
 
-use super::folder::describe;
+use super::failure::Failure;
+use super::folder::{check_file, describe, write_file};
 use super::output::Output;
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
@@ -101,7 +102,8 @@ impl Planned {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.solution.as_deref().map_or(Ok(()), check_file)?;
     if let Some(name) = &args.task {
         return Ok(task::run(args, name));
     }
@@ -135,9 +137,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     } else {
         ("srb", srb::solve(args, &file, name)?)
     };
-    if let Some(path) = &args.solution {
-        std::fs::write(path, planned.solution.to_string())
-            .map_err(|error| describe(path, &error))?;
+    let solved = planned.status == "Solved";
+    // What is not solved must not lie there like a solution.
+    if let Some(path) = args.solution.as_deref().filter(|_| solved) {
+        write_file(path, planned.solution.to_string().as_bytes())?;
     }
     if args.output.json {
         let phase = |t: &f64| json!({ "duration_s": t });
@@ -156,7 +159,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
             planned.durations,
         );
     }
-    Ok(if planned.status == "Solved" {
+    Ok(if solved {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(2)
@@ -164,7 +167,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
 }
 
 fn read(path: &PathBuf) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| describe(path, &error))
+    crate::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {

@@ -3,6 +3,7 @@
 mod humanoid;
 mod quadruped;
 
+use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
 use crate::humanoid as icub;
@@ -78,7 +79,7 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Runs the command. Exit code 0 when the jump is on target, 2 when it is not or cannot be.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let Some(task) = icub::Task::named(&args.what) else {
         return quadruped::run(args);
     };
@@ -113,7 +114,7 @@ struct Files<'a> {
 
 impl Files<'_> {
     /// Writes a new folder and tells where it is.
-    fn publish(&self, args: &Args) -> Result<(), String> {
+    fn publish(&self, args: &Args) -> Result<(), Failure> {
         let result = format!("{:#}\n", self.result);
         let csv = self.log.csv();
         let mut files = vec![

@@ -1,7 +1,8 @@
 //! A jump of paper A: planned, or read from a container, and executed.
 
 use super::{Args, Files, code};
-use crate::cmd::folder::{describe, must_be_new};
+use crate::cmd::failure::Failure;
+use crate::cmd::folder::{check_file, check_new, describe, write_file};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
@@ -28,8 +29,9 @@ struct Made {
 }
 
 /// Runs the jump.
-pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
-    must_be_new(args.out.as_deref())?;
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    check_new(args.out.as_deref())?;
+    args.programs.as_deref().map_or(Ok(()), check_file)?;
     let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
     let path = Path::new(&args.what);
     let made = if !args.what.ends_with(".toml") && path.is_file() {
@@ -66,7 +68,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     };
     let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
     if let Some(path) = args.programs.as_deref() {
-        std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
+        write_file(path, &programs.bytes())?;
     }
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
@@ -81,7 +83,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     let log = log::table(&run.samples);
     let files = Files {
         task: &task.name,
-        mcap: report::mcap(task, &run, &log)?,
+        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
         result: &result,
         report: report::html(task, reference, &run, &table),
@@ -107,7 +109,7 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
 
 /// Reads a stored plan, and the task by which its run is judged.
 fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
-    let bytes = std::fs::read(path).map_err(|error| describe(path, &error))?;
+    let bytes = crate::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
     let plan = stored::open(&bytes, &Quadruped::a1().map_err(|error| show(&error))?)
         .map_err(|error| show(&error))?;

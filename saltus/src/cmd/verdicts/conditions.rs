@@ -2,6 +2,7 @@
 
 use super::subject::{Cell, Condition, Subject};
 use super::{Args, judge};
+use crate::cmd::failure::Failure;
 use crate::cmd::interrupt;
 use crate::jump::plant::Sim;
 use crate::lab::Interface;
@@ -35,7 +36,7 @@ pub(super) fn run(
     subjects: &[Subject],
     sims: &[Sim],
     bar: &ProgressBar,
-) -> Result<ExitCode, String> {
+) -> Result<ExitCode, Failure> {
     let mut columns = Vec::new();
     for (plant, interface) in COLUMNS {
         let condition = Condition {

@@ -4,6 +4,7 @@ mod conditions;
 mod measures;
 mod subject;
 
+use super::failure::Failure;
 use super::expected::{Expected, Found};
 use super::interrupt;
 use super::output::Output;
@@ -70,7 +71,7 @@ impl Args {
 }
 
 /// Runs the command. Exit code 0 when every verdict is on target, or as expected; 2 when one is not.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     if args.ranges {
         put!("{}", keys::markdown());
         return Ok(ExitCode::SUCCESS);
