@@ -17,6 +17,7 @@ mod lab;
 mod log;
 mod noise;
 mod observer;
+mod range;
 mod recording;
 mod reference;
 mod report;
