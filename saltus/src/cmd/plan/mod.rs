@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::folder::{check_file, describe, write_file};
 use super::output::Output;
 use crate::reference::whole_body::shipped;
+use crate::range::Range;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
 use ocp_solver::{Barrier, Progress, Solution};
@@ -55,7 +56,7 @@ pub(crate) struct Args {
     #[arg(long)]
     problem: Option<PathBuf>,
     /// Stage of the reference problem to solve.
-    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"])]
+    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"], conflicts_with = "task")]
     stage: String,
     /// SRB solution that the whole-body stage follows; default: the shipped one of the reference task, or,
     /// for tasks of a problem file, one that is solved first.
@@ -66,21 +67,26 @@ pub(crate) struct Args {
     solution: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) output: Output,
-    /// Standard deviation of the noise added to the initial guess.
-    #[arg(long, default_value_t = 0.0)]
+    /// Reference problems: standard deviation of the noise added to the initial guess.
+    #[arg(long, default_value_t = 0.0, conflicts_with = "task", value_parser = noise)]
     guess_noise: f64,
-    /// Seed of the guess noise.
-    #[arg(long, default_value_t = 1)]
+    /// Reference problems: seed of the guess noise.
+    #[arg(long, default_value_t = 1, conflicts_with = "task")]
     seed: u64,
-    /// Solve this many times, each from the cold guess, and report the median time.
-    #[arg(long, default_value_t = 1)]
+    /// Reference problems: solve this many times, each from the cold guess, and report the median time.
+    #[arg(long, default_value_t = 1, conflicts_with = "task")]
     repeat: usize,
     /// Print every iteration to standard error.
     #[arg(long)]
     trace: bool,
-    /// Barrier rule.
-    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"])]
+    /// Reference problems: barrier rule.
+    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"], conflicts_with = "task")]
     barrier: String,
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Range::From(0.0, 10.0).check(number).map(|()| number)
 }
 
 /// What a stage hands back.
@@ -106,6 +112,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.solution.as_deref().map_or(Ok(()), check_file)?;
     if let Some(name) = &args.task {
         return Ok(task::run(args, name));
+    }
+    if args.srb.is_some() && args.stage != "whole-body" {
+        return Err("--srb is for --stage whole-body, which follows that solution".into());
     }
     let text = match &args.problem {
         Some(path) => read(path)?,

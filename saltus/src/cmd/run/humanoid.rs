@@ -4,14 +4,11 @@ use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::check_new;
 use crate::humanoid::{Task, execute, judge::Verdict, log, report};
-use crate::lab::{Interface, Lab};
+use crate::lab::Lab;
 use std::process::ExitCode;
 
 /// Runs the jump.
 pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
-    if args.interface != Interface::Torque {
-        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
-    }
     check_new(args.out.as_deref())?;
     let bar = args.output.spinner();
     bar.set_message("simulating");

@@ -8,7 +8,7 @@ use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
 use crate::jump::judge::Judged;
 use crate::lab::Lab;
-use crate::jump::planned::Origin;
+use crate::jump::planned::{Origin, Planner};
 use crate::jump::programs::Programs;
 use crate::jump::reference::{Legs, Reference};
 use crate::jump::task::{SrbPlan, Task};
@@ -35,6 +35,9 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
     let path = Path::new(&args.what);
     let made = if !args.what.ends_with(".toml") && path.is_file() {
+        if args.planner.is_some() {
+            return Err("--planner is for tasks: a stored plan is executed as it is".into());
+        }
         read(path, args.task.as_deref())?
     } else if args.task.is_some() {
         return Err("--task is for stored plans: give the task alone".into());
@@ -99,7 +102,7 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
     let srb = task.solve()?;
     bar.set_message("planning the legs");
     bar.set_position(50);
-    let reference = args.planner.plan(&task, &srb)?;
+    let reference = args.planner.unwrap_or(Planner::WholeBody).plan(&task, &srb)?;
     Ok(Made {
         task,
         srb: Some(srb),

@@ -91,6 +91,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         subject
     });
     let subjects: Vec<Subject> = subjects.collect::<Result<_, String>>()?;
+    if args.interface != Interface::Torque && subjects.iter().any(Subject::is_humanoid) {
+        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
+    }
     let sims = args.sims();
     if args.conditions {
         return conditions::run(args, &subjects, &sims, &bar);
