@@ -22,7 +22,7 @@ pub use joints::Stops;
 #[cfg(feature = "mujoco")]
 pub use mjcf::{Geom, GeomShape, mjcf};
 #[cfg(feature = "mujoco")]
-pub use mujoco::{ModelRefused, MujocoSimulator};
+pub use mujoco::{ModelRefused, MujocoSimulator, mujoco_version};
 pub use native::NativeSimulator;
 pub use settings::Settings;
 pub use simulator::Simulator;

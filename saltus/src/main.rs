@@ -31,7 +31,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 #[derive(Parser)]
-#[command(version, about, after_help = examples::PROGRAM)]
+#[command(version = version(), about, after_help = examples::PROGRAM)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -63,6 +63,16 @@ enum Command {
     /// Print the script with which a shell completes these commands.
     #[command(after_help = examples::COMPLETIONS)]
     Completions(cmd::completions::Args),
+}
+
+/// What `--version` prints: with the simulator that this build has besides its own, or how to get it.
+fn version() -> String {
+    let own = env!("CARGO_PKG_VERSION");
+    #[cfg(feature = "mujoco")]
+    let more = format!("with MuJoCo {}", contact_sim::mujoco_version());
+    #[cfg(not(feature = "mujoco"))]
+    let more = "without MuJoCo; in the workspace, `cargo xtask mujoco build --release -p saltus --features mujoco` builds with it";
+    format!("{own} ({more})")
 }
 
 impl Command {

@@ -2,7 +2,7 @@
 
 use so3::math;
 
-use super::{Container, ContainerError, Header, NodeGains, PlanNode};
+use super::{Container, ContainerError, Header, NodeGains, PlanNode, Row};
 
 /// Farthest place, m, and fastest motion, m/s or rad/s, of any robot this is for.
 const FAR: f32 = 100.0;
@@ -12,8 +12,14 @@ const UNIT: f32 = 1e-4;
 const SAME_TIME: f32 = 1e-3;
 /// How far a force may be outside its cone, as a share of the largest: solvers stop within their tolerance.
 const CONE: f32 = 5e-3;
-/// Largest gain in multiples of the weight, per m, rad, m/s or rad/s: an error of a millimetre must not command ten weights.
-const GAIN: f32 = 100.0;
+/// Largest normal force in multiples of the one that the rigid body's plan may use: single legs of the whole body come to three.
+const MOST: f32 = 10.0;
+/// Largest gain, N m per m, rad, m/s or rad/s: those of plans that touch many limits at once come to a hundredth of it.
+const GAIN: f32 = 1e10;
+/// How much larger than those of every other node a node's gains may be: they follow a motion that is smooth. Four times is what plans have.
+const LEAP: f32 = 100.0;
+/// Kinds of gains: by the base and by the joints, and by their rates.
+const KINDS: usize = 4;
 
 type Checked = Result<(), ContainerError>;
 
@@ -39,13 +45,11 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
             if let Some(what) = fault(&self.header, &node, last) {
                 return wrong(what);
             }
-            if self.header.has_gains && !self.gains(usize::from(i)).is_some_and(|g| self.is_plausible(&g)) {
-                return wrong("gains");
-            }
             before = Some(node);
         }
         let end = before.map_or(f32::NAN, |node| node.time);
-        header(near(end, self.header.touchdown), "time of the last node")
+        header(near(end, self.header.touchdown), "time of the last node")?;
+        self.check_gains()
     }
 
     fn check_header(&self) -> Checked {
@@ -72,14 +76,59 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
         header(step, "ground")
     }
 
-    fn is_plausible(&self, gains: &NodeGains<N>) -> bool {
-        let most = GAIN * self.header.margins.weight;
-        // Not `>`: what is not a number is no gain.
-        let small = |x: &f32| x.abs() <= most;
-        let by_base = gains.by_base.0.iter().chain(&gains.by_base_rates.0);
-        let by_joints = gains.by_joints.0.iter().chain(&gains.by_joint_rates.0);
-        by_base.flatten().all(small) && by_joints.flat_map(|row| &row.0).all(small)
+    /// All within bounds, and none that stands alone.
+    fn check_gains(&self) -> Checked {
+        let mut most = [Leader::default(); KINDS];
+        for i in 0..self.header.nodes {
+            let Some(gains) = self.gains(usize::from(i)) else {
+                break;
+            };
+            for (leader, x) in most.iter_mut().zip(largest(&gains)) {
+                // Not `>`: what is not a number is no gain.
+                if !(x <= GAIN) {
+                    return Err(ContainerError::Value { node: Some(i), what: "gains" });
+                }
+                leader.meet(i, x);
+            }
+        }
+        let alone = most.iter().find(|leader| leader.first > LEAP * leader.second);
+        match alone {
+            Some(leader) => Err(ContainerError::Value { node: Some(leader.node), what: "gains" }),
+            None => Ok(()),
+        }
     }
+}
+
+/// The largest and the second largest value of any node.
+#[derive(Clone, Copy, Default)]
+struct Leader {
+    node: u16,
+    first: f32,
+    second: f32,
+}
+
+impl Leader {
+    fn meet(&mut self, node: u16, x: f32) {
+        if x > self.first {
+            (self.node, self.first, self.second) = (node, x, self.first);
+        } else if x > self.second {
+            self.second = x;
+        }
+    }
+}
+
+/// The largest gain of each kind; NaN where one is.
+fn largest<const N: usize>(gains: &NodeGains<N>) -> [f32; KINDS] {
+    // What is not a number stays.
+    let most = |most: f32, x: &f32| if x.abs() <= most || most.is_nan() { most } else { x.abs() };
+    let base = |rows: &[[f32; 6]; N]| rows.as_flattened().iter().fold(0.0, most);
+    let joints = |rows: &[Row<f32, N>; N]| rows.iter().flat_map(|row| &row.0).fold(0.0, most);
+    [
+        base(&gains.by_base.0),
+        joints(&gains.by_joints.0),
+        base(&gains.by_base_rates.0),
+        joints(&gains.by_joint_rates.0),
+    ]
 }
 
 /// Fails where the header, or the nodes as a whole, cannot be.
@@ -146,7 +195,7 @@ fn unless((ok, what): (bool, &'static str)) -> Option<&'static str> {
 fn pushes(h: &Header<'_>, f: &[f32; 3], stands: bool) -> bool {
     let [x, y, z] = f.map(f64::from);
     let slack = f64::from(CONE * h.margins.max_force);
-    let most = f64::from(h.margins.max_force) + slack;
+    let most = f64::from(MOST * h.margins.max_force);
     let side = math::hypot(x, y);
     if stands {
         z >= -slack && z <= most && side <= f64::from(h.margins.friction) * z + slack

@@ -5,7 +5,7 @@
 use super::failure::Failure;
 use super::folder::describe;
 use super::output::Output;
-use crate::audit::Audit;
+use crate::audit::{Audit, check_values};
 use crate::jump::stored::open;
 use crate::robot::Quadruped;
 use serde_json::json;
@@ -36,7 +36,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let robot = robot.map_err(|error| error.to_string())?;
     let bytes = crate::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
-    let audit = Audit::of(&robot, &plan)?;
+    let show = |error| format!("{}: {error}", args.file.display());
+    check_values(&robot, &plan).map_err(show)?;
+    let audit = Audit::of(&robot, &plan).map_err(show)?;
     let header = plan.header();
     let status = if audit.passes() {
         "Solved"

@@ -1,6 +1,7 @@
 //! A jump of paper A: planned, or read from a container, and executed.
 
 use super::{Args, Files, code};
+use crate::audit::check_values;
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{check_file, check_new, describe, write_file};
 use crate::jump::answer::Answer;
@@ -114,8 +115,9 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
 fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
     let bytes = crate::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let plan = stored::open(&bytes, &Quadruped::a1().map_err(|error| show(&error))?)
-        .map_err(|error| show(&error))?;
+    let robot = Quadruped::a1().map_err(|error| show(&error))?;
+    let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
+    check_values(&robot, &plan).map_err(|error| show(&error))?;
     let name = task.unwrap_or(plan.header().task);
     let task = Task::load(name).map_err(|error| {
         show(&format!(
