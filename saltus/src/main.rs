@@ -29,9 +29,10 @@ mod verdict;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 #[derive(Parser)]
-#[command(version = version(), about, after_help = examples::PROGRAM)]
+#[command(version = VERSION.as_str(), about, after_help = examples::PROGRAM)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -66,14 +67,14 @@ enum Command {
 }
 
 /// What `--version` prints: with the simulator that this build has besides its own, or how to get it.
-fn version() -> String {
+static VERSION: LazyLock<String> = LazyLock::new(|| {
     let own = env!("CARGO_PKG_VERSION");
     #[cfg(feature = "mujoco")]
     let more = format!("with MuJoCo {}", contact_sim::mujoco_version());
     #[cfg(not(feature = "mujoco"))]
     let more = "without MuJoCo; in the workspace, `cargo xtask mujoco build --release -p saltus --features mujoco` builds with it";
     format!("{own} ({more})")
-}
+});
 
 impl Command {
     /// Whether errors are JSON too.
