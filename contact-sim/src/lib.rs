@@ -25,7 +25,7 @@ pub use joints::Stops;
 #[cfg(feature = "mujoco")]
 pub use mjcf::{Geom, mjcf};
 #[cfg(feature = "mujoco")]
-pub use mujoco::{ModelRefused, MujocoSimulator};
+pub use mujoco::{ModelRefused, MujocoSimulator, mujoco_version};
 pub use native::NativeSimulator;
 pub use rbd_core::Shape;
 pub use settings::Settings;

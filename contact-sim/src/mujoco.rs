@@ -21,6 +21,12 @@ use so3::math;
 use crate::mjcf::{Geom, geom_name, mjcf, stopped};
 use crate::{Error, Settings, Simulator, Terrain};
 
+/// The version of the MuJoCo library that is linked, such as `3.17.0`.
+#[must_use]
+pub fn mujoco_version() -> &'static str {
+    mujoco_rs::mujoco_version()
+}
+
 /// A robot with `N` joints and `C` owners of shapes in MuJoCo.
 #[derive(Debug)]
 pub struct MujocoSimulator<const N: usize, const C: usize> {

@@ -35,7 +35,7 @@ fn failures(output: &Output) -> Vec<String> {
 fn a_goal_that_is_not_on_the_ground_is_refused() {
     let text = include_str!("../tasks/a1/lateral.toml").replace("0.3, 0.0]", "0.3, 0.15]");
     let output = run("height", &text);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("goal_m") && said.contains("0.15"), "{said}");
 }

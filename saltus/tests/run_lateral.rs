@@ -161,7 +161,7 @@ fn a_run_that_fails_leaves_no_folder() {
     }
     for arguments in failures {
         let failed = saltus(&arguments);
-        assert_eq!(failed.status.code(), Some(1));
+        assert_eq!(failed.status.code(), Some(2));
         assert!(!out.exists(), "{arguments:?} left a folder");
         if arguments[5] == "mujoco" {
             let said = String::from_utf8_lossy(&failed.stderr).into_owned();

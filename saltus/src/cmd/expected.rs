@@ -38,7 +38,7 @@ impl Expected {
     /// Reads the file.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-        let text = std::fs::read_to_string(path).map_err(|error| show(&error))?;
+        let text = crate::file::read_text(path).map_err(|error| show(&error))?;
         Ok(Self {
             path: path.to_owned(),
             tables: toml::from_str(&text).map_err(|error| show(&error))?,
@@ -83,7 +83,7 @@ fn tell<'a>(
 ) -> ExitCode {
     let wrong = differences(expected, found);
     for line in &wrong {
-        eprintln!("saltus: {line}");
+        tell!("saltus: {line}");
     }
     ExitCode::from(if wrong.is_empty() { 0 } else { 2 })
 }

@@ -1,10 +1,12 @@
 //! `saltus import`: turn a URDF or an MJCF into a `no_std` model crate.
 //!
 //! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
-//! folder is not.
+//! folder is not, 1 if the crate cannot be written.
 
+use super::failure::{Failure, brief};
 use super::folder::describe;
 use super::output::Output;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -56,26 +58,10 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> ExitCode {
-    match import(args) {
-        Ok((robot, provenance)) => {
-            report(args, &robot, &provenance);
-            ExitCode::SUCCESS
-        }
-        Err(message) => {
-            if args.output.json {
-                println!("{}", json!({ "status": "Error", "error": message }));
-            }
-            eprintln!("saltus: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn import(args: &Args) -> Result<(Robot, Provenance), String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let read = |path: &Path| match path.extension().is_some_and(|e| e == "xml") {
         true => mjcf::read(path),
-        false => std::fs::read_to_string(path),
+        false => crate::file::read_text(path),
     };
     let text = read(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)
@@ -89,10 +75,15 @@ fn import(args: &Args) -> Result<(Robot, Provenance), String> {
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
-        write_crate(folder, &robot, &about(args, &robot)?, &provenance)
-            .map_err(|error| error.to_string())?;
+        write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(|error| {
+            match error.kind() {
+                ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
+                _ => Failure::Outside(describe(folder, &error)),
+            }
+        })?;
     }
-    Ok((robot, provenance))
+    report(args, &robot, &provenance);
+    Ok(ExitCode::SUCCESS)
 }
 
 fn options(args: &Args) -> Result<Options, ImportError> {
@@ -165,7 +156,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         return;
     }
     for warning in &robot.warnings {
-        eprintln!("warning: {warning}");
+        tell!("warning: {}", brief(&warning.to_string()));
     }
     let limbs = expression(&structure(&robot.bodies));
     let base = match robot.base_kind {
@@ -193,21 +184,21 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
             "independent": robot.independent().iter().map(|&i| &robot.joints[i].name).collect::<Vec<_>>(),
             "out": args.out,
         });
-        println!("{object}");
+        say!("{object}");
         return;
     }
     let (joints, frames) = (robot.joints.len(), robot.frames.len());
-    println!(
+    say!(
         "{}: {joints} joints on a {} base, {frames} frames, {:.6} kg",
         robot.name,
         base,
         robot.mass()
     );
-    println!("limbs: {limbs}");
+    say!("limbs: {limbs}");
     if let Some(folder) = &args.out {
-        println!("wrote {}; to build it:", folder.display());
+        say!("wrote {}; to build it:", folder.display());
         for command in commands(folder).lines() {
-            println!("  {command}");
+            say!("  {command}");
         }
     }
 }

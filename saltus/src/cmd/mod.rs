@@ -3,9 +3,11 @@
 pub(crate) mod completions;
 pub(crate) mod envelope;
 pub(crate) mod expected;
+pub(crate) mod failure;
 mod folder;
 pub(crate) mod import;
 mod interrupt;
+mod leftovers;
 mod output;
 pub(crate) mod plan;
 pub(crate) mod reproduce;

@@ -1,6 +1,7 @@
 //! `saltus reproduce`: both papers, item by item.
 
 use super::expected::{Expected, Found};
+use super::failure::Failure;
 use super::folder::{create, describe, write};
 use super::interrupt;
 use super::output::Output;
@@ -28,7 +29,7 @@ pub(crate) struct Args {
 
 /// Runs the command. Exit code 0 when every claim that can be judged holds, 2 when one does not; Ctrl-C leaves the
 /// page of the rows so far.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let sims: &[Sim] = match (args.quick, cfg!(feature = "mujoco")) {
         (true, _) => &[Sim::Native],
         (false, true) => &[Sim::Native, Sim::Mujoco],
@@ -56,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         && humanoid::rows(sims, &folder, &mut rows, tell).is_continue();
     bar.finish_and_clear();
     let mut reports: Vec<String> = std::fs::read_dir(&folder)
-        .map_err(|error| describe(&folder, &error))?
+        .map_err(|error| Failure::Outside(describe(&folder, &error)))?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
         .collect();
     reports.sort();
@@ -72,10 +73,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         page::html(&rows, &reports).as_bytes(),
     )?;
     if args.output.json {
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
         rows.iter().for_each(Row::print);
-        println!("page: {}", folder.join("index.html").display());
+        say!("page: {}", folder.join("index.html").display());
     }
     Ok(if !complete {
         ExitCode::from(interrupt::CODE)

@@ -22,6 +22,7 @@ pub(crate) mod stored;
 pub(crate) mod strip;
 pub(crate) mod task;
 pub(crate) mod task_file;
+mod task_values;
 pub(crate) mod whole_body;
 
 use a1_model::{A1Geared, FEET};

@@ -57,7 +57,7 @@ pub(crate) fn rows(
                     let html = report::html(&task, &held, Some(&free), &table);
                     let name = format!("{}-{}", name.replace('/', "-"), sim.name());
                     if let Err(error) = html.and_then(|html| write_report(folder, &name, &html)) {
-                        eprintln!("saltus: {error}");
+                        tell!("saltus: {error}");
                     }
                 }
                 (Err(error), _) | (_, Err(error)) => rows.push(row.failed(error)),

@@ -109,11 +109,11 @@ impl Row {
     /// For a terminal.
     pub(crate) fn print(&self) {
         let sim = self.sim.map_or("", Sim::name);
-        println!("{:3} {} {} [{sim}]", self.mark(), self.paper, self.item);
-        println!("      paper: {}", self.theirs);
-        println!("      here:  {}", self.ours);
+        say!("{:3} {} {} [{sim}]", self.mark(), self.paper, self.item);
+        say!("      paper: {}", self.theirs);
+        say!("      here:  {}", self.ours);
         if !self.reason.is_empty() {
-            println!("      {}", self.reason);
+            say!("      {}", self.reason);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A study beside the same study without each measure: what each is worth.
 
 use super::study::{Study, refuse_strangers};
+use crate::cmd::failure::Failure;
 use crate::cmd::folder::write;
 use crate::cmd::interrupt;
 use crate::jump::envelope::{Counts, wilson};
@@ -19,7 +20,7 @@ pub(super) struct Row {
 }
 
 /// Runs the study with all measures and without each, in folders of their own, until Ctrl-C.
-pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, String> {
+pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Failure> {
     let parts = core::iter::once(None).chain(Measure::ALL.map(Some));
     let parts = parts.map(|off| {
         let name = off.map_or(NONE, Measure::name);

@@ -3,6 +3,8 @@
 mod ablation;
 mod study;
 
+use super::failure::Failure;
+use super::folder::check_new;
 use super::interrupt;
 use super::output::Output;
 use crate::jump::envelope::{Counts, table};
@@ -16,13 +18,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use study::{Shard, Study, names, shard};
 
+/// Most runs of a study: beyond, only memory and a lifetime are used.
+const MOST_SAMPLES: u64 = 10_000_000;
+
 /// Options of `saltus envelope`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Task, such as a1/lateral.
     task: String,
     /// Number of runs over all shards.
-    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
     samples: u64,
     /// Seed of the whole study.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
@@ -81,7 +86,7 @@ impl Args {
 }
 
 /// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let task = Task::load(&args.task)?;
     let mut without = args.without.clone();
     without.sort_unstable();
@@ -101,6 +106,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         },
         without,
     };
+    if !study.folder.exists() {
+        check_new(Some(&study.folder))?;
+    }
     interrupt::listen()?;
     let bar = args
         .output
@@ -138,9 +146,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
             report.extend(result);
         }
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}\nfolder: {}", text.trim_end(), study.folder.display());
+        say!("{}\nfolder: {}", text.trim_end(), study.folder.display());
     }
     Ok(if complete {
         ExitCode::SUCCESS

@@ -3,6 +3,7 @@
 //! Sample i of seed S is the same run on every machine, whatever the shard. Every finished sample is one line in the shard's
 //! file, so a run that was stopped goes on where it was, and the files of all shards in one folder make one table.
 
+use crate::cmd::failure::Failure;
 use crate::cmd::folder::{describe, write};
 use crate::cmd::interrupt;
 use crate::jump::envelope::{Sample, picture, table};
@@ -101,15 +102,16 @@ impl Study<'_> {
         &self,
         reference: &Reference,
         bar: &ProgressBar,
-    ) -> Result<Vec<Sample>, String> {
-        fs::create_dir_all(&self.folder).map_err(|e| describe(&self.folder, &e))?;
+    ) -> Result<Vec<Sample>, Failure> {
+        let outside = |path: &Path, e: &std::io::Error| Failure::Outside(describe(path, e));
+        fs::create_dir_all(&self.folder).map_err(|e| outside(&self.folder, &e))?;
         let Shard { part, of } = self.shard;
         let path = self.folder.join(format!("shard-{part}-of-{of}.csv"));
         let done: HashSet<u64> = self.read(&path)?.iter().map(|s| s.index).collect();
         let todo: Vec<u64> = (0..self.samples)
             .filter(|i| i % of == part - 1 && !done.contains(i))
             .collect();
-        let file = Mutex::new(self.open(&path).map_err(|e| describe(&path, &e))?);
+        let file = Mutex::new(self.open(&path).map_err(|e| outside(&path, &e))?);
         bar.set_length(todo.len() as u64);
         bar.set_position(0);
         todo.par_iter().try_for_each(|index| {
@@ -121,9 +123,9 @@ impl Study<'_> {
             let line = format!("{}\n", sample.line());
             let mut file = file.lock().map_err(|e| e.to_string())?;
             file.write_all(line.as_bytes())
-                .map_err(|e| describe(&path, &e))?;
+                .map_err(|e| outside(&path, &e))?;
             bar.inc(1);
-            Ok::<_, String>(())
+            Ok::<_, Failure>(())
         })?;
         let samples = self.merge()?;
         write(&self.folder, "table.csv", table(&samples).as_bytes())?;

@@ -1,17 +1,15 @@
 //! A jump of paper B.
 
 use super::{Args, Files, code};
-use crate::cmd::folder::must_be_new;
+use crate::cmd::failure::Failure;
+use crate::cmd::folder::check_new;
 use crate::humanoid::{Task, execute, judge::Verdict, log, report};
-use crate::lab::{Interface, Lab};
+use crate::lab::Lab;
 use std::process::ExitCode;
 
 /// Runs the jump.
-pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
-    if args.interface != Interface::Torque {
-        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
-    }
-    must_be_new(args.out.as_deref())?;
+pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
+    check_new(args.out.as_deref())?;
     let bar = args.output.spinner();
     bar.set_message("simulating");
     let disturbance = args.disturbance(Lab::Icub);
@@ -33,13 +31,13 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
     let table = verdict.table(task, &run, args.sim.name());
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:26} {value}");
+            say!("{name:26} {value}");
         }
     }
     let log = log::table(&run.samples);
     let files = Files {
         task: task.name(),
-        mcap: report::mcap(task, &run, &log)?,
+        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
         result: &result,
         report: report::html(task, &run, free.as_ref(), &table)?,

@@ -1,12 +1,14 @@
 //! A jump of paper A: planned, or read from a container, and executed.
 
 use super::{Args, Files, code};
-use crate::cmd::folder::{describe, must_be_new};
+use crate::audit::check_values;
+use crate::cmd::failure::Failure;
+use crate::cmd::folder::{check_file, check_new, describe, write_file};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
 use crate::jump::judge::Judged;
-use crate::jump::planned::Origin;
+use crate::jump::planned::{Origin, Planner};
 use crate::jump::programs::Programs;
 use crate::jump::reference::{Legs, Reference};
 use crate::jump::task::{SrbPlan, Task};
@@ -28,11 +30,15 @@ struct Made {
 }
 
 /// Runs the jump.
-pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
-    must_be_new(args.out.as_deref())?;
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    check_new(args.out.as_deref())?;
+    args.programs.as_deref().map_or(Ok(()), check_file)?;
     let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
     let path = Path::new(&args.what);
     let made = if !args.what.ends_with(".toml") && path.is_file() {
+        if args.planner.is_some() {
+            return Err("--planner is for tasks: a stored plan is executed as it is".into());
+        }
         read(path, args.task.as_deref())?
     } else if args.task.is_some() {
         return Err("--task is for stored plans: give the task alone".into());
@@ -66,7 +72,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     };
     let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
     if let Some(path) = args.programs.as_deref() {
-        std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
+        write_file(path, &programs.bytes())?;
     }
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
@@ -75,13 +81,13 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
     let table = table(&made, &run, &judged, &trial, wall);
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:18} {value}");
+            say!("{name:18} {value}");
         }
     }
     let log = log::table(&run.samples);
     let files = Files {
         task: &task.name,
-        mcap: report::mcap(task, &run, &log)?,
+        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
         result: &result,
         report: report::html(task, reference, &run, &table),
@@ -97,7 +103,7 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
     let srb = task.solve()?;
     bar.set_message("planning the legs");
     bar.set_position(50);
-    let reference = args.planner.plan(&task, &srb)?;
+    let reference = args.planner.unwrap_or(Planner::WholeBody).plan(&task, &srb)?;
     Ok(Made {
         task,
         srb: Some(srb),
@@ -107,10 +113,11 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
 
 /// Reads a stored plan, and the task by which its run is judged.
 fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
-    let bytes = std::fs::read(path).map_err(|error| describe(path, &error))?;
+    let bytes = crate::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let plan = stored::open(&bytes, &Quadruped::a1().map_err(|error| show(&error))?)
-        .map_err(|error| show(&error))?;
+    let robot = Quadruped::a1().map_err(|error| show(&error))?;
+    let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
+    check_values(&robot, &plan).map_err(|error| show(&error))?;
     let name = task.unwrap_or(plan.header().task);
     let task = Task::load(name).map_err(|error| {
         show(&format!(
@@ -129,9 +136,9 @@ fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
 fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
     if args.output.json {
         let report = json!({ "task": task.name, "status": answer.status, "answer": answer.json() });
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}: {}\n{}", task.name, answer.status, answer.text());
+        say!("{}: {}\n{}", task.name, answer.status, answer.text());
     }
     code(false)
 }

@@ -57,12 +57,12 @@ pub(super) fn run(args: &Args, subjects: &[Subject]) -> Result<ExitCode, String>
         }
     }
     if args.output.json {
-        println!(
+        say!(
             "{}",
             json!({ "agreement": lines.iter().map(Line::json).collect::<Vec<_>>() })
         );
     } else if !args.output.quiet {
-        print!("{}", table(&lines));
+        put!("{}", table(&lines));
     }
     let all = lines.iter().all(Line::agrees);
     Ok(ExitCode::from(if all { 0 } else { 2 }))

@@ -2,6 +2,7 @@
 
 use super::subject::{Cell, Condition, Subject};
 use super::{Args, judge};
+use crate::cmd::failure::Failure;
 use crate::cmd::interrupt;
 use crate::jump::plant::Sim;
 use crate::lab::Interface;
@@ -35,7 +36,7 @@ pub(super) fn run(
     subjects: &[Subject],
     sims: &[Sim],
     bar: &ProgressBar,
-) -> Result<ExitCode, String> {
+) -> Result<ExitCode, Failure> {
     let mut columns = Vec::new();
     for (plant, interface) in COLUMNS {
         let condition = Condition {
@@ -74,9 +75,9 @@ pub(super) fn run(
         .flat_map(|subject| sims.iter().map(|sim| (subject.name.as_str(), *sim)))
         .collect();
     if args.output.json {
-        println!("{}", json(&rows, &columns));
+        say!("{}", json(&rows, &columns));
     } else if !args.output.quiet {
-        print!("{}", markdown(&rows, &columns));
+        put!("{}", markdown(&rows, &columns));
     }
     Ok(if interrupt::asked() {
         ExitCode::from(interrupt::CODE)

@@ -5,6 +5,7 @@ mod conditions;
 mod measures;
 mod subject;
 
+use super::failure::Failure;
 use super::expected::{Expected, Found};
 use super::interrupt;
 use super::output::Output;
@@ -74,9 +75,9 @@ impl Args {
 }
 
 /// Runs the command. Exit code 0 when every verdict is on target, or as expected; 2 when one is not.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     if args.ranges {
-        print!("{}", keys::markdown());
+        put!("{}", keys::markdown());
         return Ok(ExitCode::SUCCESS);
     }
     interrupt::listen()?;
@@ -97,6 +98,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         subject
     });
     let subjects: Vec<Subject> = subjects.collect::<Result<_, String>>()?;
+    if args.interface != Interface::Torque && subjects.iter().any(Subject::is_humanoid) {
+        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
+    }
     if args.agreement {
         bar.finish_and_clear();
         return agreement::run(args, &subjects);
@@ -108,12 +112,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     let cells = judge(&subjects, &sims, &args.condition(), &bar);
     bar.finish_and_clear();
     if args.output.json {
-        println!(
+        say!(
             "{}",
             json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() })
         );
     } else if !args.output.quiet {
-        print!("{}", measures::table(&cells));
+        put!("{}", measures::table(&cells));
     }
     match expected {
         Some(expected) => {

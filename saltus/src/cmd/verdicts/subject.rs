@@ -77,6 +77,10 @@ impl Subject {
         })
     }
 
+    pub(super) fn is_humanoid(&self) -> bool {
+        matches!(self.kind, Kind::Humanoid(_))
+    }
+
     /// Runs it.
     pub(super) fn judge(&self, sim: Sim, condition: &Condition) -> Cell {
         let verdict = match &self.kind {
