@@ -1,13 +1,13 @@
 //! The controller of a humanoid jump: push-off by a program; flight and landing by another, or by servos. 1 kHz.
 
 use super::sensors::Told;
-use super::{GRAVITY, JOINTS, Landing, Level, ROBOT, State, Task, Velocity, landing_posture};
-use super::{on_the_floor, poses};
+use super::{GRAVITY, JOINTS, Landing, Level, State, Task, Velocity, known, landing_posture};
+use super::{middle_of_soles, on_the_floor, poses};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{ContactShape, JointLimits, Transform};
+use rbd_core::{JointLimits, TableModel, Transform, Tree};
 use wbc_qp::jump::{
     Absorption, ComReference, LandingReference, LandingSettings, Residuals, TorqueJump,
     TorqueJumpSettings, TorqueTick, VelocityJump, VelocityJumpSettings,
@@ -58,6 +58,8 @@ pub(crate) struct QpLog {
 /// The controller with its memory.
 pub(crate) struct Controller {
     task: Task,
+    /// The robot as far as it is known.
+    robot: TableModel<f64, JOINTS>,
     profile: ComProfile<f64>,
     pub(crate) phase: Phase,
     pub(crate) qp: QpLog,
@@ -130,6 +132,7 @@ impl Controller {
         let start_com = super::com(start);
         Ok(Self {
             task,
+            robot: known(&task)?,
             profile: task.profile()?,
             phase: Phase::Hold,
             qp: QpLog::default(),
@@ -159,6 +162,13 @@ impl Controller {
             took_off: f64::INFINITY,
             calm: 0.0,
         })
+    }
+
+    /// Mass of the robot as it is known, kg.
+    pub(crate) fn mass(&self) -> f64 {
+        let base = Tree::<f64, JOINTS>::base(&self.robot).mass;
+        let bodies = Tree::<f64, JOINTS>::bodies(&self.robot);
+        base + bodies.iter().map(|body| body.mass).sum::<f64>()
     }
 
     /// Planned time of take-off, s.
@@ -228,7 +238,7 @@ impl Controller {
         posture: [f64; JOINTS],
         velocity: [f64; JOINTS],
     ) -> JointCommand<f64, JOINTS> {
-        self.snapshot.update(&ROBOT, &told.q, &told.v);
+        self.snapshot.update(&self.robot, &told.q, &told.v);
         let on_ground = self.on_ground();
         for (contact, force) in self.contacts.iter_mut().zip(told.forces) {
             let there = on_ground && force > SOLE_TOUCH;
@@ -252,7 +262,7 @@ impl Controller {
                 (height + way, speed, acceleration)
             },
         );
-        let mut position_w = self.middle_of_soles();
+        let mut position_w = middle_of_soles(&self.snapshot.kinematics);
         position_w.z = height;
         let up = Vector3::z();
         let wanted = LandingReference {
@@ -267,29 +277,13 @@ impl Controller {
         };
         self.qp.solves += 1;
         let tick = self.landing.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             (&guarded_limits(), &self.task.motors()),
             &wanted,
         );
         self.command(tick, None)
-    }
-
-    /// Middle of both soles in the world.
-    fn middle_of_soles(&self) -> Vector3<f64> {
-        let middles = SOLES.map(|sole| {
-            let ContactShape::Rectangle {
-                x: [a, b],
-                y: [c, d],
-            } = sole.shape
-            else {
-                unreachable!("the soles are rectangles")
-            };
-            let middle = Vector3::new(0.5 * (a + b), 0.5 * (c + d), 0.0);
-            self.snapshot.pose(&sole.frame).point(&middle)
-        });
-        (middles[0] + middles[1]) * 0.5
     }
 
     fn track(&self, velocity: [f64; JOINTS]) -> JointCommand<f64, JOINTS> {
@@ -305,11 +299,11 @@ impl Controller {
         let sole = &SOLES[0].frame;
         let (q, v) = match self.task.level {
             // Servos hide the soles' own small motion, and a centre of mass that ignores it is smooth.
-            Level::Velocity => anchored(&ROBOT, &q.joints, &v.joints, sole, &self.anchor),
+            Level::Velocity => anchored(&self.robot, &q.joints, &v.joints, sole, &self.anchor),
             // Torques do not: a sole that rocks would look like the whole robot rocking.
             Level::Torque => (*q, *v),
         };
-        self.snapshot.update(&ROBOT, &q, &v);
+        self.snapshot.update(&self.robot, &q, &v);
         let point = self.profile.at(t);
         let up = Vector3::z();
         self.reference = ComReference {
@@ -326,7 +320,7 @@ impl Controller {
 
     fn push_by_velocity(&mut self) -> JointCommand<f64, JOINTS> {
         let tick = self.velocity.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             &guarded_limits(),
@@ -353,7 +347,7 @@ impl Controller {
     /// Torques are held for a tick; the servos only follow, to be ready for the flight.
     fn push_by_torque(&mut self) -> JointCommand<f64, JOINTS> {
         let tick = self.torque.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             (&guarded_limits(), &self.task.motors()),

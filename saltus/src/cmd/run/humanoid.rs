@@ -2,7 +2,7 @@
 
 use super::{Args, Files, code};
 use crate::cmd::folder::must_be_new;
-use crate::humanoid::{Task, execute, judge::Verdict, log, report};
+use crate::humanoid::{Task, execute, judge::Judged, log, report};
 use crate::lab::{Interface, Lab};
 use std::process::ExitCode;
 
@@ -17,8 +17,8 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
     let disturbance = args.disturbance(Lab::Icub);
     let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
     let run = jump(task)?;
-    let verdict = Verdict::of(&run);
-    let result = verdict.json(task, &run, args.seed, args.sim.name());
+    let judged = Judged::of(task, &run);
+    let result = judged.json(task, &run, (args.sim.name(), args.seed), &disturbance);
     // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
     let free = if task.momentum {
         bar.set_message("simulating without control of the angular momentum");
@@ -30,7 +30,7 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
         None
     };
     bar.finish_and_clear();
-    let table = verdict.table(task, &run, args.sim.name());
+    let table = judged.table(task, &run, args.sim.name(), &disturbance);
     if args.output.is_text() {
         for (name, value, _) in &table {
             println!("{name:26} {value}");
@@ -46,5 +46,5 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
         strip: None,
     };
     files.publish(args)?;
-    Ok(code(verdict.on_target(task)))
+    Ok(code(judged.verdict.on_target()))
 }
