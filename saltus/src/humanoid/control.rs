@@ -2,7 +2,7 @@
 
 use super::sensors::Told;
 use super::{GRAVITY, JOINTS, Landing, Level, State, Task, Velocity, known, landing_posture};
-use super::{middle_of_soles, on_the_floor, poses};
+use super::{flight_time, middle_of_soles, on_the_floor, poses};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
@@ -16,8 +16,9 @@ use wbc_qp::{Contact, Snapshot, Yielded, anchored};
 
 /// Length of a tick, s.
 pub(crate) const TICK: f64 = 1e-3;
-/// Duration of the aerial motion, s: a flight of 4 cm takes 0.18 s.
-const AERIAL: f64 = 0.12;
+/// Duration of the aerial motion over that of the planned flight: joints that leave the ground at 7 rad/s with their rotors need all of it,
+/// less what ground that comes early takes away.
+const AERIAL: f64 = 0.9;
 /// Factors on the servos' gains of legs and torso once the ground is there: the hold of paper B, but compliant, since the
 /// stiff one throws the robot back into the air.
 const LANDING_STIFFNESS: f64 = 0.1;
@@ -31,6 +32,8 @@ const LOADING: f64 = 0.01;
 /// Way of the centre of mass in which the fall ends, m, and the longest time for it, s.
 const ABSORB: f64 = 0.08;
 const ABSORB_TIME: f64 = 0.4;
+/// Time in which the robot then rises to the landing posture, s.
+const RISE_TIME: f64 = 0.8;
 /// Ground friction that the controller counts on.
 const FRICTION: f64 = 0.5;
 /// Residuals up to which an equality of the paper counts as held: m/s and kg m²/s.
@@ -69,17 +72,16 @@ pub(crate) struct Controller {
     velocity: Box<VelocityJump<f64, JOINTS, 29, 12>>,
     torque: Box<TorqueJump<f64, JOINTS, 12, 35, 55>>,
     landing: Box<wbc_qp::jump::Landing<f64, JOINTS, 12, 35, 55>>,
-    /// How the fall ends: since when, from which height.
+    /// How the fall ends: since when, from which height over the soles.
     absorption: Option<(f64, f64, Absorption<f64>)>,
-    /// Orientation of the base in the landing posture.
+    /// Orientation of the base in the landing posture, and its height of the centre of mass over the soles.
     upright: Rotation3<f64>,
+    standing: f64,
     start_com: Vector3<f64>,
     /// Where the left sole stands.
     anchor: Transform<f64>,
     /// Positions that the servos track.
     servo: [f64; JOINTS],
-    /// Velocities last asked of them.
-    commanded: [f64; JOINTS],
     /// Torques of the last program that was solved.
     last_torques: [f64; JOINTS],
     aerial: MinimumJerk<f64, JOINTS>,
@@ -130,10 +132,14 @@ impl Controller {
             torque.momentum_weight = 0.0;
         }
         let start_com = super::com(start);
+        let standing = on_the_floor(landing_posture());
+        let profile = task.profile()?;
+        let flight = flight_time(&profile, start_com.z);
+        let share: f64 = std::env::var("SALTUS_X").ok().and_then(|x| x.parse().ok()).unwrap_or(AERIAL);
         Ok(Self {
             task,
             robot: known(&task)?,
-            profile: task.profile()?,
+            profile,
             phase: Phase::Hold,
             qp: QpLog::default(),
             reference: ComReference {
@@ -147,17 +153,17 @@ impl Controller {
             torque: Box::new(TorqueJump::new(torque, start.joints)),
             landing: Box::new(wbc_qp::jump::Landing::new(LandingSettings::icub())),
             absorption: None,
-            upright: on_the_floor(landing_posture()).base.rotation,
+            upright: standing.base.rotation,
+            standing: super::com(&standing).z,
             start_com,
             anchor: poses(start).frame(&SOLES[0].frame),
             servo: start.joints,
-            commanded: [0.0; JOINTS],
             last_torques: [0.0; JOINTS],
             aerial: MinimumJerk {
                 from: start.joints,
                 velocity: [0.0; JOINTS],
                 to: landing_posture(),
-                duration: AERIAL,
+                duration: share * flight,
             },
             took_off: f64::INFINITY,
             calm: 0.0,
@@ -182,7 +188,8 @@ impl Controller {
         match self.phase {
             Phase::Hold => (t >= 0.0).then_some(Event::Start),
             Phase::Stance => (t >= self.profile.duration).then_some(Event::Takeoff),
-            Phase::Flight => (t >= self.took_off + AERIAL).then_some(Event::Posing),
+            // The ground cannot come before the robot falls.
+            Phase::Flight => (t >= self.took_off + self.profile.speed / GRAVITY).then_some(Event::Posing),
             Phase::PreLanding if sole_force > TOUCH => Some(Event::Touchdown),
             Phase::PreLanding => (t > self.took_off + 1.0).then_some(Event::Overdue),
             Phase::Landing => (self.calm > 0.2).then_some(Event::Settled),
@@ -198,6 +205,7 @@ impl Controller {
             self.phase = next_phase(self.phase, event);
             if before == Phase::Stance {
                 self.took_off = t;
+                self.aerial.velocity = told.v.joints;
                 self.aerial.from = match self.task.landing {
                     Landing::Qp => told.q.joints,
                     Landing::Hold | Landing::Stiff => self.servo,
@@ -249,21 +257,9 @@ impl Controller {
                 (contact.load + step).clamp(0.0, 1.0)
             };
         }
-        let com = self.snapshot.com_w();
-        if self.on_ground() && self.absorption.is_none() {
-            let speed = self.snapshot.com_velocity_w().z.min(0.0);
-            let absorption = Absorption::new(speed, ABSORB, ABSORB_TIME);
-            self.absorption = Some((t, com.z, absorption));
-        }
-        let (height, speed, acceleration) = self.absorption.map_or(
-            (com.z, self.snapshot.com_velocity_w().z, -GRAVITY),
-            |(start, height, absorption)| {
-                let [way, speed, acceleration] = absorption.at(t - start);
-                (height + way, speed, acceleration)
-            },
-        );
-        let mut position_w = middle_of_soles(&self.snapshot.kinematics);
-        position_w.z = height;
+        let soles = middle_of_soles(&self.snapshot.kinematics);
+        let [height, speed, acceleration] = self.height(t, soles.z);
+        let position_w = Vector3::new(soles.x, soles.y, soles.z + height);
         let up = Vector3::z();
         let wanted = LandingReference {
             com: ComReference {
@@ -284,6 +280,31 @@ impl Controller {
             &wanted,
         );
         self.command(tick, None)
+    }
+
+    /// Height of the centre of mass over soles that are `floor` high, its speed and acceleration as they should be: a free fall, its end,
+    /// and a rise to the landing posture. Over the soles, since legs measure it; the estimated height over the world drifts with a blow.
+    fn height(&mut self, t: f64, floor: f64) -> [f64; 3] {
+        let (now, speed) = (self.snapshot.com_w().z - floor, self.snapshot.com_velocity_w().z);
+        if self.on_ground() && self.absorption.is_none() {
+            let absorption = Absorption::new(speed.min(0.0), ABSORB, ABSORB_TIME);
+            self.absorption = Some((t, now, absorption));
+        }
+        let Some((start, first, absorption)) = self.absorption else {
+            return [now, speed, -GRAVITY];
+        };
+        let [way, speed, acceleration] = absorption.at(t - start);
+        let left = t - start - absorption.duration;
+        if left < 0.0 {
+            return [first + way, speed, acceleration];
+        }
+        let x = (left / RISE_TIME).min(1.0);
+        let rise = self.standing - first - way;
+        [
+            first + way + rise * x * x * x * (10.0 - x * (15.0 - 6.0 * x)),
+            rise * 30.0 * x * x * (1.0 - x) * (1.0 - x) / RISE_TIME,
+            rise * 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (RISE_TIME * RISE_TIME),
+        ]
     }
 
     fn track(&self, velocity: [f64; JOINTS]) -> JointCommand<f64, JOINTS> {
@@ -337,11 +358,11 @@ impl Controller {
                 [0.0; JOINTS]
             }
         };
-        self.commanded = velocities;
+        let command = self.track(velocities);
         for (servo, qd) in self.servo.iter_mut().zip(velocities) {
             *servo += TICK * qd;
         }
-        self.track(velocities)
+        command
     }
 
     /// Torques are held for a tick; the servos only follow, to be ready for the flight.

@@ -7,7 +7,7 @@
 
 use super::execute::{Run, SETTLE};
 use super::log::Sample;
-use super::{GRAVITY, State, Task, com, landing_posture, middle_of_soles, on_the_floor, poses, squat};
+use super::{GRAVITY, State, Task, com, flight_time, landing_posture, middle_of_soles, on_the_floor, poses, squat};
 use crate::lab::{Disturbance, Interface};
 use crate::report::Line;
 use crate::verdict::{Failure, Flight, Limits, Stand, Verdict};
@@ -60,22 +60,15 @@ fn between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
     so3::log(&(a.inverse() * b)).norm().to_degrees()
 }
 
-/// Time from the planned take-off to the planned touchdown, s: a throw with speed `v` that ends `drop` below its start.
-fn fall(v: f64, drop: f64) -> f64 {
-    (v + so3::math::sqrt((v * v + 2.0 * GRAVITY * drop).max(0.0))) / GRAVITY
-}
-
 /// Beside the plan at its touchdown; `None` for a run that ended before.
 fn flight(task: &Task, samples: &[Sample]) -> Option<Flight> {
     let profile = task.profile().ok()?;
     let (start, landing) = (on_the_floor(squat()), on_the_floor(landing_posture()));
     let first = com(&start);
-    let takeoff = first.z + profile.at(profile.duration).rise;
-    let air = fall(profile.speed, takeoff - com(&landing).z);
-    let touchdown = profile.duration + air;
+    let touchdown = profile.duration + flight_time(&profile, first.z);
     let sample = samples.iter().find(|s| s.time >= touchdown)?;
-    let rise = profile.speed * air - 0.5 * GRAVITY * air * air;
-    let planned = Vector3::new(first.x, first.y, takeoff + rise);
+    // After its end the profile goes on as a throw.
+    let planned = first + Vector3::z() * profile.at(touchdown).rise;
     let pairs = sample.joints.iter().zip(&landing.joints);
     let joints = pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()));
     Some(Flight {

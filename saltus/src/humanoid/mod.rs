@@ -214,6 +214,15 @@ pub(crate) fn landing_posture() -> [f64; JOINTS] {
     posture(1.08, -1.35, -0.5, 0.2)
 }
 
+/// Time from the planned take-off to the planned touchdown, s, of a push-off that starts with the centre of mass at height `start`: the
+/// throw ends where the legs of the landing posture reach the ground.
+pub(crate) fn flight_time(profile: &ComProfile<f64>, start: f64) -> f64 {
+    let takeoff = start + profile.at(profile.duration).rise;
+    let drop = takeoff - com(&on_the_floor(landing_posture())).z;
+    let v = profile.speed;
+    (v + so3::math::sqrt((v * v + 2.0 * GRAVITY * drop).max(0.0))) / GRAVITY
+}
+
 /// The corners of the soles.
 pub(crate) fn spheres() -> [Shape<f64>; SPHERES] {
     let corners: [_; 2] = core::array::from_fn(|i| Shape::corners(&SOLES[i], CORNER_RADIUS, 4 * i));
