@@ -85,6 +85,8 @@ pub(crate) struct Controller {
     /// Torques of the last program that was solved.
     last_torques: [f64; JOINTS],
     aerial: MinimumJerk<f64, JOINTS>,
+    /// Velocities of the joints at the take-off.
+    pushed: [f64; JOINTS],
     took_off: f64,
     calm: f64,
 }
@@ -135,7 +137,6 @@ impl Controller {
         let standing = on_the_floor(landing_posture());
         let profile = task.profile()?;
         let flight = flight_time(&profile, start_com.z);
-        let share: f64 = std::env::var("SALTUS_X").ok().and_then(|x| x.parse().ok()).unwrap_or(AERIAL);
         Ok(Self {
             task,
             robot: known(&task)?,
@@ -163,8 +164,9 @@ impl Controller {
                 from: start.joints,
                 velocity: [0.0; JOINTS],
                 to: landing_posture(),
-                duration: share * flight,
+                duration: AERIAL * flight,
             },
+            pushed: [0.0; JOINTS],
             took_off: f64::INFINITY,
             calm: 0.0,
         })
@@ -189,7 +191,9 @@ impl Controller {
             Phase::Hold => (t >= 0.0).then_some(Event::Start),
             Phase::Stance => (t >= self.profile.duration).then_some(Event::Takeoff),
             // The ground cannot come before the robot falls.
-            Phase::Flight => (t >= self.took_off + self.profile.speed / GRAVITY).then_some(Event::Posing),
+            Phase::Flight => {
+                (t >= self.took_off + self.profile.speed / GRAVITY).then_some(Event::Posing)
+            }
             Phase::PreLanding if sole_force > TOUCH => Some(Event::Touchdown),
             Phase::PreLanding => (t > self.took_off + 1.0).then_some(Event::Overdue),
             Phase::Landing => (self.calm > 0.2).then_some(Event::Settled),
@@ -205,7 +209,7 @@ impl Controller {
             self.phase = next_phase(self.phase, event);
             if before == Phase::Stance {
                 self.took_off = t;
-                self.aerial.velocity = told.v.joints;
+                self.pushed = told.v.joints;
                 self.aerial.from = match self.task.landing {
                     Landing::Qp => told.q.joints,
                     Landing::Hold | Landing::Stiff => self.servo,
@@ -215,8 +219,12 @@ impl Controller {
         match self.phase {
             Phase::Hold | Phase::Stance => self.push(t, &told.q, &told.v),
             Phase::Flight | Phase::PreLanding | Phase::Landing | Phase::Stand => {
-                let (position, velocity) = self.aerial.at(t - self.took_off);
+                let [position, mut velocity, acceleration] = self.in_the_air(t - self.took_off);
                 if self.task.landing == Landing::Qp {
+                    // The program's posture is damped towards a velocity: this much more of it asks for the acceleration as well.
+                    for (v, a) in velocity.iter_mut().zip(acceleration) {
+                        *v += a / self.landing.settings.posture[0].damping;
+                    }
                     return self.land(t, told, position, velocity);
                 }
                 self.servo = position;
@@ -231,6 +239,30 @@ impl Controller {
             }
             Phase::Abort => JointCommand::damp(5.0),
         }
+    }
+
+    /// Positions, velocities and accelerations of the joints a time after the take-off: a minimum jerk from rest to the landing posture, and
+    /// what is left of the push-off's velocity v: v (1 − x)³ after a share x of the duration T, a way of v T/4.
+    ///
+    /// A minimum jerk that starts with v alone brakes from nothing: the soles would go on to push. This brakes with 3 v/T at once, harder
+    /// than the body falls for all T < 3 v/g, and at no time harder than that.
+    fn in_the_air(&self, time: f64) -> [[f64; JOINTS]; 3] {
+        let all = self.aerial.duration;
+        let x = (time / all).clamp(0.0, 1.0);
+        let left = 1.0 - x;
+        let mut rest = self.aerial;
+        for (to, v) in rest.to.iter_mut().zip(&self.pushed) {
+            *to -= 0.25 * v * all;
+        }
+        let (mut position, mut velocity) = rest.at(time);
+        let acceleration = core::array::from_fn(|i| {
+            let v = self.pushed[i];
+            position[i] += 0.25 * v * all * (1.0 - left * left * left * left);
+            velocity[i] += v * left * left * left;
+            let way = rest.to[i] - rest.from[i];
+            60.0 * way * x * left * (1.0 - 2.0 * x) / (all * all) - 3.0 * v * left * left / all
+        });
+        [position, velocity, acceleration]
     }
 
     /// Whether the robot has come down.
@@ -285,7 +317,10 @@ impl Controller {
     /// Height of the centre of mass over soles that are `floor` high, its speed and acceleration as they should be: a free fall, its end,
     /// and a rise to the landing posture. Over the soles, since legs measure it; the estimated height over the world drifts with a blow.
     fn height(&mut self, t: f64, floor: f64) -> [f64; 3] {
-        let (now, speed) = (self.snapshot.com_w().z - floor, self.snapshot.com_velocity_w().z);
+        let (now, speed) = (
+            self.snapshot.com_w().z - floor,
+            self.snapshot.com_velocity_w().z,
+        );
         if self.on_ground() && self.absorption.is_none() {
             let absorption = Absorption::new(speed.min(0.0), ABSORB, ABSORB_TIME);
             self.absorption = Some((t, now, absorption));

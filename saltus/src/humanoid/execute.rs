@@ -3,9 +3,7 @@
 use super::control::{Controller, QpLog, TICK};
 use super::log::Sample;
 use super::sensors::{Sensors, sole_forces};
-use super::{
-    GRAVITY, JOINTS, ROBOT, Task, World, on_the_floor, plant, poses, spheres, squat,
-};
+use super::{GRAVITY, JOINTS, ROBOT, Task, World, on_the_floor, plant, poses, spheres, squat};
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Motors};
 use crate::verdict::{Hardware, Stage, Tick};

@@ -7,7 +7,10 @@
 
 use super::execute::{Run, SETTLE};
 use super::log::Sample;
-use super::{GRAVITY, State, Task, com, flight_time, landing_posture, middle_of_soles, on_the_floor, poses, squat};
+use super::{
+    GRAVITY, State, Task, com, flight_time, landing_posture, middle_of_soles, on_the_floor, poses,
+    squat,
+};
 use crate::lab::{Disturbance, Interface};
 use crate::report::Line;
 use crate::verdict::{Failure, Flight, Limits, Stand, Verdict};
@@ -166,7 +169,11 @@ impl Judged {
         // Paper B, II-D: v = sqrt(2 g (h_p - h_to)).
         let from_gain = takeoff_speed(self.com_gain.max(0.0), GRAVITY);
         let nominal = *disturbance == Disturbance::NOMINAL;
-        let plant = if nominal { "nominal".to_owned() } else { disturbance.to_string() };
+        let plant = if nominal {
+            "nominal".to_owned()
+        } else {
+            disturbance.to_string()
+        };
         let mut lines = vec![("task", format!("{}, {sim} simulator", task.name()), None)];
         lines.extend(self.verdict.lines());
         lines.push(("plant", plant, None));

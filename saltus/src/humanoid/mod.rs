@@ -15,8 +15,8 @@ use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, takeoff_speed};
 use nalgebra::Vector3;
 use rbd_core::{
-    BaseKind, Configuration, ContactShape, Kinematics, Motor, Posture, TableModel, Tangent, Tree, center_of_mass,
-    forward_kinematics,
+    BaseKind, Configuration, ContactShape, Kinematics, Motor, Posture, TableModel, Tangent, Tree,
+    center_of_mass, forward_kinematics,
 };
 
 /// Joints of the robot.

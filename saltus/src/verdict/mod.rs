@@ -136,8 +136,20 @@ impl Verdict {
             }
         };
         if let Some(f) = &flight {
-            judge(f.time, "flight.position_m", f.position, limits.position, "m");
-            judge(f.time, "flight.rotation_deg", f.rotation, limits.angle, "deg");
+            judge(
+                f.time,
+                "flight.position_m",
+                f.position,
+                limits.position,
+                "m",
+            );
+            judge(
+                f.time,
+                "flight.rotation_deg",
+                f.rotation,
+                limits.angle,
+                "deg",
+            );
         }
         if let Some(s) = &stand {
             if !s.upright {
@@ -146,7 +158,13 @@ impl Verdict {
             judge(s.time, "stand.feet_m", s.feet, limits.feet, "m");
             judge(s.time, "stand.heading_deg", s.heading, limits.angle, "deg");
             judge(s.time, "stand.height_m", s.height, limits.height, "m");
-            judge(s.time, "stand.rotation_deg", s.rotation, limits.angle, "deg");
+            judge(
+                s.time,
+                "stand.rotation_deg",
+                s.rotation,
+                limits.angle,
+                "deg",
+            );
         }
         failures.sort_by(|a, b| a.time.total_cmp(&b.time));
         Self {
