@@ -1,7 +1,7 @@
 //! What the controller is told: encoders, force sensors of the soles, an IMU, and the base as `state-est` makes it of them; never the
 //! truth. In a nominal run the sensors are without error.
 
-use super::{JOINTS, Plant, ROBOT, State, Velocity};
+use super::{JOINTS, ROBOT, State, Velocity, World};
 use crate::lab::{Disturbance, Encoders, FootSensors, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};
@@ -51,17 +51,17 @@ impl Sensors {
     }
 
     /// Joint positions and speeds as the encoders say now.
-    pub(crate) fn encoders(&mut self, plant: &Plant) -> ([f64; JOINTS], [f64; JOINTS]) {
-        let (q, v) = (plant.configuration().joints, plant.velocity().joints);
+    pub(crate) fn encoders(&mut self, world: &World) -> ([f64; JOINTS], [f64; JOINTS]) {
+        let (q, v) = (world.configuration().joints, world.velocity().joints);
         self.encoders.read(&q, &v, &mut self.noise)
     }
 
     /// The newest that has arrived at time `now`, s; the first sample at once, since the robot stands still before it.
-    pub(crate) fn measure(&mut self, now: f64, plant: &Plant) -> Told {
-        let (mut q, mut v) = (*plant.configuration(), *plant.velocity());
-        let forces = sole_forces(plant).map(|f| f.norm());
+    pub(crate) fn measure(&mut self, now: f64, world: &World) -> Told {
+        let (mut q, mut v) = (world.configuration(), *world.velocity());
+        let forces = sole_forces(world).map(|f| f.norm());
         let forces = self.soles.read(forces, &mut self.noise);
-        let (joints, joint_velocities) = self.encoders(plant);
+        let (joints, joint_velocities) = self.encoders(world);
         let legs = Legs {
             joints,
             joint_velocities,
@@ -83,7 +83,7 @@ impl Sensors {
 }
 
 /// Force of the ground on each sole.
-pub(crate) fn sole_forces(plant: &Plant) -> [Vector3<f64>; 2] {
-    let f = plant.contact_forces_w();
+pub(crate) fn sole_forces(world: &World) -> [Vector3<f64>; 2] {
+    let f = world.plant().contact_forces_w();
     [f[..4].iter().sum(), f[4..].iter().sum()]
 }

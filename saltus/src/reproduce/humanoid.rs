@@ -2,7 +2,7 @@
 
 use super::{Row, write_report};
 use crate::humanoid::execute::{self, Run};
-use crate::humanoid::judge::Verdict;
+use crate::humanoid::judge::Judged;
 use crate::humanoid::{GRAVITY, Landing, Task, report};
 use crate::jump::plant::Sim;
 use crate::lab::Disturbance;
@@ -52,8 +52,9 @@ pub(crate) fn rows(
             match (run(&task, sim), run(&free, sim)) {
                 (Ok(held), Ok(free)) => {
                     rows.extend(jump(row, &task, &held, &free, sim, [com, soles]));
-                    let verdict = Verdict::of(&held);
-                    let table = verdict.table(&task, &held, sim.name());
+                    let judged = Judged::of(&task, &held);
+                    let nominal = Disturbance::NOMINAL;
+                    let table = judged.table(&task, &held, sim.name(), &nominal);
                     let html = report::html(&task, &held, Some(&free), &table);
                     let name = format!("{}-{}", name.replace('/', "-"), sim.name());
                     if let Err(error) = html.and_then(|html| write_report(folder, &name, &html)) {
@@ -134,7 +135,7 @@ fn takeoff() -> Vec<Row> {
 
 /// The rows of one controller: height, take-off speed, rotation.
 fn jump(row: Row, task: &Task, held: &Run, free: &Run, sim: Sim, theirs: [f64; 2]) -> Vec<Row> {
-    let (ours, loose) = (Verdict::of(held), Verdict::of(free));
+    let (ours, loose) = (Judged::of(task, held), Judged::of(task, free));
     let [com, soles] = theirs;
     let level = task.name();
     let ballistic = takeoff_speed(ours.com_gain, GRAVITY);
@@ -145,14 +146,10 @@ fn jump(row: Row, task: &Task, held: &Run, free: &Run, sim: Sim, theirs: [f64; 2
                 "{:.2} cm, soles {:.2} cm, {}",
                 ours.com_gain * 100.0,
                 ours.sole_clearance * 100.0,
-                if ours.landed && ours.upright {
-                    "upright 2 s later"
-                } else {
-                    "fell"
-                }
+                ours.verdict.first()
             ),
-            ours.com_gain >= com && ours.sole_clearance >= soles && ours.landed && ours.upright,
-            "holds when the jump is at least as high as the paper's and ends upright",
+            ours.com_gain >= com && ours.sole_clearance >= soles && ours.verdict.on_target(),
+            "holds when the jump is at least as high as the paper's and on target",
         ),
         Row::new(
             'B',

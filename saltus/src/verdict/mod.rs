@@ -17,6 +17,30 @@ const PLACE: f64 = 0.10;
 const ANGLE: f64 = 10.0;
 /// Largest difference of the base's height from the goal's in the end, m.
 const HEIGHT: f64 = 0.05;
+
+/// How far a run may be from its plan and its goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// Of the centre of mass at the planned touchdown, m.
+    pub(crate) position: f64,
+    /// Of the feet's middle in the end, m.
+    pub(crate) feet: f64,
+    /// Of the base's height in the end, m.
+    pub(crate) height: f64,
+    /// Of every angle, degrees.
+    pub(crate) angle: f64,
+}
+
+impl Limits {
+    /// For jumps of decimetres from place to place.
+    pub(crate) const GENERAL: Self = Self {
+        position: PLACE,
+        feet: PLACE,
+        height: HEIGHT,
+        angle: ANGLE,
+    };
+}
+
 /// Tilt from which the robot lies, degrees.
 pub(crate) const FALLEN: f64 = 45.0;
 
@@ -89,6 +113,17 @@ impl Verdict {
         hardware: hardware::Found,
         gravest: Vec<Failure>,
     ) -> Self {
+        Self::within(&Limits::GENERAL, flight, stand, hardware, gravest)
+    }
+
+    /// As [`new`](Self::new), with the limits of another kind of jump.
+    pub(crate) fn within(
+        limits: &Limits,
+        flight: Option<Flight>,
+        stand: Option<Stand>,
+        hardware: hardware::Found,
+        gravest: Vec<Failure>,
+    ) -> Self {
         let mut failures = gravest;
         failures.extend(hardware.exceeded.iter().cloned());
         let mut judge = |time: f64, name: &str, value: f64, most: f64, unit: &str| {
@@ -101,17 +136,35 @@ impl Verdict {
             }
         };
         if let Some(f) = &flight {
-            judge(f.time, "flight.position_m", f.position, PLACE, "m");
-            judge(f.time, "flight.rotation_deg", f.rotation, ANGLE, "deg");
+            judge(
+                f.time,
+                "flight.position_m",
+                f.position,
+                limits.position,
+                "m",
+            );
+            judge(
+                f.time,
+                "flight.rotation_deg",
+                f.rotation,
+                limits.angle,
+                "deg",
+            );
         }
         if let Some(s) = &stand {
             if !s.upright {
                 judge(s.time, "stand.upright", f64::NAN, FALLEN, "deg");
             }
-            judge(s.time, "stand.feet_m", s.feet, PLACE, "m");
-            judge(s.time, "stand.heading_deg", s.heading, ANGLE, "deg");
-            judge(s.time, "stand.height_m", s.height, HEIGHT, "m");
-            judge(s.time, "stand.rotation_deg", s.rotation, ANGLE, "deg");
+            judge(s.time, "stand.feet_m", s.feet, limits.feet, "m");
+            judge(s.time, "stand.heading_deg", s.heading, limits.angle, "deg");
+            judge(s.time, "stand.height_m", s.height, limits.height, "m");
+            judge(
+                s.time,
+                "stand.rotation_deg",
+                s.rotation,
+                limits.angle,
+                "deg",
+            );
         }
         failures.sort_by(|a, b| a.time.total_cmp(&b.time));
         Self {

@@ -3,8 +3,8 @@
 use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::check_new;
-use crate::humanoid::{Task, execute, judge::Verdict, log, report};
-use crate::lab::Lab;
+use crate::humanoid::{Task, execute, judge::Judged, log, report};
+use crate::lab::{Interface, Lab};
 use std::process::ExitCode;
 
 /// Runs the jump.
@@ -15,8 +15,8 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
     let disturbance = args.disturbance(Lab::Icub);
     let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
     let run = jump(task)?;
-    let verdict = Verdict::of(&run);
-    let result = verdict.json(task, &run, args.seed, args.sim.name());
+    let judged = Judged::of(task, &run);
+    let result = judged.json(task, &run, (args.sim.name(), args.seed), &disturbance);
     // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
     let free = if task.momentum {
         bar.set_message("simulating without control of the angular momentum");
@@ -28,7 +28,7 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
         None
     };
     bar.finish_and_clear();
-    let table = verdict.table(task, &run, args.sim.name());
+    let table = judged.table(task, &run, args.sim.name(), &disturbance);
     if args.output.is_text() {
         for (name, value, _) in &table {
             say!("{name:26} {value}");
@@ -44,5 +44,5 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
         strip: None,
     };
     files.publish(args)?;
-    Ok(code(verdict.on_target(task)))
+    Ok(code(judged.verdict.on_target()))
 }

@@ -57,17 +57,10 @@ enum Kind {
 }
 
 impl Subject {
-    /// Reads a task and plans it; a task that has no plan is a subject too. Humanoid tasks may name paper B's own landing:
+    /// Reads a task and plans it; a task that has no plan is a subject too. Humanoid tasks may have variants:
     /// `icub/velocity+stiff`.
     pub(super) fn load(name: &str) -> Result<Self, String> {
-        let (base, stiff) = name
-            .strip_suffix("+stiff")
-            .map_or((name, false), |base| (base, true));
-        let kind = match humanoid::Task::named(base) {
-            Some(task) if stiff => Kind::Humanoid(humanoid::Task {
-                landing: humanoid::Landing::Stiff,
-                ..task
-            }),
+        let kind = match humanoid::Task::variant(name) {
             Some(task) => Kind::Humanoid(task),
             None => quadruped(Task::load(name)?),
         };
@@ -158,9 +151,12 @@ fn fly(
 }
 
 fn rise(task: &humanoid::Task, sim: Sim, condition: &Condition) -> Result<Verdict, String> {
+    if condition.interface != Interface::Torque {
+        return Err("iCub's joints take torques".to_owned());
+    }
     let plant = PlantArgument::plant(condition.plant.as_ref(), Lab::Icub, condition.seed);
     let run = humanoid::execute::run(task, sim, &plant, condition.seed, |_, _| {})?;
-    Ok(humanoid::judge::Verdict::of(&run).common(task))
+    Ok(humanoid::judge::Judged::of(task, &run).verdict)
 }
 
 /// One verdict of the table; an error where there was nothing to judge.
