@@ -14,7 +14,10 @@ impl Range {
     pub(crate) fn check(self, x: f64) -> Result<(), String> {
         let (inside, words) = match self {
             Self::From(low, high) => (low <= x && x <= high, format!("from {low} to {high}")),
-            Self::Above(low, high) => (low < x && x <= high, format!("above {low} and up to {high}")),
+            Self::Above(low, high) => (
+                low < x && x <= high,
+                format!("above {low} and up to {high}"),
+            ),
         };
         if inside {
             return Ok(());
@@ -24,7 +27,10 @@ impl Range {
     }
 
     /// The same for each of some numbers.
-    pub(crate) fn check_all<'a>(self, all: impl IntoIterator<Item = &'a f64>) -> Result<(), String> {
+    pub(crate) fn check_all<'a>(
+        self,
+        all: impl IntoIterator<Item = &'a f64>,
+    ) -> Result<(), String> {
         all.into_iter().try_for_each(|x| self.check(*x))
     }
 }
@@ -38,7 +44,13 @@ mod tests {
         assert!(From(0.0, 1.0).check_all(&[0.0, 1.0]).is_ok());
         assert!(Above(0.0, 1.0).check(0.0).is_err() && Above(0.0, 1.0).check(1.0).is_ok());
         let told = From(-1.0, 1.0).check(f64::NAN);
-        assert_eq!(told, Err("must be finite and from -1 to 1, not NaN".to_owned()));
-        assert_eq!(Above(0.0, 1.0).check(2.0), Err("must be above 0 and up to 1, not 2.0".to_owned()));
+        assert_eq!(
+            told,
+            Err("must be finite and from -1 to 1, not NaN".to_owned())
+        );
+        assert_eq!(
+            Above(0.0, 1.0).check(2.0),
+            Err("must be above 0 and up to 1, not 2.0".to_owned())
+        );
     }
 }

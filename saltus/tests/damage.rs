@@ -12,7 +12,11 @@ const GAINS: usize = 1728;
 
 fn saltus(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
-    let output = command.args(arguments).current_dir(folder).output().unwrap();
+    let output = command
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
     let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
     (output.status.code(), said)
 }
@@ -47,7 +51,11 @@ impl Plan {
         assert_eq!(code, Some(0), "{said}");
         let bytes = fs::read(folder.join("plan/plan.bin")).unwrap();
         let nodes = (bytes.len() - PREFIX) / (NODE + GAINS);
-        Self { folder, bytes, nodes }
+        Self {
+            folder,
+            bytes,
+            nodes,
+        }
     }
 
     /// Where word `word` of the nodes' part stands; the phase, one byte, stands before.
@@ -72,7 +80,10 @@ impl Plan {
     fn refuses(&self, command: &str, what: &str) {
         let (code, said) = saltus(&self.folder, &[command, "damaged.bin"]);
         assert_eq!(code, Some(2), "{command}, {what}: {said}");
-        assert!(!said.contains("checksum does not fit"), "{what}: the test does not mend");
+        assert!(
+            !said.contains("checksum does not fit"),
+            "{what}: the test does not mend"
+        );
     }
 }
 

@@ -136,10 +136,7 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
         ],
         &["whole-body"],
     ),
-    (
-        &["plan", "a1/lateral", "--timing", "0.5,nan"],
-        &["timing"],
-    ),
+    (&["plan", "a1/lateral", "--timing", "0.5,nan"], &["timing"]),
     (
         &["plan", "a1/lateral", "--robot", "folder.urdf"],
         &["folder.urdf", "folder"],
@@ -154,15 +151,9 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     ),
     (&["plan", "--problem", "empty.toml"], &["empty.toml"]),
     (&["verify", "short.bin"], &["short.bin", "cut off"]),
-    (
-        &["verify", "folder.urdf"],
-        &["folder.urdf", "give a file"],
-    ),
+    (&["verify", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["verify", "nowhere"], &["nowhere", "check the path"]),
-    (
-        &["import", "folder.urdf"],
-        &["folder.urdf", "give a file"],
-    ),
+    (&["import", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["import", "urdf.txt"], &["urdf.txt", "not XML"]),
     (&["completions", "tcl"], &["bash", "zsh"]),
 ];

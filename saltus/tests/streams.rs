@@ -23,7 +23,11 @@ fn saltus(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 fn full() -> Stdio {
-    File::options().write(true).open("/dev/full").unwrap().into()
+    File::options()
+        .write(true)
+        .open("/dev/full")
+        .unwrap()
+        .into()
 }
 
 /// Commands that print, in every way of printing.
@@ -47,7 +51,10 @@ fn a_full_disk_behind_standard_output_is_exit_code_1_with_the_reason() {
         let output = saltus(&folder, arguments).stdout(full()).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
-        assert!(said.contains("standard output cannot be written: No space"), "{said}");
+        assert!(
+            said.contains("standard output cannot be written: No space"),
+            "{said}"
+        );
         assert!(!said.contains("panicked"), "{said}");
     }
 }
@@ -57,24 +64,38 @@ fn a_reader_that_has_gone_is_exit_code_141_in_silence() {
     let folder = folder("gone");
     for arguments in LOUD {
         let mut child = saltus(&folder, arguments);
-        let mut child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut child = child
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
         // The reader has gone before anything is written, or soon after.
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(141), "{arguments:?}: {said}");
-        assert!(!said.contains("standard output") && !said.contains("panicked"), "{said}");
+        assert!(
+            !said.contains("standard output") && !said.contains("panicked"),
+            "{said}"
+        );
     }
 }
 
 #[test]
 fn standard_error_that_takes_nothing_is_no_panic() {
     let folder = folder("silent");
-    for arguments in [["run", "a1/moonwalk"], ["plan", "--seed"], ["verify", "nowhere"]] {
+    for arguments in [
+        ["run", "a1/moonwalk"],
+        ["plan", "--seed"],
+        ["verify", "nowhere"],
+    ] {
         let status = saltus(&folder, &arguments).stderr(full()).status().unwrap();
         assert_eq!(status.code(), Some(1), "{arguments:?}");
     }
-    let mut trace = saltus(&folder, &["plan", "--reference", "spin", "--trace", "--quiet"]);
+    let mut trace = saltus(
+        &folder,
+        &["plan", "--reference", "spin", "--trace", "--quiet"],
+    );
     assert_eq!(trace.stderr(full()).status().unwrap().code(), Some(1));
 }
 
@@ -82,7 +103,17 @@ fn standard_error_that_takes_nothing_is_no_panic() {
 #[test]
 fn work_is_not_lost_with_its_text() {
     let folder = folder("work");
-    let mut run = saltus(&folder, &["run", "a1/lateral", "--planner", "kinematics", "--out", "it"]);
+    let mut run = saltus(
+        &folder,
+        &[
+            "run",
+            "a1/lateral",
+            "--planner",
+            "kinematics",
+            "--out",
+            "it",
+        ],
+    );
     let output = run.stdout(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(folder.join("it/result.json").exists() && folder.join("it/report.html").exists());
@@ -107,7 +138,10 @@ fn targets_are_tried_before_the_work() {
         let output = saltus(&folder, arguments).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(arguments.last().unwrap()), "{arguments:?}: {said}");
+        assert!(
+            said.contains(arguments.last().unwrap()),
+            "{arguments:?}: {said}"
+        );
     }
     // Nine plans, runs and studies would take far longer.
     assert!(clock.elapsed().as_secs() < 20);
@@ -121,7 +155,10 @@ fn what_a_killed_process_leaves_is_removed_by_the_next() {
     let mut gone = Command::new("true").spawn().unwrap();
     gone.wait().unwrap();
     let mut host = String::new();
-    File::open("/proc/sys/kernel/hostname").unwrap().read_to_string(&mut host).unwrap();
+    File::open("/proc/sys/kernel/hostname")
+        .unwrap()
+        .read_to_string(&mut host)
+        .unwrap();
     let old = out.join(format!(".saltus-{}", gone.id()));
     let new = out.join(format!(".saltus-{}@{}", gone.id(), host.trim()));
     let runs = out.join(format!(".saltus-{}", std::process::id()));

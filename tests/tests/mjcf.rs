@@ -19,7 +19,14 @@ fn the_zoo_moves_as_in_mujoco() {
     assert!((robot.mass() - golden.robot.scalar("mass")).abs() < 1e-14);
     let model = robot.model::<f64, 8>().unwrap();
     let errors = everything::errors(&model, &golden, |link| robot.frame(link));
-    for key in ["rnea", "aba", "mass_matrix_lower", "com.jacobian", "centroidal.momentum", "camera.position"] {
+    for key in [
+        "rnea",
+        "aba",
+        "mass_matrix_lower",
+        "com.jacobian",
+        "centroidal.momentum",
+        "camera.position",
+    ] {
         assert!(errors.contains_key(key), "{key}");
     }
     for (key, error) in &errors {
@@ -29,4 +36,3 @@ fn the_zoo_moves_as_in_mujoco() {
     let other = |w: &&Warning| matches!(w, Warning::NotKept { .. });
     assert_eq!(robot.warnings.iter().find(other), None);
 }
-

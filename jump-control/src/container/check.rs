@@ -34,7 +34,12 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
         self.check_header()?;
         let mut before: Option<PlanNode<N, F>> = None;
         for i in 0..self.header.nodes {
-            let wrong = |what| Err(ContainerError::Value { node: Some(i), what });
+            let wrong = |what| {
+                Err(ContainerError::Value {
+                    node: Some(i),
+                    what,
+                })
+            };
             let Some(node) = self.node(usize::from(i)) else {
                 return wrong("bytes");
             };
@@ -57,10 +62,14 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
         let count = usize::from(h.phase_count);
         let phases = h.phases.get(..count).unwrap_or_default();
         header(!phases.is_empty(), "number of phases")?;
-        let feet = |contacts: u8| u32::from(contacts) < 1_u32.checked_shl(F as u32).unwrap_or(u32::MAX);
+        let feet =
+            |contacts: u8| u32::from(contacts) < 1_u32.checked_shl(F as u32).unwrap_or(u32::MAX);
         header(phases.iter().all(|p| feet(p.contacts)), "feet of a phase")?;
         let lasts = |x: f32| (0.0..=FAR).contains(&x);
-        header(phases.iter().all(|p| lasts(p.duration)), "duration of a phase")?;
+        header(
+            phases.iter().all(|p| lasts(p.duration)),
+            "duration of a phase",
+        )?;
         let total: f32 = phases.iter().map(|p| p.duration).sum();
         header(near(total, h.touchdown), "touchdown")?;
         header(lasts(h.takeoff) && h.takeoff <= h.touchdown, "takeoff")?;
@@ -68,10 +77,19 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
         let m = &h.margins;
         let positive = |x: f32| x > 0.0 && x < f32::MAX;
         let share = |x: f32| x > 0.0 && x <= 1.0;
-        header(positive(m.friction) && positive(m.max_force) && positive(m.weight), "margins")?;
-        header(share(m.friction_share) && share(m.torque_share) && share(m.speed_share), "shares")?;
+        header(
+            positive(m.friction) && positive(m.max_force) && positive(m.weight),
+            "margins",
+        )?;
+        header(
+            share(m.friction_share) && share(m.torque_share) && share(m.speed_share),
+            "shares",
+        )?;
         let step = h.ground.is_none_or(|step| {
-            step.axis < 2 && matches!(step.side, 1 | -1) && step.drop.abs() <= FAR && step.distance.abs() <= FAR
+            step.axis < 2
+                && matches!(step.side, 1 | -1)
+                && step.drop.abs() <= FAR
+                && step.distance.abs() <= FAR
         });
         header(step, "ground")
     }
@@ -86,14 +104,22 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
             for (leader, x) in most.iter_mut().zip(largest(&gains)) {
                 // Not `>`: what is not a number is no gain.
                 if !(x <= GAIN) {
-                    return Err(ContainerError::Value { node: Some(i), what: "gains" });
+                    return Err(ContainerError::Value {
+                        node: Some(i),
+                        what: "gains",
+                    });
                 }
                 leader.meet(i, x);
             }
         }
-        let alone = most.iter().find(|leader| leader.first > LEAP * leader.second);
+        let alone = most
+            .iter()
+            .find(|leader| leader.first > LEAP * leader.second);
         match alone {
-            Some(leader) => Err(ContainerError::Value { node: Some(leader.node), what: "gains" }),
+            Some(leader) => Err(ContainerError::Value {
+                node: Some(leader.node),
+                what: "gains",
+            }),
             None => Ok(()),
         }
     }
@@ -120,7 +146,13 @@ impl Leader {
 /// The largest gain of each kind; NaN where one is.
 fn largest<const N: usize>(gains: &NodeGains<N>) -> [f32; KINDS] {
     // What is not a number stays.
-    let most = |most: f32, x: &f32| if x.abs() <= most || most.is_nan() { most } else { x.abs() };
+    let most = |most: f32, x: &f32| {
+        if x.abs() <= most || most.is_nan() {
+            most
+        } else {
+            x.abs()
+        }
+    };
     let base = |rows: &[[f32; 6]; N]| rows.as_flattened().iter().fold(0.0, most);
     let joints = |rows: &[Row<f32, N>; N]| rows.iter().flat_map(|row| &row.0).fold(0.0, most);
     [
@@ -151,7 +183,9 @@ fn order<const N: usize, const F: usize>(
 ) -> Option<&'static str> {
     let rises = node.time > before.time;
     let follows = node.phase == before.phase || node.phase == before.phase.saturating_add(1);
-    [(rises, "time"), (follows, "phase")].into_iter().find_map(unless)
+    [(rises, "time"), (follows, "phase")]
+        .into_iter()
+        .find_map(unless)
 }
 
 /// What is wrong with a node. The last one holds nothing, so its forces are not looked at.
@@ -161,28 +195,46 @@ fn fault<const N: usize, const F: usize>(
     last: bool,
 ) -> Option<&'static str> {
     let all = |xs: &[f32]| xs.iter().all(|x| x.abs() <= FAR);
-    let length = node.rotation_wb.iter().fold(0.0, |sum, x| sum + f64::from(*x) * f64::from(*x));
+    let length = node
+        .rotation_wb
+        .iter()
+        .fold(0.0, |sum, x| sum + f64::from(*x) * f64::from(*x));
     let finite = |xs: &[f32]| xs.iter().all(|x| x.is_finite());
     let forces = node.forces_w.0.as_flattened();
-    let phase = h.phases.get(..usize::from(h.phase_count)).unwrap_or_default();
+    let phase = h
+        .phases
+        .get(..usize::from(h.phase_count))
+        .unwrap_or_default();
     let phase = phase.get(usize::from(node.phase));
     let push = |(foot, f): (usize, &[f32; 3])| {
         let stands = phase.is_some_and(|p| (u32::from(p.contacts) >> foot) & 1 == 1);
         pushes(h, f, stands)
     };
     let checks = [
-        (node.time.abs() <= FAR && node.time <= h.touchdown + SAME_TIME, "time"),
+        (
+            node.time.abs() <= FAR && node.time <= h.touchdown + SAME_TIME,
+            "time",
+        ),
         (phase.is_some(), "phase"),
         (all(&node.position_w), "position of the base"),
-        ((math::sqrt(length) - 1.0).abs() <= f64::from(UNIT), "rotation of the base"),
+        (
+            (math::sqrt(length) - 1.0).abs() <= f64::from(UNIT),
+            "rotation of the base",
+        ),
         (all(&node.velocity_b), "velocity of the base"),
         (all(&node.joints.0), "joints"),
         (all(&node.joint_velocities.0), "joint velocities"),
         (finite(&node.torques.0), "torques"),
         (finite(forces), "forces"),
-        (last || node.forces_w.0.iter().enumerate().all(push), "forces"),
+        (
+            last || node.forces_w.0.iter().enumerate().all(push),
+            "forces",
+        ),
         (all(node.feet_b.0.as_flattened()), "feet"),
-        (all(node.foot_velocities_b.0.as_flattened()), "velocities of the feet"),
+        (
+            all(node.foot_velocities_b.0.as_flattened()),
+            "velocities of the feet",
+        ),
     ];
     checks.into_iter().find_map(unless)
 }

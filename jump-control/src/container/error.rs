@@ -82,12 +82,18 @@ impl fmt::Display for ContainerError {
                 "a plan for another robot: model {planned:016x}, this robot is {given:016x}"
             ),
             Self::Header => f.write_str("its header contradicts its length"),
-            Self::Value { node: Some(node), what } => write!(
+            Self::Value {
+                node: Some(node),
+                what,
+            } => write!(
                 f,
                 "damaged, though its checksum fits: node {node}: {what} cannot be; plan again"
             ),
             Self::Value { node: None, what } => {
-                write!(f, "damaged, though its checksum fits: {what} cannot be; plan again")
+                write!(
+                    f,
+                    "damaged, though its checksum fits: {what} cannot be; plan again"
+                )
             }
             Self::Buffer { needed, given } => {
                 write!(f, "storage for {given} elements, {needed} are needed")

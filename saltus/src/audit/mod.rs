@@ -89,7 +89,10 @@ impl Audit {
                 limits.check(at, held.h, &q, &v, &held, &forces_w);
                 if i == held.steps / 2 {
                     let told = from.forces_w.0.map(|f| Vector3::from(f.map(f64::from)));
-                    let gaps = told.iter().zip(&forces_w).map(|(a, b)| (a - b).amax() / force_range);
+                    let gaps = told
+                        .iter()
+                        .zip(&forces_w)
+                        .map(|(a, b)| (a - b).amax() / force_range);
                     force_error = gaps.fold(force_error, f64::max);
                 }
             }

@@ -18,7 +18,9 @@ pub(crate) fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> 
     for (i, node) in plan.nodes().enumerate() {
         let wrong = joints(robot, &node, share).or_else(|| feet(robot, &node));
         if let Some(what) = wrong {
-            return Err(format!("damaged, though its checksum fits: node {i}: {what}; plan again"));
+            return Err(format!(
+                "damaged, though its checksum fits: node {i}: {what}; plan again"
+            ));
         }
     }
     Ok(())
@@ -28,15 +30,30 @@ pub(crate) fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> 
 fn joints(robot: &Quadruped, node: &PlanNode<JOINTS, 4>, share: f64) -> Option<String> {
     let limits: &[JointLimits<f64>; JOINTS] = Model::limits(robot);
     limits.iter().enumerate().find_map(|(i, limit)| {
-        let [q, v, torque] = [node.joints.0[i], node.joint_velocities.0[i], node.torques.0[i]];
+        let [q, v, torque] = [
+            node.joints.0[i],
+            node.joint_velocities.0[i],
+            node.torques.0[i],
+        ];
         let [q, v, torque] = [q, v, torque].map(f64::from);
         let checks = [
-            (limit.lower - BEYOND <= q && q <= limit.upper + BEYOND, "position", q),
+            (
+                limit.lower - BEYOND <= q && q <= limit.upper + BEYOND,
+                "position",
+                q,
+            ),
             (v.abs() <= (1.0 + BEYOND) * limit.speed, "speed", v),
-            (torque.abs() <= (share + BEYOND) * limit.effort, "torque", torque),
+            (
+                torque.abs() <= (share + BEYOND) * limit.effort,
+                "torque",
+                torque,
+            ),
         ];
         let (_, what, value) = checks.into_iter().find(|(ok, ..)| !ok)?;
-        Some(format!("{what} of {} is {value}, beyond its limit", joint_name(robot, i)))
+        Some(format!(
+            "{what} of {} is {value}, beyond its limit",
+            joint_name(robot, i)
+        ))
     })
 }
 
@@ -58,6 +75,7 @@ fn feet(robot: &Quadruped, node: &PlanNode<JOINTS, 4>) -> Option<String> {
         let near = (told - place).amax() <= FEET[0];
         let moves = (told_velocity - to_base * velocity_w).amax() <= FEET[1];
         let what = if near { "velocity" } else { "place" };
-        (!(near && moves)).then(|| format!("{what} of foot {} is not that of its leg", robot.place(leg)))
+        (!(near && moves))
+            .then(|| format!("{what} of foot {} is not that of its leg", robot.place(leg)))
     })
 }

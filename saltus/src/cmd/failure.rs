@@ -128,12 +128,19 @@ mod tests {
         let short = "my.toml: it isn't `a`, nor \"b\", it's 'c': give one";
         assert_eq!(brief(short), short);
         for quote in ['`', '"', '\''] {
-            let long = format!("key: {quote}{}{quote}: must be a number", "ä".repeat(10_000));
+            let long = format!(
+                "key: {quote}{}{quote}: must be a number",
+                "ä".repeat(10_000)
+            );
             let told = brief(&long);
             assert!(told.chars().count() < 120 && told.contains('…'), "{told}");
             assert!(told.ends_with("must be a number"), "{told}");
         }
-        let line = format!("1 | {}\n{}^\nsay why", "x".repeat(1_000_000), " ".repeat(1_000_000));
+        let line = format!(
+            "1 | {}\n{}^\nsay why",
+            "x".repeat(1_000_000),
+            " ".repeat(1_000_000)
+        );
         let told = brief(&line);
         assert!(told.len() < 3 * LINE && told.ends_with("say why"), "{told}");
         assert_eq!(brief(&"a\n".repeat(100)).lines().count(), LINES + 1);

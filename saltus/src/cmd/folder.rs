@@ -190,7 +190,9 @@ mod tests {
         let out = root.join("a/b");
         let made = publish(Some(&out), "x", &[("one", b"1"), ("two", b"2")]).unwrap();
         assert_eq!(fs::read(made.join("two")).unwrap(), b"2");
-        let error = publish(Some(&out), "x", &[("one", b"3")]).unwrap_err().message();
+        let error = publish(Some(&out), "x", &[("one", b"3")])
+            .unwrap_err()
+            .message();
         assert!(error.contains("nothing is overwritten"), "{error}");
         assert_eq!(fs::read(out.join("one")).unwrap(), b"1");
         // A file that cannot be written leaves nothing behind.

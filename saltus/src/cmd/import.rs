@@ -75,12 +75,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
-        write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(|error| {
-            match error.kind() {
+        write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(
+            |error| match error.kind() {
                 ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
                 _ => Failure::Outside(describe(folder, &error)),
-            }
-        })?;
+            },
+        )?;
     }
     report(args, &robot, &provenance);
     Ok(ExitCode::SUCCESS)

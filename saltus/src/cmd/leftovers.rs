@@ -30,7 +30,10 @@ fn is_abandoned(name: &str) -> bool {
     // Earlier versions did not name the machine.
     let here = host();
     let (process, machine) = owner.split_once('@').unwrap_or((owner, &here));
-    machine == here && process.parse().is_ok_and(|process: u32| !is_running(process))
+    machine == here
+        && process
+            .parse()
+            .is_ok_and(|process: u32| !is_running(process))
 }
 
 /// Whether a process runs; where that cannot be told, it does.
@@ -46,8 +49,12 @@ fn is_running(process: u32) -> bool {
 /// Name of this machine, or container: what numbers its processes.
 fn host() -> String {
     let kernel = fs::read_to_string("/proc/sys/kernel/hostname");
-    let name = kernel.or_else(|_| std::env::var("HOSTNAME")).unwrap_or_default();
-    name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').collect()
+    let name = kernel
+        .or_else(|_| std::env::var("HOSTNAME"))
+        .unwrap_or_default();
+    name.chars()
+        .filter(|c| c.is_ascii_alphanumeric() || *c == '-')
+        .collect()
 }
 
 #[cfg(test)]
@@ -66,7 +73,10 @@ mod tests {
         fs::create_dir_all(&ours).unwrap();
         let foreign = root.join(format!(".saltus-{}@another-{}", gone.id(), host()));
         fs::create_dir_all(&foreign).unwrap();
-        for name in [format!(".saltus-{}", gone.id()), format!(".saltus-{}@{}", gone.id(), host())] {
+        for name in [
+            format!(".saltus-{}", gone.id()),
+            format!(".saltus-{}@{}", gone.id(), host()),
+        ] {
             assert!(is_abandoned(&name));
             fs::create_dir_all(root.join(&name).join("in")).unwrap();
         }

@@ -136,7 +136,10 @@ impl Task {
         require(
             file.robot != "a1" || file.lock.is_empty(),
             "lock",
-            &format!("{:?}: a1 has no joints but its legs': leave it out, or give a URDF as robot", file.lock),
+            &format!(
+                "{:?}: a1 has no joints but its legs': leave it out, or give a URDF as robot",
+                file.lock
+            ),
         )?;
         let (start, start_w) = standing(&robot).map_err(|what| ("robot".to_owned(), what))?;
         let com_b = start_w - start.base.translation;
@@ -146,7 +149,11 @@ impl Task {
         let total = file.total;
         within(total.min_s, TOTAL, "total.min_s")?;
         within(total.max_s, TOTAL, "total.max_s")?;
-        require(total.min_s <= total.max_s, "total", "min_s must not be above max_s")?;
+        require(
+            total.min_s <= total.max_s,
+            "total",
+            "min_s must not be above max_s",
+        )?;
         check_height(&goal, edge)?;
         let (phases, reference) = phases(file, &robot, edge)?;
         let limits = &file.limits;
@@ -218,7 +225,9 @@ impl Task {
             )));
         }
         DURATION.check_all(durations).map_err(&refuse)?;
-        TOTAL.check(durations.iter().sum()).map_err(|what| refuse(format!("the sum {what}")))?;
+        TOTAL
+            .check(durations.iter().sum())
+            .map_err(|what| refuse(format!("the sum {what}")))?;
         for (phase, duration) in self.problem.phases.iter_mut().zip(durations) {
             phase.duration_guess = *duration;
             (phase.min_duration, phase.max_duration) = (*duration, *duration);

@@ -39,11 +39,17 @@ pub(super) fn within(x: f64, range: Range, key: &str) -> Result<(), Unusable> {
 pub(super) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
     within(limits.friction, From(0.0, 10.0), "limits.friction")?;
     within(limits.friction_share, SHARE, "limits.friction_share")?;
-    within(limits.force_weights, Above(0.0, 100.0), "limits.force_weights")?;
+    within(
+        limits.force_weights,
+        Above(0.0, 100.0),
+        "limits.force_weights",
+    )?;
     within(limits.speed_share, SHARE, "limits.speed_share")?;
     within(limits.clearance_m, From(-10.0, 10.0), "limits.clearance_m")?;
     let shares = limits.torque_shares.iter();
-    shares.copied().try_for_each(|x| within(x, SHARE, "limits.torque_shares"))
+    shares
+        .copied()
+        .try_for_each(|x| within(x, SHARE, "limits.torque_shares"))
 }
 
 pub(super) fn weights(weights: &WeightsTable) -> Result<(), Unusable> {
@@ -55,5 +61,6 @@ pub(super) fn weights(weights: &WeightsTable) -> Result<(), Unusable> {
         ("weights.torque", weights.torque),
         ("weights.goal", weights.goal),
     ];
-    all.into_iter().try_for_each(|(key, x)| within(x, WEIGHT, key))
+    all.into_iter()
+        .try_for_each(|(key, x)| within(x, WEIGHT, key))
 }

@@ -116,7 +116,8 @@ impl File {
             serde_json::from_str(text).map_err(|error| format!("problem file: {error}"))?;
         file.constants.check()?;
         for (name, task) in &file.tasks {
-            task.check().map_err(|error| format!("task {name}: {error}"))?;
+            task.check()
+                .map_err(|error| format!("task {name}: {error}"))?;
         }
         Ok(file)
     }
@@ -166,7 +167,9 @@ impl File {
             .ok_or_else(|| format!("no task `{name}`"))?;
         let count = t.n.len();
         if count > PHASES {
-            return Err(format!("task {name}: N: at most {PHASES} phases, not {count}"));
+            return Err(format!(
+                "task {name}: N: at most {PHASES} phases, not {count}"
+            ));
         }
         let empty = Phase {
             contacts: [false; FEET],

@@ -25,7 +25,9 @@ fn within<'a>(
     range: Range,
     values: impl IntoIterator<Item = &'a f64>,
 ) -> Result<(), String> {
-    range.check_all(values).map_err(|what| format!("{key}: {what}"))
+    range
+        .check_all(values)
+        .map_err(|what| format!("{key}: {what}"))
 }
 
 impl Constants {
@@ -52,7 +54,11 @@ impl Constants {
         ] {
             within(key, WEIGHT, [&value])?;
         }
-        for (key, value) in [("T_LO", self.t_lo), ("T_HI", self.t_hi), ("TTOT_LO", self.ttot_lo)] {
+        for (key, value) in [
+            ("T_LO", self.t_lo),
+            ("T_HI", self.t_hi),
+            ("TTOT_LO", self.ttot_lo),
+        ] {
             within(key, DURATION, [&value])?;
         }
         within("L1", LENGTH, [&self.l1])?;
@@ -77,7 +83,10 @@ impl Constants {
             return Err(format!("I_B: must be symmetric, not {:?}", self.i_b));
         }
         if Cholesky::new(inertia_b).is_none() {
-            return Err(format!("I_B: must be positive definite, not {:?}", self.i_b));
+            return Err(format!(
+                "I_B: must be positive definite, not {:?}",
+                self.i_b
+            ));
         }
         Ok(())
     }
@@ -98,12 +107,17 @@ impl Task {
         }
         if self.phases.len() != count || self.t0.len() != count {
             let given = [self.phases.len(), count, self.t0.len()];
-            return Err(format!("phases, N and T0 must have equal lengths, not {given:?}"));
+            return Err(format!(
+                "phases, N and T0 must have equal lengths, not {given:?}"
+            ));
         }
         if self.bp.as_ref().is_some_and(|bp| bp.len() != count) {
             return Err(format!("bp: one angle per phase is needed, {count}"));
         }
-        let total = self.n.iter().fold(0, |sum: usize, n| sum.saturating_add(*n));
+        let total = self
+            .n
+            .iter()
+            .fold(0, |sum: usize, n| sum.saturating_add(*n));
         if self.n.contains(&0) || total > MOST_INTERVALS {
             return Err(format!(
                 "N: each at least 1 and all together at most {MOST_INTERVALS} intervals, not {:?}",
@@ -120,7 +134,9 @@ impl Task {
         let length = Vector3::from(self.axis).norm();
         // Not `>`: what is not a number is no axis either.
         if !((length - 1.0).abs() < 1e-6) {
-            return Err(format!("axis: must be a unit vector, its length is {length:?}"));
+            return Err(format!(
+                "axis: must be a unit vector, its length is {length:?}"
+            ));
         }
         self.check_edge()
     }
@@ -146,7 +162,10 @@ impl Task {
 fn check_feet(feet: &[usize]) -> Result<(), String> {
     for (i, foot) in feet.iter().enumerate() {
         if *foot >= FEET {
-            return Err(format!("phases: there is no foot {foot}, only 0 to {}", FEET - 1));
+            return Err(format!(
+                "phases: there is no foot {foot}, only 0 to {}",
+                FEET - 1
+            ));
         }
         if feet.iter().take(i).any(|before| before == foot) {
             return Err(format!("phases: foot {foot} is named twice in one phase"));

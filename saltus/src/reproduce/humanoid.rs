@@ -99,15 +99,16 @@ fn own_landing(name: &str, sim: Sim) -> Option<Row> {
     .simulated(sim);
     Some(match run(&task, sim) {
         Ok(run) => {
-            let verdict = Verdict::of(&run);
-            let end = if verdict.upright { "upright" } else { "fell" };
+            let verdict = Judged::of(&task, &run).verdict;
+            let found = format!(
+                "{}, asks for {:.1} of a torque limit",
+                verdict.first(),
+                run.landing_demand
+            );
             row.ours(
-                format!(
-                    "{end}, asks for {:.1} of a torque limit",
-                    run.landing_demand
-                ),
-                verdict.landed && verdict.upright,
-                "holds when the robot stands 2 s later",
+                found,
+                verdict.on_target(),
+                "holds when the jump is on target",
             )
         }
         Err(error) => row.failed(error),

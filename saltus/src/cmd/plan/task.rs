@@ -49,7 +49,9 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
 
 /// Plans, and leaves in the report how far that came.
 fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Result<(), Failure> {
-    args.out.as_deref().map_or(Ok(()), |out| check_new(Some(out)))?;
+    args.out
+        .as_deref()
+        .map_or(Ok(()), |out| check_new(Some(out)))?;
     let mut task = Task::load_for(name, args.robot.as_deref(), &args.lock)?;
     if let Some(timing) = &args.timing {
         task.fix_timing(timing)?;
@@ -197,7 +199,10 @@ impl Report {
         if let Some(plan) = &self.srb {
             say!(
                 "  body        {:.1} ms, {} iterations, cost {:.4}, violation {:.1e}",
-                plan.wall_ms, plan.iterations, plan.cost, plan.max_violation
+                plan.wall_ms,
+                plan.iterations,
+                plan.cost,
+                plan.max_violation
             );
         }
         if let Some((plan, wall_ms)) = &self.whole_body {

@@ -4,7 +4,7 @@ use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::check_new;
 use crate::humanoid::{Task, execute, judge::Judged, log, report};
-use crate::lab::{Interface, Lab};
+use crate::lab::Lab;
 use std::process::ExitCode;
 
 /// Runs the jump.

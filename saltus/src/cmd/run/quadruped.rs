@@ -103,7 +103,10 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
     let srb = task.solve()?;
     bar.set_message("planning the legs");
     bar.set_position(50);
-    let reference = args.planner.unwrap_or(Planner::WholeBody).plan(&task, &srb)?;
+    let reference = args
+        .planner
+        .unwrap_or(Planner::WholeBody)
+        .plan(&task, &srb)?;
     Ok(Made {
         task,
         srb: Some(srb),

@@ -2,6 +2,7 @@
 
 use super::Args;
 use super::subject::Subject;
+use crate::cmd::failure::Failure;
 use crate::jump::plant::Sim;
 use core::fmt::Write;
 use serde_json::{Value, json};
@@ -33,7 +34,7 @@ impl Line {
 }
 
 /// Prints the table. Exit code 0 when all agree, 2 when one does not.
-pub(super) fn run(args: &Args, subjects: &[Subject]) -> Result<ExitCode, String> {
+pub(super) fn run(args: &Args, subjects: &[Subject]) -> Result<ExitCode, Failure> {
     let mut lines = Vec::new();
     for ground in GROUNDS {
         let plant = ground.parse()?;

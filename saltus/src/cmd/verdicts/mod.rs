@@ -5,8 +5,8 @@ mod conditions;
 mod measures;
 mod subject;
 
-use super::failure::Failure;
 use super::expected::{Expected, Found};
+use super::failure::Failure;
 use super::interrupt;
 use super::output::Output;
 use crate::jump::plant::Sim;
