@@ -1,11 +1,12 @@
 //! Values that cannot be: named with their key, what they are and what is allowed, before anything is computed; nothing is left behind.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use core::time::Duration;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A new folder of a test's own.
 fn folder(name: &str) -> PathBuf {

@@ -102,8 +102,7 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
                 break;
             };
             for (leader, x) in most.iter_mut().zip(largest(&gains)) {
-                // Not `>`: what is not a number is no gain.
-                if !(x <= GAIN) {
+                if x.is_nan() || x > GAIN {
                     return Err(ContainerError::Value {
                         node: Some(i),
                         what: "gains",

@@ -132,8 +132,8 @@ impl Task {
         within("bp", TURN, self.bp.iter().flatten())?;
         within("box", LENGTH, [&self.r#box])?;
         let length = Vector3::from(self.axis).norm();
-        // Not `>`: what is not a number is no axis either.
-        if !((length - 1.0).abs() < 1e-6) {
+        let unit = (length - 1.0).abs() < 1e-6;
+        if !unit {
             return Err(format!(
                 "axis: must be a unit vector, its length is {length:?}"
             ));

@@ -14,7 +14,7 @@ use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
 use ocp_solver::{Barrier, Progress, Solution};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -175,7 +175,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     })
 }
 
-fn read(path: &PathBuf) -> Result<String, String> {
+fn read(path: &Path) -> Result<String, String> {
     crate::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
