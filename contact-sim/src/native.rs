@@ -35,7 +35,7 @@ pub struct NativeSimulator<T: Scalar, M, const N: usize, const S: usize, const C
     pub settings: Settings<T, N>,
     /// Pairs of shapes that may touch each other, as [`self_contacts`](crate::self_contacts) finds them.
     pairs: [u64; S],
-    /// How hard it is to push each shape.
+    /// How hard it is to push each shape; known from the first tick on.
     masses: [ContactMass<T>; S],
     configuration: Configuration<T, N>,
     velocity: Tangent<T, N>,
@@ -376,14 +376,17 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize> S
         self.delivered = [T::ZERO; N];
         self.stops = [T::ZERO; N];
         self.ticks = 0;
-        for (mass, shape) in self.masses.iter_mut().zip(&self.shapes) {
-            *mass = contact_mass(&self.model, shape);
-        }
     }
 
     fn step(&mut self, command: &[T; N]) -> Result<(), Error> {
         if let Some(joint) = command.iter().position(|tau| !tau.is_finite_number()) {
             return Err(Error::TorqueNotFinite(joint));
+        }
+        if self.ticks == 0 {
+            // Not in `new`, which is `const`.
+            for (mass, shape) in self.masses.iter_mut().zip(&self.shapes) {
+                *mass = contact_mass(&self.model, shape);
+            }
         }
         let count = self.settings.substeps.max(1);
         let share = T::ONE / T::of(f64::from(count));

@@ -3,7 +3,9 @@
 use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
 use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use jump_control::{JointCommand, JointGains};
-use landing::{Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace};
+use landing::{
+    Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Status, Target, Workspace,
+};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
     Configuration, Kinematics, Link, Motion, Posture, Tangent, forward_kinematics, joint_friction,
@@ -60,8 +62,10 @@ pub struct End {
     pub trunk_touched: bool,
     /// Slower than 5 cm/s after three seconds.
     pub at_rest: bool,
-    /// Ticks at which the QP was not solved.
+    /// Ticks at which the force program had no answer.
     pub failures: u32,
+    /// Ticks at which it was stopped at its cap of factorisations.
+    pub capped: u32,
     /// Sensors that the detector did not believe at some time.
     pub faulty: [bool; 4],
 }
@@ -217,6 +221,7 @@ pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
         trunk_touched: false,
         at_rest: false,
         failures: 0,
+        capped: 0,
         faulty: [false; 4],
     };
     // Another chattering for every drop.
@@ -249,7 +254,11 @@ pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
             &waiting,
             &mut workspace,
         );
-        end.failures += u32::from(!matches!(c.outcome, Outcome::Solved(_) | Outcome::Airborne));
+        match c.outcome {
+            Outcome::Solved(_) | Outcome::Airborne => {}
+            Outcome::Failed(Status::Limit) => end.capped += 1,
+            Outcome::Failed(_) | Outcome::BadData => end.failures += 1,
+        }
         let command = JointCommand {
             position: c.position,
             velocity: [0.0; 12],

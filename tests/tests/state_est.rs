@@ -132,7 +132,8 @@ struct Flight<const N: usize> {
     gains: (f64, f64),
     /// Velocity given to the base, base axes.
     toss: Motion<f64>,
-    /// Time after the toss, ms.
+    /// Time in the air, and time after the toss, ms.
+    air: usize,
     after: usize,
     /// A foot whose sensor reads full contact from the toss on.
     stuck: Option<usize>,
@@ -186,11 +187,20 @@ where
         }
         let sample = sensors.sample(&q, &v, evidence);
         let estimate = estimator.step(model, &mut state, Some(&sample), 1e-3);
-        assert_eq!((estimate.status, estimate.fault), (Status::Good, None));
+        // A sole that lands flat and stiff shakes the sensor beyond its range for a moment: that is named, and only that.
+        let range = estimator.settings.max_specific_force;
+        let beyond = sample.specific_force_i.iter().any(|f| f.abs() > range);
+        let said = (estimate.status, estimate.fault);
+        let expected = if beyond {
+            (Status::Coasting, Some(Fault::Accelerometer))
+        } else {
+            (Status::Good, None)
+        };
+        assert_eq!(said, expected, "{:?}", sample.specific_force_i);
         let errors = Errors::of(&q, &v, &estimate);
         let phase = if k < hold {
             0
-        } else if k < hold + 300 {
+        } else if k < hold + flight.air {
             1
         } else if k + 200 >= hold + flight.after {
             2
@@ -232,6 +242,7 @@ fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [
         posture: CROUCH,
         gains: (100.0, 3.0),
         toss: Motion::from_array([0.5, 0.4, 2.2, 0.4, -0.5, 1.0]),
+        air: 300,
         after: 1500,
         stuck,
     };
@@ -332,7 +343,9 @@ fn icub_is_followed_through_a_hop() {
     let flight = Flight {
         posture: [0.0; 23],
         gains: (300.0, 8.0),
-        toss: Motion::from_array([0.0, 0.0, 1.6, 0.0, 0.0, 0.0]),
+        // Paper B's own take-off speed. From 1.6 m/s the straight legs on concrete shake the sensor by more than the 32 g of its range.
+        toss: Motion::from_array([0.0, 0.0, 0.9, 0.0, 0.0, 0.0]),
+        air: 160,
         after: 700,
         stuck: None,
     };
