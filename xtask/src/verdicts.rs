@@ -1,9 +1,12 @@
-//! `cargo xtask verdicts`: every task in both simulators ends as `saltus/expected.toml` says.
+//! `cargo xtask verdicts`: every task in both simulators ends as `saltus/expected.toml` says, and README shows what came out.
 //!
 //! A verdict that differs, for better or worse, fails and is named with its task: whoever changed it looks at the run and writes the new
 //! one down.
 
-use anyhow::{Context, Result};
+use std::fs;
+use std::process::Stdio;
+
+use anyhow::{Context, Result, ensure};
 
 use crate::{mujoco, run};
 
@@ -16,6 +19,46 @@ pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
     let mut saltus = mujoco::saltus()?;
-    run::succeed(saltus.args(["verdicts", "--expect", EXPECTED]))
-        .context("a verdict changed: look at the run, and write the new one down if it is right")
+    saltus.args(["verdicts", "--expect", EXPECTED]);
+    let output = saltus.stderr(Stdio::inherit()).output()?;
+    let table = String::from_utf8(output.stdout)?;
+    print!("{table}");
+    ensure!(
+        output.status.success(),
+        "a verdict changed: look at the run, and write the new one down if it is right"
+    );
+    let readme = fs::read_to_string(run::root().join("README.md")).context("README.md")?;
+    shows(&readme, &table)
+}
+
+/// Every line of README's table is one of those that were printed.
+fn shows(readme: &str, table: &str) -> Result<()> {
+    let lines = |text: &str| -> Vec<String> {
+        let shown = text.lines().filter(|line| line.starts_with("| `a1/"));
+        let tasks = shown.filter(|line| line.contains("| native |") || line.contains("| mujoco |"));
+        tasks.map(str::to_owned).collect()
+    };
+    let (shown, printed) = (lines(readme), lines(table));
+    ensure!(!shown.is_empty(), "README.md has no table of verdicts");
+    for line in &shown {
+        ensure!(
+            printed.contains(line),
+            "README.md shows what `saltus verdicts` does not print any more:\n{line}"
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shows;
+
+    #[test]
+    fn a_stale_line_is_found() {
+        let table =
+            "| `a1/lateral` | native | 0.007 | on target |\n| `icub/torque` | native | 1 |\n";
+        assert!(shows(table, table).is_ok());
+        assert!(shows(&table.replace("0.007", "0.008"), table).is_err());
+        assert!(shows("no table", table).is_err());
+    }
 }
