@@ -8,7 +8,7 @@ use rbd_core::{
 use so3::{Scalar, math};
 
 use crate::shape::Swept;
-use crate::{ContactMass, Shape};
+use crate::{ContactMass, Shape, Terrain};
 
 /// Most shapes of one robot: a bit each.
 pub const MOST_SHAPES: usize = 64;
@@ -52,16 +52,35 @@ pub fn self_contacts<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
     let mut pairs = [0; S];
     for (i, (bits, a)) in pairs.iter_mut().zip(shapes).enumerate() {
         for (j, b) in shapes.iter().enumerate().take(MOST_SHAPES).skip(i + 1) {
-            let (at_a, at_b) = (place(&kinematics, a), place(&kinematics, b));
-            let (s, t) = at_a.nearest(&at_b);
-            let apart = (at_a.at(s) - at_b.at(t)).norm_squared();
-            let reach = a.radius + b.radius;
-            if apart > reach * reach && !are_neighbours(model, a.link, b.link) {
+            let gap = place(&kinematics, a).gap(&place(&kinematics, b));
+            if gap > T::ZERO && !are_neighbours(model, a.link, b.link) {
                 *bits |= 1_u64 << j;
             }
         }
     }
     pairs
+}
+
+/// How near a robot's shapes are to the world and to each other: `each` gets a shape's index, the other's, or `None` for the world, and the
+/// gap between them, m, which is negative where they overlap. Of the world only what is nearest, of the others those in `pairs`, as
+/// [`self_contacts`] finds them.
+pub fn gaps<T: Scalar, const N: usize, const S: usize>(
+    kinematics: &Kinematics<T, N>,
+    shapes: &[Shape<T>; S],
+    pairs: &[u64; S],
+    terrain: &Terrain<T>,
+    mut each: impl FnMut(usize, Option<usize>, T),
+) {
+    for (i, (shape, others)) in shapes.iter().zip(pairs).enumerate() {
+        let swept = place(kinematics, shape);
+        let depths = swept.touches(terrain).map(|(touch, _)| touch.depth);
+        each(i, None, -depths.into_iter().fold(-T::INFINITY, math::max));
+        for (j, other) in shapes.iter().enumerate().take(MOST_SHAPES) {
+            if (others >> j) & 1 == 1 {
+                each(i, Some(j), swept.gap(&place(kinematics, other)));
+            }
+        }
+    }
 }
 
 /// How hard it is to push a shape: its link at its centre of mass, and the shape's ends, of which the lighter counts.

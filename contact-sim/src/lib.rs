@@ -18,7 +18,7 @@ mod shape;
 mod simulator;
 mod terrain;
 
-pub use collide::{MOST_SHAPES, effective_mass, self_contacts};
+pub use collide::{MOST_SHAPES, effective_mass, gaps, self_contacts};
 pub use contact::{ContactLaw, ContactMass, ContactState};
 pub use error::Error;
 pub use joints::Stops;

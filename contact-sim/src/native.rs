@@ -14,13 +14,8 @@ use rbd_core::{
 use so3::{Scalar, math, orthonormalize_step};
 
 use crate::collide::{contact_mass, place};
-use crate::shape::Swept;
+use crate::shape::{SLOTS, Swept};
 use crate::{ContactMass, ContactState, Error, Settings, Shape, Simulator, Terrain, Touch};
-
-/// Contacts that one shape may have with the world: at both its ends, and where an edge meets it between them.
-const SLOTS: usize = 3;
-/// Shares of a shape's way that count as its ends.
-const END: f64 = 0.01;
 
 /// The embedded simulator: a robot `M` with `N` joints, `S` shapes and `C` owners of shapes, and all its state.
 #[derive(Clone, Debug)]
@@ -188,7 +183,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
             };
             let (shape, swept) = (*shape, *swept);
             let xf_wl = self.kinematics.link(shape.link);
-            for (slot, touch, center_w) in self.touches(&shape, &swept) {
+            for (slot, (touch, center_w)) in swept.touches(&self.terrain).into_iter().enumerate() {
                 // The force acts in the middle of what overlaps, as in MuJoCo.
                 let overlap = math::max(touch.depth, T::ZERO) * T::HALF;
                 let arm_w =
@@ -212,46 +207,6 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 }
             }
         }
-    }
-
-    /// Where a shape is nearest to the world: slot, touch, centre of the ball that touches.
-    fn touches(
-        &self,
-        shape: &Shape<T>,
-        swept: &Swept<T>,
-    ) -> [(usize, Touch<T>, Vector3<T>); SLOTS] {
-        let nothing = Touch {
-            depth: -T::ONE,
-            normal_w: Vector3::z(),
-        };
-        let mut out = [(0, nothing, swept.from_w); SLOTS];
-        for (slot, out) in out.iter_mut().enumerate() {
-            out.0 = slot;
-        }
-        let [first, last, between] = &mut out;
-        first.1 = self.terrain.touch(&swept.from_w, swept.radius);
-        if shape.is_ball() {
-            return out;
-        }
-        last.1 = self.terrain.touch(&swept.to_w, swept.radius);
-        last.2 = swept.to_w;
-        let (center_w, reach) = swept.bound();
-        let near = self
-            .terrain
-            .block
-            .filter(|block| block.is_near(&center_w, reach));
-        if let Some(block) = near {
-            let share = block.deepest(&swept.from_w, &swept.to_w);
-            if share > T::of(END) && share < T::of(1.0 - END) {
-                between.2 = swept.at(share);
-                let touch = block.touch(&between.2, swept.radius);
-                // Flat on a face the ends carry the shape; an edge is where the middle is deeper.
-                if touch.depth > math::max(first.1.depth, last.1.depth) {
-                    between.1 = touch;
-                }
-            }
-        }
-        out
     }
 
     /// Contacts of the links with each other.

@@ -3,6 +3,13 @@
 use nalgebra::Vector3;
 use so3::{Scalar, math};
 
+use crate::{Terrain, Touch};
+
+/// Contacts that one shape may have with the world: at both its ends, and where an edge meets it between them.
+pub(crate) const SLOTS: usize = 3;
+/// Shares of a shape's way that count as its ends.
+const END: f64 = 0.01;
+
 /// A swept ball where it is: its ends in the world and its radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swept<T: Scalar> {
@@ -30,6 +37,44 @@ impl<T: Scalar> Swept<T> {
             self.from_w + half,
             self.radius + math::sqrt(half.norm_squared()),
         )
+    }
+
+    /// Where it is nearest to the world, and the centre of the ball that touches there.
+    pub(crate) fn touches(&self, terrain: &Terrain<T>) -> [(Touch<T>, Vector3<T>); SLOTS] {
+        let nothing = Touch {
+            depth: -T::ONE,
+            normal_w: Vector3::z(),
+        };
+        let mut out = [(nothing, self.from_w); SLOTS];
+        let [first, last, between] = &mut out;
+        first.0 = terrain.touch(&self.from_w, self.radius);
+        if self.from_w == self.to_w {
+            return out;
+        }
+        *last = (terrain.touch(&self.to_w, self.radius), self.to_w);
+        let (center_w, reach) = self.bound();
+        let near = terrain
+            .block
+            .filter(|block| block.is_near(&center_w, reach));
+        if let Some(block) = near {
+            let share = block.deepest(&self.from_w, &self.to_w);
+            if share > T::of(END) && share < T::of(1.0 - END) {
+                between.1 = self.at(share);
+                let touch = block.touch(&between.1, self.radius);
+                // Flat on a face the ends carry the shape; an edge is where the middle is deeper.
+                if touch.depth > math::max(first.0.depth, last.0.depth) {
+                    between.0 = touch;
+                }
+            }
+        }
+        out
+    }
+
+    /// Distance to another one, m; negative is the overlap.
+    pub(crate) fn gap(&self, other: &Self) -> T {
+        let (s, t) = self.nearest(other);
+        let apart = self.at(s) - other.at(t);
+        math::sqrt(apart.norm_squared()) - self.radius - other.radius
     }
 
     /// Shares of both ways at which two segments are nearest (Ericson, Real-Time Collision Detection, 5.1.9).

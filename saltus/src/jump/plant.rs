@@ -111,20 +111,34 @@ pub(crate) fn terrain(task: &Task, higher: f64) -> Terrain<f64> {
     };
     let onto = edge.drop < 0.0;
     edge.drop -= higher;
-    let floor = f64::min(-edge.drop, 0.0);
-    // Around where the robot stands, or lands, cut at the edge.
+    // Around where the robot stands, or lands.
     let middle = if onto { task.goal } else { Vector3::zeros() };
-    let mut lower = [middle.x - AROUND, middle.y - AROUND, floor];
-    let mut upper = [
-        middle.x + AROUND,
-        middle.y + AROUND,
-        f64::max(-edge.drop, 0.0),
-    ];
-    let cut = edge.sign * edge.distance;
-    if onto == (edge.sign > 0.0) {
-        lower[edge.axis] = cut;
+    over_edge(
+        onto,
+        (edge.axis, edge.sign, edge.distance),
+        edge.drop,
+        &middle,
+        AROUND,
+    )
+}
+
+/// A floor, and a block that reaches so far `around` a middle and is cut at an edge: (axis across it, side of the landing, distance from the
+/// origin). The robot stands at height zero and lands `drop` below; `onto` the block, or off it.
+pub(crate) fn over_edge(
+    onto: bool,
+    (axis, side, distance): (usize, f64, f64),
+    drop: f64,
+    middle: &Vector3<f64>,
+    around: f64,
+) -> Terrain<f64> {
+    let floor = f64::min(-drop, 0.0);
+    let mut lower = [middle.x - around, middle.y - around, floor];
+    let mut upper = [middle.x + around, middle.y + around, f64::max(-drop, 0.0)];
+    let cut = side * distance;
+    if onto == (side > 0.0) {
+        lower[axis] = cut;
     } else {
-        upper[edge.axis] = cut;
+        upper[axis] = cut;
     }
     Terrain {
         floor,

@@ -3,11 +3,13 @@
 mod posture;
 mod urdf;
 
-use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
+use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, SHAPES, a1};
 use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
-use rbd_core::{BaseBody, BaseKind, Body, Frame, JointLimits, Model, Motor, TableModel, Tree};
+use rbd_core::{
+    BaseBody, BaseKind, Body, Frame, JointLimits, Model, Motor, Shape, TableModel, Tree,
+};
 
 pub(crate) use posture::State;
 pub(crate) use urdf::RobotError;
@@ -45,9 +47,14 @@ pub(crate) struct Data {
     pub(crate) leg_length: f64,
     /// Corners of the trunk, base axes, m.
     pub(crate) corners: [Vector3<f64>; 8],
+    /// Collision shapes of all links, where they are known.
+    pub(crate) shapes: Option<&'static Shapes>,
     /// Joints near a standing posture.
     seed: [f64; JOINTS],
 }
+
+/// Collision shapes of a robot.
+pub(crate) type Shapes = [Shape<f64>; SHAPES.len()];
 
 impl Quadruped {
     /// A1 as published, with rotors: what `saltus run` simulates.
@@ -77,6 +84,7 @@ impl Quadruped {
             hips: core::array::from_fn(|i| Vector3::new(0.1805 * end(i), 0.1308 * side(i), 0.0)),
             leg_length: 0.4,
             corners: core::array::from_fn(corner),
+            shapes: Some(&SHAPES),
             seed: core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]),
         }))
     }

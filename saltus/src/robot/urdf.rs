@@ -159,6 +159,7 @@ impl Quadruped {
             hips,
             leg_length,
             corners: trunk(&document, robot, leg_length),
+            shapes: None,
             seed: [0.0; JOINTS],
         };
         data.seed = seed(&data)?;
