@@ -40,6 +40,23 @@ fn a_goal_that_is_not_on_the_ground_is_refused() {
     assert!(said.contains("goal_m") && said.contains("0.15"), "{said}");
 }
 
+/// The double backflip pushed its rear shanks through the edge of its box for a tenth of a second: the audit found nothing.
+#[test]
+fn a_plan_through_the_edge_of_its_box_is_refused() {
+    let output = Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["plan", "a1/double-backflip", "--json"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["status"], "AuditFailed", "{json}");
+    let told = json["answer"].to_string();
+    for shank in ["RL_shank", "RR_shank"] {
+        let through = format!("{shank} passes through the ground");
+        assert!(told.contains(&through), "{told}");
+    }
+}
+
 /// A goal that leans by 20 degrees: the robot stood level, with "0.3 degrees" off.
 #[test]
 fn a_goal_that_the_robot_does_not_stand_in_is_missed() {
