@@ -86,6 +86,9 @@ pub(super) fn run(
     })
 }
 
+/// Causes of failure in the lab that are told by name, the most frequent first.
+const TOLD: usize = 3;
+
 /// So many seeds of the lab: how many are on target, and what failed first in the others.
 fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Column {
     let mut good = vec![0_u64; subjects.len() * sims.len()];
@@ -111,10 +114,12 @@ fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Col
     let cells = good.iter().zip(&failed).map(|(good, failed)| {
         let mut causes: Vec<(&String, &u64)> = failed.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
-        let causes: Vec<String> = causes
-            .iter()
-            .map(|(name, n)| format!("{name} {n}"))
-            .collect();
+        let rest: u64 = causes.iter().skip(TOLD).map(|(_, n)| **n).sum();
+        let told = causes.iter().take(TOLD);
+        let mut causes: Vec<String> = told.map(|(name, n)| format!("{name} {n}")).collect();
+        if rest > 0 {
+            causes.push(format!("others {rest}"));
+        }
         let text = format!("{good} of {done}");
         let text = if causes.is_empty() {
             text
