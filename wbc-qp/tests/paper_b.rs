@@ -202,8 +202,8 @@ fn posture_of_the_torque_program() {
         .tick(&Icub23, &s, &[], (&LIMITS, &MOTORS), &wanted(&s))
         .unwrap();
     let gains = settings.posture;
-    for i in 0..N {
-        let wanted = gains.stiffness * (posture[i] - q.joints[i]) - gains.damping * v.joints[i];
+    for (i, goal) in posture.iter().enumerate() {
+        let wanted = gains.stiffness * (goal - q.joints[i]) - gains.damping * v.joints[i];
         let found = tick.answer.acceleration.joints[i];
         assert!(
             (found - wanted).abs() < 1e-6,
