@@ -145,7 +145,7 @@ fn rows_are_the_constraints_of_the_paper() {
                 let edge = problem.edge.unwrap();
                 for corner in &problem.corners {
                     let at = x.pos_w + x.rot_wb * corner;
-                    let past = ((at.x - edge.distance) / edge.width).tanh();
+                    let past = so3::math::tanh((at.x - edge.distance) / edge.width);
                     wanted.push(at.z + 0.5 * edge.drop * (1.0 + past));
                 }
             } else {
