@@ -31,14 +31,12 @@ pub(crate) fn run(_: &Args) -> Result<()> {
     shows(&readme, &table)
 }
 
-/// Every line of README's table is one of those that were printed.
+/// Every line of README's table is one of those that were printed. It is the table with this one's head.
 fn shows(readme: &str, table: &str) -> Result<()> {
-    let lines = |text: &str| -> Vec<String> {
-        let shown = text.lines().filter(|line| line.starts_with("| `a1/"));
-        let tasks = shown.filter(|line| line.contains("| native |") || line.contains("| mujoco |"));
-        tasks.map(str::to_owned).collect()
-    };
-    let (shown, printed) = (lines(readme), lines(table));
+    let head = table.lines().next().unwrap_or_default();
+    let below = readme.lines().skip_while(|line| *line != head);
+    let shown: Vec<&str> = below.skip(2).take_while(|line| !line.is_empty()).collect();
+    let printed: Vec<&str> = table.lines().collect();
     ensure!(!shown.is_empty(), "README.md has no table of verdicts");
     for line in &shown {
         ensure!(
@@ -56,7 +54,7 @@ mod tests {
     #[test]
     fn a_stale_line_is_found() {
         let table =
-            "| `a1/lateral` | native | 0.007 | on target |\n| `icub/torque` | native | 1 |\n";
+            "| task | m |\n|---|---|\n| `a1/lateral` | 0.007 |\n| `icub/torque` | 0.001 |\n";
         assert!(shows(table, table).is_ok());
         assert!(shows(&table.replace("0.007", "0.008"), table).is_err());
         assert!(shows("no table", table).is_err());
