@@ -4,7 +4,7 @@
 
 use super::execute::{HOLD, Run, Trial, run_watched};
 use super::plant::Sim;
-use super::reference::{Legs, Reference, build};
+use super::reference::{Reference, build};
 use super::sensors::Told;
 use super::task::Task;
 use a1_model::MOTORS;
@@ -18,7 +18,7 @@ fn jump() -> &'static (Task, Reference) {
     JUMP.get_or_init(|| {
         let task = Task::load("a1/lateral").unwrap();
         let plan = task.solve().unwrap();
-        let reference = build(&task, &plan, Legs::Heavy).unwrap();
+        let reference = build(&task, &plan).unwrap();
         (task, reference)
     })
 }

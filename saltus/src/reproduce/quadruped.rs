@@ -345,12 +345,12 @@ fn problem_phases(task: &Task) -> usize {
     task.problem.phase_count
 }
 
-/// Fig. 4: the spin by both planners, until touchdown. The paper's figure ends there; our landing then turns the robot on its feet,
-/// whatever the jump has missed.
+/// Fig. 4: the spin by whole-body optimisation and by the baseline of V-A, an optimisation in joint space with the dynamics of the rigid
+/// body and without torques, until touchdown, where the paper's figure ends.
 fn spin(plans: &mut Plans, sim: Sim, folder: &Path) -> Row {
     let row = Row::new(
         'A',
-        "Fig. 4: 90° spin by whole-body optimisation and by single rigid body + kinematics",
+        "Fig. 4: 90° spin by whole-body optimisation and by optimisation in joint space on a single rigid body",
         "accurate; no significant yaw",
     )
     .simulated(sim);
@@ -370,8 +370,8 @@ fn spin(plans: &mut Plans, sim: Sim, folder: &Path) -> Row {
             let (whole, kinematic) = (missed(&whole), missed(&kinematic));
             row.ours(
                 format!("{whole:.1}° off at touchdown; {kinematic:.1}° off"),
-                whole <= 10.0 && kinematic > 10.0,
-                "the legs' momentum, which a single rigid body does not know, is missing in flight; less than in the paper",
+                whole <= 10.0 && kinematic > 45.0,
+                "holds when the one is within 10° and the other misses more than half of the turn: the paper's robot hardly turned",
             )
         }
         (Err(error), _) | (_, Err(error)) => row.failed(error),

@@ -10,7 +10,7 @@ use crate::jump::execute::Trial;
 use crate::jump::judge::Judged;
 use crate::jump::planned::{Origin, Planner};
 use crate::jump::programs::Programs;
-use crate::jump::reference::{Legs, Reference};
+use crate::jump::reference::Reference;
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, report, stored, strip};
 use crate::lab::Lab;
@@ -206,8 +206,11 @@ fn plan_lines(made: &Made) -> [Line; 2] {
         },
     );
     let legs = match reference.origin {
-        Origin::Kinematics(Legs::Heavy) => "leg kinematics, not a whole-body optimum".to_owned(),
-        Origin::Kinematics(Legs::Massless) => "legs without mass under a rigid body".to_owned(),
+        Origin::Kinematics => "leg kinematics, not a whole-body optimum".to_owned(),
+        Origin::RigidBody(solved) => format!(
+            "legs without mass under a rigid body solved in {:.0} ms, {} iterations",
+            solved.wall_ms, solved.iterations
+        ),
         Origin::WholeBody(solved) => format!(
             "whole body solved in {:.0} ms, {} iterations",
             solved.wall_ms, solved.iterations
