@@ -60,9 +60,9 @@ pub const MOTOR: Motor<f64> = Motor {
 };
 
 /// Torque constant of the motor, N m/A.
-const TORQUE_CONSTANT: f64 = 0.118;
+pub(crate) const TORQUE_CONSTANT: f64 = 0.118;
 /// Resistance of the motor, Ω.
-const RESISTANCE: f64 = 25.0 * TORQUE_CONSTANT * TORQUE_CONSTANT;
+pub(crate) const RESISTANCE: f64 = 25.0 * TORQUE_CONSTANT * TORQUE_CONSTANT;
 /// Supply voltage, V.
 const SUPPLY: f64 = 21.5;
 /// Gear ratio that the motor model was fitted with.

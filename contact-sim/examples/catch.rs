@@ -3,19 +3,19 @@
 //! `cargo run --release -p contact-sim --example catch`
 
 use a1_model::{A1Geared, FEET, MOTORS, a1};
-use contact_sim::{ContactSphere, Error, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{Error, NativeSimulator, Settings, Shape, Simulator, Terrain};
 use rbd_core::{Configuration, Tangent};
 
 const CROUCH: [f64; 3] = [0.0, 0.8, -1.6];
 
 fn main() -> Result<(), Error> {
-    let feet = FEET.map(|foot| ContactSphere {
-        link: foot.frame.link,
-        offset: foot.frame.offset,
-        radius: a1_model::FOOT_RADIUS,
+    let feet = core::array::from_fn(|i| {
+        let frame = FEET[i].frame;
+        Shape::ball(frame.link, frame.offset, a1_model::FOOT_RADIUS, i)
     });
     let settings = Settings::new(&a1::LIMITS, &MOTORS);
-    let mut plant = NativeSimulator::<f64, _, 12, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
+    let mut plant =
+        NativeSimulator::<f64, _, 12, 4, 4>::new(A1Geared, feet, Terrain::FLAT, settings);
     let mut start = Configuration::NEUTRAL;
     start.joints = core::array::from_fn(|i| CROUCH[i % 3]);
     start.base.translation.z = 0.4;

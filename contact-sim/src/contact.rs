@@ -1,79 +1,45 @@
-//! Compliant contact of one sphere: normal force and friction.
+//! Compliant contact of one point: normal force and friction, by MuJoCo's own equations.
 //!
-//! # Normal force
-//! With penetration d and its rate ḋ, f_n = k d max(0, 1 + c ḋ) (Hunt and Crossley 1975): zero at first touch,
-//! never adhesive, and its damping grows with the load, so that a hard impact loses more than a soft one.
+//! MuJoCo asks for the acceleration a_r = −b v + d k δ of a contact with penetration δ and velocity v, where b = 2/(d₁ t_c) and k = 1/(d₁ t_c)²
+//! follow from one time constant t_c; a force f of the contact costs R f on top of the acceleration a that it leads to:
 //!
-//! # Friction
-//! A bristle with deflection s in the tangent plane resists slip: ṡ = v_t, f_t = −(k_t s + c_t v_t). Where
-//! |f_t| would exceed μ f_n it is cut to μ f_n, and s is set to what the cut force says (Dahl's idea, as in
-//! elasto-plastic friction models): sticking is exact, a foot under a steady load does not creep, and a ball that rolls
-//! has v_t = 0 at its lowest point and meets no resistance.
+//! ```text
+//! a + R f = a_r,   R = (1 − d)/(d m),   f_n ≥ 0,   |f_t| ≤ μ f_n
+//! ```
+//!
+//! with the effective mass m of the contact's link and a share d that grows with the penetration from d₀ to d₁; friction has R/10 and no
+//! k (MuJoCo, computation, "solver parameters": `solref`, `solimp`, `impratio`). So a soft ground gives way, and a foot creeps on it under
+//! friction's share of its load.
+//!
+//! MuJoCo solves this for all contacts at once. Here each contact takes one relaxation step per step of the integrator: with the
+//! acceleration that its point had in the last one under the last force,
+//!
+//! ```text
+//! f ← f + ω (a_r − a − R f)/(1/m_p + R)
+//! ```
+//!
+//! where m_p is the effective mass of the point. What all contacts settle at within a millisecond is the solution above, however they are
+//! coupled.
 
 use nalgebra::Vector3;
-use rbd_core::{Contact, ContactShape, Link};
 use so3::{Scalar, math};
 
 use crate::Touch;
 
-/// A sphere on the robot that may touch the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSphere<T> {
-    /// The link it is fixed to.
-    pub link: Link,
-    /// Its centre in the link's frame, m.
-    pub offset: [T; 3],
-    /// Its radius, m.
-    pub radius: T,
-}
+/// Penetration at which d has reached d₁, m: `solimp`'s width.
+pub(crate) const WIDTH: f64 = 1e-3;
+/// How much harder friction is than the normal force: MuJoCo's `impratio`.
+pub(crate) const FRICTION_RATIO: f64 = 10.0;
+/// ω: below one, since the other contacts of a link answer as well, and its effective mass changes with the posture.
+const RELAXATION: f64 = 0.5;
+/// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
+const HARD: f64 = 0.0025;
 
-impl<T: Scalar> ContactSphere<T> {
-    /// A robot's contact as a sphere; `None` for other shapes.
-    #[must_use]
-    pub fn of(contact: &Contact<T>) -> Option<Self> {
-        match contact.shape {
-            ContactShape::Sphere { radius } => Some(Self {
-                link: contact.frame.link,
-                offset: contact.frame.offset,
-                radius,
-            }),
-            ContactShape::Rectangle { .. } => None,
-        }
-    }
-
-    /// A robot's rectangular sole as four balls inside its corners that touch the sole's plane from above, in the order
-    /// (x⁻, y⁻), (x⁻, y⁺), (x⁺, y⁻), (x⁺, y⁺); `None` for other shapes. Several points of friction resist a turn about
-    /// the normal, so a sole needs no torsional friction of its own.
-    #[must_use]
-    pub fn corners(contact: &Contact<T>, radius: T) -> Option<[Self; 4]> {
-        let ContactShape::Rectangle {
-            x: [xl, xh],
-            y: [yl, yh],
-        } = contact.shape
-        else {
-            return None;
-        };
-        let (xl, xh, yl, yh) = (xl + radius, xh - radius, yl + radius, yh - radius);
-        let placement = contact.frame.placement();
-        Some([(xl, yl), (xl, yh), (xh, yl), (xh, yh)].map(|(x, y)| Self {
-            link: contact.frame.link,
-            offset: placement.point(&Vector3::new(x, y, radius)).into(),
-            radius,
-        }))
-    }
-}
-
-/// Stiffness, dissipation and friction of the ground.
+/// Softness and friction of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw<T> {
-    /// Normal stiffness k, N/m.
-    pub stiffness: T,
-    /// Dissipation c, s/m.
-    pub dissipation: T,
-    /// Tangential stiffness k_t, N/m.
-    pub tangential_stiffness: T,
-    /// Tangential damping c_t, N s/m.
-    pub tangential_damping: T,
+    /// Time in which a contact that is pressed in comes back, s: 2 ms is concrete, 20 ms (MuJoCo's default) a gym mat.
+    pub time_constant: T,
     /// Coulomb coefficient μ.
     pub friction: T,
 }
@@ -81,8 +47,8 @@ pub struct ContactLaw<T> {
 /// What a contact remembers and shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState<T: Scalar> {
-    /// Bristle deflection s, world axes, m.
-    pub bristle_w: Vector3<T>,
+    /// Velocity of the material point, world axes, m/s.
+    pub velocity_w: Vector3<T>,
     /// Force of the ground on the robot, N.
     pub force_w: Vector3<T>,
     /// Point of contact in the world, m.
@@ -96,7 +62,7 @@ pub struct ContactState<T: Scalar> {
 impl<T: Scalar> ContactState<T> {
     /// No contact.
     pub const NONE: Self = Self {
-        bristle_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
+        velocity_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         force_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         point_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         depth: T::ZERO,
@@ -104,29 +70,56 @@ impl<T: Scalar> ContactState<T> {
     };
 }
 
+/// How hard it is to push a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactMass<T> {
+    /// Effective mass of its link, by which MuJoCo scales a contact's softness, kg.
+    pub link: T,
+    /// Effective mass of the point of contact, by which its force is relaxed, kg.
+    pub point: T,
+}
+
 impl<T: Scalar> ContactLaw<T> {
-    /// Rubber foot on a hard floor: 1 mm of penetration at 100 N.
+    /// A rubber foot on concrete.
     pub fn new(friction: T) -> Self {
         Self {
-            stiffness: T::of(1.0e5),
-            dissipation: T::of(1.0),
-            tangential_stiffness: T::of(8.0e4),
-            tangential_damping: T::of(60.0),
+            time_constant: T::of(0.002),
             friction,
         }
     }
 
-    /// Advances one contact by `dt`, given where it touches and the velocity of its material point.
+    /// d₀ and d₁.
+    #[must_use]
+    pub fn impedance(&self) -> [T; 2] {
+        if self.time_constant <= T::of(HARD) {
+            [T::of(0.95), T::of(0.99)]
+        } else {
+            [T::of(0.9), T::of(0.95)]
+        }
+    }
+
+    /// d at a penetration.
+    fn share(&self, depth: T) -> T {
+        let [d0, d1] = self.impedance();
+        let x = math::min(depth / T::of(WIDTH), T::ONE);
+        // MuJoCo's default: two parabolas that meet in the middle.
+        let y = if x < T::HALF {
+            T::TWO * x * x
+        } else {
+            T::ONE - T::TWO * (T::ONE - x) * (T::ONE - x)
+        };
+        d0 + (d1 - d0) * y
+    }
+
+    /// Advances one contact by `dt`, given where it touches, the velocity of its material point and how hard it is to push.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,
         touch: &Touch<T>,
-        point_w: &Vector3<T>,
-        velocity_w: &Vector3<T>,
+        (point_w, velocity_w): (&Vector3<T>, &Vector3<T>),
+        mass: ContactMass<T>,
         dt: T,
     ) {
-        state.depth = touch.depth;
-        state.point_w = *point_w;
         if touch.depth <= T::ZERO {
             *state = ContactState {
                 depth: touch.depth,
@@ -135,26 +128,38 @@ impl<T: Scalar> ContactLaw<T> {
             };
             return;
         }
-        let n = &touch.normal_w;
-        let rate = velocity_w.dot(n);
-        let gain = math::max(T::ZERO, T::ONE - self.dissipation * rate);
-        let normal = self.stiffness * touch.depth * gain;
-        let slip = velocity_w - n * rate;
-        let mut bristle = state.bristle_w + slip * dt;
-        bristle -= n * bristle.dot(n);
-        let wanted = -(bristle * self.tangential_stiffness + slip * self.tangential_damping);
-        let limit = self.friction * normal;
-        let size = math::sqrt(wanted.norm_squared());
-        state.sliding = size > limit;
-        let friction = if state.sliding {
-            wanted * (limit / size)
+        // Not in the step of the first touch: there is no force yet that an acceleration could answer to.
+        let acceleration_w = if state.depth > T::ZERO {
+            (velocity_w - state.velocity_w) / dt
         } else {
-            wanted
+            Vector3::zeros()
         };
+        let n = &touch.normal_w;
+        let reach = self.impedance()[1] * self.time_constant;
+        let share = self.share(touch.depth);
+        let spring = share * touch.depth / (reach * reach);
+        let wanted_w = n * spring - velocity_w * (T::TWO / reach);
+        let missing_w = wanted_w - acceleration_w;
+        let soft = (T::ONE - share) / (share * mass.link);
+        let relax = |last: &Vector3<T>, missing: &Vector3<T>, soft: T| {
+            let step = T::of(RELAXATION) / (T::ONE / mass.point + soft);
+            last + (missing - last * soft) * step
+        };
+        let last = state.force_w.dot(n);
+        let normal_w = relax(&(n * last), &(n * missing_w.dot(n)), soft);
+        let normal = math::max(normal_w.dot(n), T::ZERO);
+        let across = |x: &Vector3<T>| x - n * x.dot(n);
+        let harder = soft / T::of(FRICTION_RATIO);
+        let mut friction_w = relax(&across(&state.force_w), &across(&missing_w), harder);
+        let limit = self.friction * normal;
+        let size = math::sqrt(friction_w.norm_squared());
+        state.sliding = size > limit;
         if state.sliding {
-            bristle = -(friction + slip * self.tangential_damping) / self.tangential_stiffness;
+            friction_w *= limit / size;
         }
-        state.bristle_w = bristle;
-        state.force_w = n * normal + friction;
+        state.depth = touch.depth;
+        state.point_w = *point_w;
+        state.velocity_w = *velocity_w;
+        state.force_w = n * normal + friction_w;
     }
 }

@@ -4,6 +4,7 @@
 #[cfg(feature = "mujoco")]
 extern crate std;
 
+mod collide;
 mod contact;
 mod error;
 mod joints;
@@ -13,17 +14,20 @@ mod mjcf;
 mod mujoco;
 mod native;
 mod settings;
+mod shape;
 mod simulator;
 mod terrain;
 
-pub use contact::{ContactLaw, ContactSphere, ContactState};
+pub use collide::{MOST_SHAPES, effective_mass, gaps, self_contacts};
+pub use contact::{ContactLaw, ContactMass, ContactState};
 pub use error::Error;
 pub use joints::Stops;
 #[cfg(feature = "mujoco")]
-pub use mjcf::{Geom, GeomShape, mjcf};
+pub use mjcf::{Geom, mjcf};
 #[cfg(feature = "mujoco")]
-pub use mujoco::{ModelRefused, MujocoSimulator};
+pub use mujoco::{ModelRefused, MujocoSimulator, mujoco_version};
 pub use native::NativeSimulator;
+pub use rbd_core::Shape;
 pub use settings::Settings;
 pub use simulator::Simulator;
 pub use terrain::{Block, Terrain, Touch};

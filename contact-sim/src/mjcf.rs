@@ -1,8 +1,8 @@
 //! A robot and its world in MuJoCo's format (MJCF), written from the same tables as everything else.
 //!
 //! Bodies keep the canonical frames of `rbd-core`, so joint coordinates mean the same on both sides; the base is
-//! a free joint, whose coordinates `rbd_core::convert` translates. The robot's shapes touch the world and not
-//! each other.
+//! a free joint, whose coordinates `rbd_core::convert` translates. Of the robot's shapes those
+//! pairs touch each other that are listed.
 
 use core::fmt::Write as _;
 use std::string::String;
@@ -11,73 +11,67 @@ use std::vec::Vec;
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::{BaseKind, Contact, ContactShape, Frame, GRAVITY, Inertia, JointLimits, Link, Tree};
 
-use crate::{ContactSphere, Settings, Terrain};
+use crate::contact::{FRICTION_RATIO, WIDTH};
+use crate::{ContactLaw, MOST_SHAPES, Settings, Shape, Terrain};
 
 /// Thickness given to a sole, which is a plane in the tables, m.
 const SOLE_THICKNESS: f64 = 0.01;
 
 /// A shape on the robot that may touch the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Geom {
-    /// Where it is: centre and axes of the shape.
-    pub frame: Frame<f64>,
-    /// What it is.
-    pub shape: GeomShape,
-    /// The contact to which its forces are added; several shapes may share one.
-    pub contact: usize,
-}
-
-/// Kinds of shapes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GeomShape {
-    /// A ball of this radius, m.
-    Sphere(f64),
-    /// A box of these half sizes, m.
-    Box([f64; 3]),
+pub enum Geom {
+    /// A swept ball, as the native simulator has it.
+    Swept(Shape<f64>),
+    /// A box: centre and axes, half sizes, m, and what its forces count for.
+    Box {
+        /// Centre and axes.
+        frame: Frame<f64>,
+        /// Half sizes, m.
+        half: [f64; 3],
+        /// What its forces count for.
+        owner: usize,
+    },
 }
 
 impl Geom {
-    /// A contact sphere of the native simulator.
-    #[must_use]
-    pub const fn sphere(sphere: &ContactSphere<f64>, contact: usize) -> Self {
-        let mut frame = Frame::IDENTITY;
-        frame.link = sphere.link;
-        frame.offset = sphere.offset;
-        Self {
-            frame,
-            shape: GeomShape::Sphere(sphere.radius),
-            contact,
-        }
-    }
-
     /// A robot's contact: a ball, or a sole as a box of 10 mm above the sole's plane.
     #[must_use]
-    pub fn of(robot: &Contact<f64>, contact: usize) -> Self {
-        match robot.shape {
-            ContactShape::Sphere { radius } => Self {
-                frame: robot.frame,
-                shape: GeomShape::Sphere(radius),
-                contact,
-            },
+    pub fn of(contact: &Contact<f64>, owner: usize) -> Self {
+        match contact.shape {
+            ContactShape::Sphere { radius } => {
+                let frame = &contact.frame;
+                Self::Swept(Shape::ball(frame.link, frame.offset, radius, owner))
+            }
             ContactShape::Rectangle { x, y } => {
-                let center = Vector3::new(
-                    0.5 * (x[0] + x[1]),
-                    0.5 * (y[0] + y[1]),
-                    0.5 * SOLE_THICKNESS,
-                );
-                let mut frame = robot.frame;
-                frame.offset = robot.frame.placement().point(&center).into();
+                let middle = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])];
+                let center = Vector3::new(middle[0], middle[1], 0.5 * SOLE_THICKNESS);
+                let mut frame = contact.frame;
+                frame.offset = contact.frame.placement().point(&center).into();
                 let half = [
                     0.5 * (x[1] - x[0]),
                     0.5 * (y[1] - y[0]),
                     0.5 * SOLE_THICKNESS,
                 ];
-                Self {
-                    frame,
-                    shape: GeomShape::Box(half),
-                    contact,
-                }
+                Self::Box { frame, half, owner }
             }
+        }
+    }
+
+    /// The link that it is fixed to.
+    #[must_use]
+    pub const fn link(&self) -> Link {
+        match self {
+            Self::Swept(shape) => shape.link,
+            Self::Box { frame, .. } => frame.link,
+        }
+    }
+
+    /// What its forces count for.
+    #[must_use]
+    pub const fn owner(&self) -> usize {
+        match self {
+            Self::Swept(shape) => shape.owner,
+            Self::Box { owner, .. } => *owner,
         }
     }
 }
@@ -92,7 +86,7 @@ pub(crate) fn geom_name(index: usize) -> String {
 #[must_use]
 pub fn mjcf<M: Tree<f64, N>, const N: usize>(
     model: &M,
-    geoms: &[Geom],
+    (geoms, pairs): (&[Geom], &[u64]),
     terrain: &Terrain<f64>,
     settings: &Settings<f64, N>,
 ) -> String {
@@ -150,7 +144,7 @@ pub fn mjcf<M: Tree<f64, N>, const N: usize>(
             limits.friction,
             body.rotor_inertia
         );
-        if limits.lower.is_finite() && limits.upper.is_finite() {
+        if has_stops(limits) {
             let _ = write!(
                 out,
                 " limited=\"true\" range=\"{} {}\"",
@@ -164,22 +158,41 @@ pub fn mjcf<M: Tree<f64, N>, const N: usize>(
     for _ in &open {
         out.push_str("</body>\n");
     }
-    out.push_str("</body>\n</worldbody>\n</mujoco>\n");
+    out.push_str("</body>\n</worldbody>\n");
+    let stops: Vec<usize> = stopped(model.joint_count(), settings).collect();
+    pairs_and_stops(&mut out, pairs, &settings.contact, &stops);
+    out.push_str("</mujoco>\n");
     out
 }
 
-/// Options. Contacts and stops are stiff (time constant 2 ms) and damped critically, friction is a true cone.
+fn has_stops(limits: &JointLimits<f64>) -> bool {
+    limits.lower.is_finite() && limits.upper.is_finite()
+}
+
+/// Joints that have stops, of so many: in the order of the sensors that tell the stops' torques.
+pub(crate) fn stopped<const N: usize>(
+    count: usize,
+    settings: &Settings<f64, N>,
+) -> impl Iterator<Item = usize> {
+    let joints = settings.limits.iter().enumerate().take(count);
+    joints
+        .filter(|(_, limits)| has_stops(limits))
+        .map(|(i, _)| i)
+}
+
+/// Options. Contacts are damped critically, friction is a true cone, stops are stiff (time constant 4 ms).
 fn header<const N: usize>(out: &mut String, settings: &Settings<f64, N>) {
     let _ = writeln!(
         out,
         "<compiler angle=\"radian\" inertiafromgeom=\"false\" autolimits=\"false\"/>\n\
-         <option timestep=\"{}\" gravity=\"{}\" integrator=\"implicitfast\" cone=\"elliptic\" impratio=\"10\" \
+         <option timestep=\"{}\" gravity=\"{}\" integrator=\"implicitfast\" cone=\"elliptic\" impratio=\"{FRICTION_RATIO}\" \
          tolerance=\"1e-12\"><flag autoreset=\"disable\"/></option>\n\
-         <default><geom condim=\"3\" friction=\"{} 0 0\" solref=\"0.002 1\" solimp=\"0.95 0.99 0.001\"/>\
+         <default><geom condim=\"3\" friction=\"{} 0 0\" {}/>\
          <joint solreflimit=\"0.004 1\" solreffriction=\"0.004 1\"/></default>",
         settings.tick / f64::from(settings.substeps.max(1)),
         numbers(&GRAVITY),
         settings.contact.friction,
+        softness(&settings.contact),
     );
 }
 
@@ -211,20 +224,64 @@ fn shapes(out: &mut String, geoms: &[Geom], link: Link) {
     let here = geoms
         .iter()
         .enumerate()
-        .filter(|(_, geom)| geom.frame.link == link);
+        .filter(|(_, geom)| geom.link() == link);
     for (index, geom) in here {
-        let (kind, size) = match geom.shape {
-            GeomShape::Sphere(radius) => ("sphere", numbers(&[radius])),
-            GeomShape::Box(half) => ("box", numbers(&half)),
+        let shape = match geom {
+            Geom::Swept(ball) if ball.is_ball() => std::format!(
+                "type=\"sphere\" size=\"{:?}\" pos=\"{}\"",
+                ball.radius,
+                numbers(&ball.from)
+            ),
+            Geom::Swept(shape) => std::format!(
+                "type=\"capsule\" size=\"{:?}\" fromto=\"{} {}\"",
+                shape.radius,
+                numbers(&shape.from),
+                numbers(&shape.to)
+            ),
+            Geom::Box { frame, half, .. } => std::format!(
+                "type=\"box\" size=\"{}\" pos=\"{}\" {}",
+                numbers(half),
+                numbers(&frame.offset),
+                axes(frame.placement().rotation.matrix())
+            ),
         };
+        let name = geom_name(index);
         let _ = writeln!(
             out,
-            "<geom name=\"{}\" type=\"{kind}\" size=\"{size}\" pos=\"{}\" {} contype=\"1\" conaffinity=\"0\"/>",
-            geom_name(index),
-            numbers(&geom.frame.offset),
-            axes(geom.frame.placement().rotation.matrix()),
+            "<geom name=\"{name}\" {shape} contype=\"1\" conaffinity=\"0\"/>"
         );
     }
+}
+
+/// Pairs of shapes that touch each other, and a sensor of each joint's stop.
+fn pairs_and_stops(out: &mut String, pairs: &[u64], settings: &ContactLaw<f64>, stops: &[usize]) {
+    out.push_str("<contact>\n");
+    for (i, bits) in pairs.iter().enumerate() {
+        for j in (0..MOST_SHAPES).filter(|j| bits >> j & 1 == 1) {
+            let _ = writeln!(
+                out,
+                "<pair geom1=\"{}\" geom2=\"{}\" condim=\"3\" friction=\"{mu} {mu} 0 0 0\" {}/>",
+                geom_name(i),
+                geom_name(j),
+                softness(settings),
+                mu = settings.friction,
+            );
+        }
+    }
+    out.push_str("</contact>\n<sensor>\n");
+    for joint in stops {
+        let _ = writeln!(out, "<jointlimitfrc joint=\"joint{joint}\"/>");
+    }
+    out.push_str("</sensor>\n");
+}
+
+/// `solref` and `solimp` of the ground.
+fn softness(law: &ContactLaw<f64>) -> String {
+    let [d0, d1] = law.impedance();
+    std::format!(
+        "solref=\"{:?} 1\" solimp=\"{d0:?} {d1:?} {WIDTH:?}\"",
+        law.time_constant
+    )
 }
 
 /// A rotation by its first two columns.

@@ -1,8 +1,8 @@
 //! MuJoCo as the plant: an independent judge of what the native simulator says.
 //!
 //! Torques are limited by the motors as in the native simulator and applied as generalised forces; joint damping,
-//! Coulomb friction, stops and contacts are MuJoCo's own. Of [`Settings::contact`](crate::Settings::contact) only
-//! the friction coefficient has a meaning here.
+//! Coulomb friction, stops and contacts are MuJoCo's own, with the softness and friction of
+//! [`Settings::contact`](crate::Settings::contact).
 
 use core::fmt;
 use std::boxed::Box;
@@ -18,22 +18,32 @@ use rbd_core::convert::{
 use rbd_core::{BaseKind, Configuration, Tangent, Tree};
 use so3::math;
 
-use crate::mjcf::{Geom, geom_name, mjcf};
+use crate::mjcf::{Geom, geom_name, mjcf, stopped};
 use crate::{Error, Settings, Simulator, Terrain};
 
-/// A robot with `N` joints and `C` contacts in MuJoCo.
+/// The version of the MuJoCo library that is linked, such as `3.17.0`.
+#[must_use]
+pub fn mujoco_version() -> &'static str {
+    mujoco_rs::mujoco_version()
+}
+
+/// A robot with `N` joints and `C` owners of shapes in MuJoCo.
 #[derive(Debug)]
 pub struct MujocoSimulator<const N: usize, const C: usize> {
     settings: Settings<f64, N>,
     data: MjData<Box<MjModel>>,
-    /// The contact that each of MuJoCo's geoms counts for.
+    /// The owner that each of MuJoCo's geoms counts for.
     owners: Vec<Option<usize>>,
     /// Length of the base's part of the positions and of the velocities.
     base: (usize, usize),
     configuration: Configuration<f64, N>,
     velocity: Tangent<f64, N>,
     mean_forces_w: [Vector3<f64>; C],
+    mean_link_forces: [f64; C],
     delivered: [f64; N],
+    /// Joints in the order of the sensors that tell the torques of their stops.
+    stopped: Vec<usize>,
+    stops: [f64; N],
     ticks: u64,
 }
 
@@ -50,29 +60,29 @@ impl fmt::Display for ModelRefused {
 impl core::error::Error for ModelRefused {}
 
 impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
-    /// A robot at the world's origin, at rest; `geoms` whose contact is not below `C` touch, but nobody sees their force.
+    /// A robot at the world's origin, at rest; `geoms` whose owner is not below `C` touch, but nobody sees their
+    /// force. Of `pairs`, bit j of number i says that geoms i and j touch each other ([`self_contacts`](crate::self_contacts)).
     ///
     /// # Errors
     /// [`ModelRefused`] for tables that are no robot to MuJoCo, such as an inertia that no mass distribution has.
     pub fn new<M: Tree<f64, N>>(
         model: &M,
-        geoms: &[Geom],
+        (geoms, pairs): (&[Geom], &[u64]),
         terrain: &Terrain<f64>,
         settings: Settings<f64, N>,
     ) -> Result<Self, ModelRefused> {
-        let xml = mjcf(model, geoms, terrain, &settings);
+        let xml = mjcf(model, (geoms, pairs), terrain, &settings);
         let compiled = MjModel::from_xml_string(&xml).map_err(|e| ModelRefused(e.to_string()))?;
         let mut owners = Vec::new();
         for (index, geom) in geoms.iter().enumerate() {
             if let Some(id) = compiled.name_to_id(MjtObjBase::mjOBJ_GEOM, &geom_name(index)) {
                 owners.resize(owners.len().max(id + 1), None);
-                owners[id] = Some(geom.contact);
+                owners[id] = Some(geom.owner());
             }
         }
         let mut data = MjData::new(Box::new(compiled));
         data.forward();
         Ok(Self {
-            settings,
             data,
             owners,
             base: match model.base_kind() {
@@ -82,7 +92,11 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
             configuration: Configuration::NEUTRAL,
             velocity: Tangent::ZERO,
             mean_forces_w: [Vector3::zeros(); C],
+            mean_link_forces: [0.0; C],
             delivered: [0.0; N],
+            stopped: stopped(model.joint_count(), &settings).collect(),
+            stops: [0.0; N],
+            settings,
             ticks: 0,
         })
     }
@@ -108,23 +122,37 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
         }
     }
 
-    /// Adds the contact forces of the last MuJoCo step.
+    /// Adds the contact forces of the last MuJoCo step, and reads the stops' torques.
     fn add_forces(&mut self, share: f64) {
         for (index, contact) in self.data.contact().iter().enumerate() {
-            // The force acts on the second geom; of the two, one is the robot's.
-            for (geom, sign) in contact.geom.iter().zip([-1.0, 1.0]) {
-                let owner = usize::try_from(*geom)
-                    .ok()
-                    .and_then(|id| *self.owners.get(id)?);
-                let Some(sum) = owner.and_then(|i| self.mean_forces_w.get_mut(i)) else {
-                    continue;
-                };
-                let Ok(force) = self.data.try_contact_force(index) else {
-                    continue;
-                };
-                for (axis, f) in contact.frame.chunks(3).zip(force) {
-                    *sum += Vector3::from_row_slice(axis) * (sign * share * f);
+            let Ok(force) = self.data.try_contact_force(index) else {
+                continue;
+            };
+            let mut force_w = Vector3::zeros();
+            for (axis, f) in contact.frame.chunks(3).zip(force) {
+                force_w += Vector3::from_row_slice(axis) * (share * f);
+            }
+            let owner = |geom: i32| {
+                let id = usize::try_from(geom).ok()?;
+                *self.owners.get(id)?
+            };
+            // The force acts on the second geom.
+            match contact.geom.map(owner) {
+                [Some(a), Some(b)] => {
+                    for owner in [a, b] {
+                        if let Some(sum) = self.mean_link_forces.get_mut(owner) {
+                            *sum += math::sqrt(force_w.norm_squared());
+                        }
+                    }
                 }
+                [Some(first), None] => add(&mut self.mean_forces_w, first, &-force_w),
+                [None, Some(second)] => add(&mut self.mean_forces_w, second, &force_w),
+                [None, None] => {}
+            }
+        }
+        for (joint, torque) in self.stopped.iter().zip(self.data.sensordata()) {
+            if let Some(stop) = self.stops.get_mut(*joint) {
+                *stop = *torque;
             }
         }
     }
@@ -147,6 +175,12 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
         copy(&mut self.velocity.joints, joints);
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
         good && finite(self.data.qpos()) && finite(self.data.qvel())
+    }
+}
+
+fn add(sums: &mut [Vector3<f64>], owner: usize, force_w: &Vector3<f64>) {
+    if let Some(sum) = sums.get_mut(owner) {
+        *sum += force_w;
     }
 }
 
@@ -173,7 +207,9 @@ impl<const N: usize, const C: usize> Simulator<f64, N, C> for MujocoSimulator<N,
         self.configuration = *configuration;
         self.velocity = *velocity;
         self.mean_forces_w = [Vector3::zeros(); C];
+        self.mean_link_forces = [0.0; C];
         self.delivered = [0.0; N];
+        self.stops = [0.0; N];
         self.ticks = 0;
     }
 
@@ -183,6 +219,7 @@ impl<const N: usize, const C: usize> Simulator<f64, N, C> for MujocoSimulator<N,
         }
         let count = self.settings.substeps.max(1);
         self.mean_forces_w = [Vector3::zeros(); C];
+        self.mean_link_forces = [0.0; C];
         for _ in 0..count {
             let mut delivered = *command;
             let state = self.velocity.joints.iter().zip(&self.settings.motors);
@@ -224,5 +261,13 @@ impl<const N: usize, const C: usize> Simulator<f64, N, C> for MujocoSimulator<N,
 
     fn contact_forces_w(&self) -> &[Vector3<f64>; C] {
         &self.mean_forces_w
+    }
+
+    fn link_forces(&self) -> &[f64; C] {
+        &self.mean_link_forces
+    }
+
+    fn stop_torques(&self) -> &[f64; N] {
+        &self.stops
     }
 }

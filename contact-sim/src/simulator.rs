@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use rbd_core::{Configuration, Tangent};
 use so3::Scalar;
 
-/// A plant with `N` joints and `C` contacts that advances one tick at a time.
+/// A plant with `N` joints and `C` owners of shapes that advances one tick at a time.
 pub trait Simulator<T: Scalar, const N: usize, const C: usize> {
     /// What can go wrong in a step.
     type Error;
@@ -33,6 +33,12 @@ pub trait Simulator<T: Scalar, const N: usize, const C: usize> {
     /// Torques that the motors delivered in the last step, N m.
     fn delivered(&self) -> &[T; N];
 
-    /// Force of the ground on each contact, averaged over the last tick, world axes, N.
+    /// Force of the ground on each owner of shapes, averaged over the last tick, world axes, N.
     fn contact_forces_w(&self) -> &[Vector3<T>; C];
+
+    /// How hard other links of the robot press on each owner, averaged over the last tick, N: sizes of forces, added up.
+    fn link_forces(&self) -> &[T; C];
+
+    /// Torques of the joints' stops in the last step, N m.
+    fn stop_torques(&self) -> &[T; N];
 }

@@ -58,7 +58,45 @@ impl<T: Scalar> Terrain<T> {
     }
 }
 
+/// Steps of the search for the deepest point of a segment: each leaves 0.618 of the interval, 20 leave 7e-5 of it.
+const SEARCH: u32 = 20;
+
 impl<T: Scalar> Block<T> {
+    /// Share of the way from one point to another at which a ball is deepest in the block. The distance to a solid without hollows is
+    /// convex along a line, so the golden section finds it.
+    #[must_use]
+    pub fn deepest(&self, from_w: &Vector3<T>, to_w: &Vector3<T>) -> T {
+        let depth = |share: T| {
+            let point = from_w + (to_w - from_w) * share;
+            self.touch(&point, T::ZERO).depth
+        };
+        let golden = T::of(0.618_033_988_749_894_9);
+        let (mut low, mut high) = (T::ZERO, T::ONE);
+        let mut left = high - golden * (high - low);
+        let mut right = low + golden * (high - low);
+        let (mut at_left, mut at_right) = (depth(left), depth(right));
+        for _ in 0..SEARCH {
+            if at_left > at_right {
+                (high, right, at_right) = (right, left, at_left);
+                left = high - golden * (high - low);
+                at_left = depth(left);
+            } else {
+                (low, left, at_left) = (left, right, at_right);
+                right = low + golden * (high - low);
+                at_right = depth(right);
+            }
+        }
+        (low + high) * T::HALF
+    }
+
+    /// Whether a ball around a point can touch it.
+    pub(crate) fn is_near(&self, center_w: &Vector3<T>, radius: T) -> bool {
+        let walls = self.lower.iter().zip(&self.upper);
+        walls
+            .zip(center_w.iter())
+            .all(|((low, high), x)| *x > *low - radius && *x < *high + radius)
+    }
+
     /// The contact of a sphere with the block: nearest point of the solid from outside, nearest face from
     /// inside.
     #[must_use]
@@ -112,6 +150,24 @@ mod tests {
             upper: [1.0, 1.0, 0.5],
         }),
     };
+
+    /// A rod over the block's edge is deepest at the edge, not at its ends.
+    #[test]
+    fn a_rod_over_an_edge_touches_between_its_ends() {
+        let block = BOX.block.unwrap_or(Block {
+            lower: [0.0; 3],
+            upper: [0.0; 3],
+        });
+        let (from, to) = (Vector3::new(0.8, 0.0, 0.59), Vector3::new(1.2, 0.0, 0.39));
+        let share = block.deepest(&from, &to);
+        let middle = from + (to - from) * share;
+        let depth = block.touch(&middle, 0.0).depth;
+        assert!(depth > block.touch(&from, 0.0).depth && depth > block.touch(&to, 0.0).depth);
+        assert!(
+            (share - 0.5).abs() < 0.1 && (0.0..0.01).contains(&depth),
+            "{share} {depth}"
+        );
+    }
 
     #[test]
     fn floor_top_side_and_edge() {

@@ -3,8 +3,7 @@
 
 use a1_model::{A1, A1Geared, FEET, MOTORS, a1};
 use contact_sim::{
-    Block, ContactSphere, Error, Geom, GeomShape, MujocoSimulator, NativeSimulator, Settings,
-    Simulator, Terrain,
+    Block, Error, Geom, MujocoSimulator, NativeSimulator, Settings, Shape, Simulator, Terrain,
 };
 use icub_model::{Icub23, Icub23Cad, Icub23Geared, SOLES};
 use nalgebra::{Rotation3, Vector3};
@@ -37,7 +36,7 @@ fn smooth<M: Tree<f64, N>, const N: usize>(
     });
     let mut s = Settings::new(&free, &[MOTORS[0]; N]);
     s.substeps = 1;
-    MujocoSimulator::new(model, &[], &FLOOR_FAR_BELOW, s).unwrap()
+    MujocoSimulator::new(model, (&[], &[]), &FLOOR_FAR_BELOW, s).unwrap()
 }
 
 /// Some state and torques from a list of numbers.
@@ -105,10 +104,10 @@ agrees! {
 
 fn a1_geoms() -> Vec<Geom> {
     let feet = FEET.iter().enumerate().map(|(i, foot)| Geom::of(foot, i));
-    let trunk = Geom {
+    let trunk = Geom::Box {
         frame: Frame::IDENTITY,
-        shape: GeomShape::Box([0.1335, 0.097, 0.057]),
-        contact: 4,
+        half: [0.1335, 0.097, 0.057],
+        owner: 4,
     };
     feet.chain([trunk]).collect()
 }
@@ -116,7 +115,7 @@ fn a1_geoms() -> Vec<Geom> {
 type A1Sim = MujocoSimulator<12, 5>;
 
 fn a1_sim(terrain: &Terrain<f64>) -> A1Sim {
-    MujocoSimulator::new(&A1Geared, &a1_geoms(), terrain, settings(&A1Geared)).unwrap()
+    MujocoSimulator::new(&A1Geared, (&a1_geoms(), &[]), terrain, settings(&A1Geared)).unwrap()
 }
 
 fn standing(height: f64) -> Configuration<f64, 12> {
@@ -220,7 +219,8 @@ fn a_limp_robot_falls_on_its_trunk() {
 fn sliding_friction_is_mu_times_the_load() {
     let mut s = settings(&A1Geared);
     s.contact.friction = 0.4;
-    let mut sim: A1Sim = MujocoSimulator::new(&A1Geared, &a1_geoms(), &Terrain::FLAT, s).unwrap();
+    let mut sim: A1Sim =
+        MujocoSimulator::new(&A1Geared, (&a1_geoms(), &[]), &Terrain::FLAT, s).unwrap();
     let start = standing(0.33);
     sim.reset(&start, &Tangent::ZERO);
     hold(&mut sim, &start.joints, (200.0, 5.0), 8_000);
@@ -242,7 +242,7 @@ fn icub_stands_on_its_soles() {
         .map(|(i, s)| Geom::of(s, i))
         .collect();
     let mut sim: MujocoSimulator<23, 2> =
-        MujocoSimulator::new(&Icub23, &geoms, &Terrain::FLAT, settings(&Icub23)).unwrap();
+        MujocoSimulator::new(&Icub23, (&geoms, &[]), &Terrain::FLAT, settings(&Icub23)).unwrap();
     let mut start = Configuration::NEUTRAL;
     let mut poses = rbd_core::Kinematics::IDENTITY;
     rbd_core::forward_kinematics(&Icub23, &Posture::new(&Icub23, &start), &mut poses);
@@ -266,8 +266,8 @@ fn icub_stands_on_its_soles() {
 fn both_simulators_tell_the_same_drop() {
     let start = standing(0.55);
     let mut judge = a1_sim(&Terrain::FLAT);
-    let spheres: [ContactSphere<f64>; 4] = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
-    let mut native = NativeSimulator::<f64, _, 12, 4>::new(
+    let spheres: [Shape<f64>; 4] = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
+    let mut native = NativeSimulator::<f64, _, 12, 4, 4>::new(
         A1Geared,
         spheres,
         Terrain::FLAT,
@@ -345,6 +345,6 @@ fn tables_that_are_no_robot_are_refused_with_mujocos_words() {
     )
     .unwrap();
     let s = Settings::new(&[JointLimits::NONE], &[MOTORS[0]]);
-    let refused = MujocoSimulator::<1, 0>::new(&model, &[], &Terrain::FLAT, s);
+    let refused = MujocoSimulator::<1, 0>::new(&model, (&[], &[]), &Terrain::FLAT, s);
     assert!(refused.unwrap_err().to_string().contains("inertia"));
 }

@@ -3,8 +3,8 @@
 
 use a1_model::{A1Geared, FEET, MOTORS, a1};
 use contact_sim::{
-    Block, ContactLaw, ContactSphere, ContactState, Error, NativeSimulator, Settings, Simulator,
-    Terrain, Touch,
+    Block, ContactLaw, ContactMass, ContactState, Error, NativeSimulator, Settings, Shape,
+    Simulator, Terrain, Touch,
 };
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
@@ -12,19 +12,16 @@ use rbd_core::{
     centroidal_state,
 };
 
-type Plant = NativeSimulator<f64, A1Geared, 12, 12>;
+type Plant = NativeSimulator<f64, A1Geared, 12, 12, 12>;
 
 /// Four feet and the eight corners of the trunk.
-fn spheres() -> [ContactSphere<f64>; 12] {
+fn spheres() -> [Shape<f64>; 12] {
     core::array::from_fn(|i| match FEET.get(i) {
-        Some(foot) => ContactSphere::of(foot).unwrap(),
+        Some(foot) => Shape::of(foot, i).unwrap(),
         None => {
             let sign = |bit: usize| if (i - 4) >> bit & 1 == 0 { 1.0 } else { -1.0 };
-            ContactSphere {
-                link: Link::Base,
-                offset: [0.18 * sign(0), 0.097 * sign(1), 0.057 * sign(2)],
-                radius: 0.01,
-            }
+            let corner = [0.18 * sign(0), 0.097 * sign(1), 0.057 * sign(2)];
+            Shape::ball(Link::Base, corner, 0.01, i)
         }
     })
 }
@@ -112,16 +109,15 @@ rbd_core::tree! {
     impl Tree<f64, 1> for Ball { floating, BALL_BASE, BALL_BODIES, 1 * [RevoluteX] }
 }
 
-fn ball(points: usize, friction: f64) -> NativeSimulator<f64, Ball, 1, 3> {
+fn ball(points: usize, friction: f64) -> NativeSimulator<f64, Ball, 1, 3, 3> {
     // Three points on a wide plate, so that it slides or sticks but cannot roll; or one ball.
-    let spheres = core::array::from_fn(|i| ContactSphere {
-        link: Link::Base,
-        offset: if points == 1 {
+    let spheres = core::array::from_fn(|i| {
+        let center = if points == 1 {
             [0.0; 3]
         } else {
             [[0.2, 0.0, 0.0], [-0.1, 0.17, 0.0], [-0.1, -0.17, 0.0]][i]
-        },
-        radius: if i < points { 0.02 } else { -10.0 },
+        };
+        Shape::ball(Link::Base, center, if i < points { 0.02 } else { -10.0 }, i)
     });
     let limits = JointLimits {
         lower: -1e9,
@@ -166,18 +162,53 @@ fn sliding_friction_is_mu_times_the_load() {
     assert!((v - (1.0 - 0.4 * 9.81 * 0.1)).abs() < 0.02, "speed {v}");
 }
 
+/// A ball of 2 kg.
+const MASS: ContactMass<f64> = ContactMass {
+    link: 2.0,
+    point: 2.0,
+};
+
+/// Penetration at which a contact of 2 kg at rest carries a load, by bisection, once its force has settled.
+fn depth_under(law: &ContactLaw<f64>, load: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 0.1);
+    for _ in 0..50 {
+        let depth = 0.5 * (low + high);
+        let touch = Touch {
+            depth,
+            normal_w: Vector3::z(),
+        };
+        let mut state = ContactState::NONE;
+        let still = Vector3::zeros();
+        for _ in 0..3000 {
+            law.advance(&mut state, &touch, (&still, &still), MASS, 5e-5);
+        }
+        if state.force_w.z < load {
+            low = depth;
+        } else {
+            high = depth;
+        }
+    }
+    high
+}
+
 /// One contact under a load of 20 N carries 2 kg that are pulled sideways with `pull` of the load for one
 /// second, as on a slope of that gradient: distance, final speed, and acceleration over the second half.
 fn pulled(friction: f64, pull: f64) -> (f64, f64, f64) {
     let (law, load) = (ContactLaw::new(friction), 20.0);
     let touch = Touch {
-        depth: load / law.stiffness,
+        depth: depth_under(&law, load),
         normal_w: Vector3::z(),
     };
     let (mut state, mut x, mut v, mut half) = (ContactState::NONE, 0.0, 0.0, 0.0);
     for i in 0..20_000 {
         let velocity = Vector3::new(v, 0.0, 0.0);
-        law.advance(&mut state, &touch, &Vector3::zeros(), &velocity, 5e-5);
+        law.advance(
+            &mut state,
+            &touch,
+            (&Vector3::zeros(), &velocity),
+            MASS,
+            5e-5,
+        );
         v += 5e-5 * (pull * load + state.force_w.x) / 2.0;
         x += 5e-5 * v;
         if i < 10_000 {
@@ -188,14 +219,15 @@ fn pulled(friction: f64, pull: f64) -> (f64, f64, f64) {
 }
 
 #[test]
-fn inside_the_cone_a_foot_sticks_without_creeping() {
+fn inside_the_cone_a_foot_sticks_and_hardly_creeps() {
     let slope = 0.364; // 20 degrees
     let (x, v, _) = pulled(0.40, slope);
-    assert!(x < 1e-3 && v.abs() < 1e-6, "moved {x} m, still at {v} m/s");
+    // Friction of MuJoCo's kind creeps like a damper, on hard ground by a tenth of a millimetre a second under a third of its load.
+    assert!(x < 1e-3 && v.abs() < 2e-4, "moved {x} m, still at {v} m/s");
     let (_, _, a) = pulled(0.33, slope);
     let expected = (slope - 0.33) * 10.0;
     assert!(
-        (a / expected - 1.0).abs() < 1e-3,
+        (a / expected - 1.0).abs() < 0.02,
         "{a} m/s², not {expected}"
     );
 }
@@ -240,9 +272,9 @@ fn a_dropped_robot_comes_to_rest_and_hardly_sinks() {
             .sum::<f64>();
     let load: f64 = sim.contact_forces_w().iter().map(|f| f.z).sum();
     assert!((load / (mass * 9.81) - 1.0).abs() < 1e-3, "{load}");
-    assert!(sim.contacts().iter().all(|c| c.depth < 1e-3));
+    assert!(sim.contacts().iter().all(|c| c[0].depth < 1e-3));
     assert!(
-        sim.contacts().iter().skip(4).all(|c| c.depth <= 0.0),
+        sim.contacts().iter().skip(4).all(|c| c[0].depth <= 0.0),
         "trunk touches"
     );
     // No energy from nowhere: where it stands it stays.
@@ -268,7 +300,7 @@ fn a_limp_robot_falls_on_its_trunk_and_loses_all_energy() {
         sim.velocity().base.linear
     );
     assert!(
-        sim.contacts().iter().skip(4).any(|c| c.force_w.z > 1.0),
+        sim.contacts().iter().skip(4).any(|c| c[0].force_w.z > 1.0),
         "the trunk lies on the floor"
     );
 }
@@ -291,7 +323,7 @@ fn a_box_carries_the_robot_beside_the_floor() {
         sim.contacts()
             .iter()
             .take(4)
-            .all(|c| (c.point_w.z - 0.4).abs() < 2e-3)
+            .all(|c| (c[0].point_w.z - 0.4).abs() < 2e-3)
     );
 }
 
@@ -357,12 +389,88 @@ fn the_corners_of_a_sole_lie_in_its_plane() {
         },
         shape,
     };
-    let corners = ContactSphere::corners(&sole, 0.005).unwrap();
+    let corners = Shape::corners(&sole, 0.005, 0).unwrap();
     let heels = [[0.145, 0.225, 0.305], [0.145, 0.165, 0.305]];
     let toes = [[0.005, 0.225, 0.305], [0.005, 0.165, 0.305]];
     for (corner, wanted) in corners.iter().zip(heels.iter().chain(&toes)) {
-        let apart = Vector3::from(corner.offset) - Vector3::from(*wanted);
+        let apart = Vector3::from(corner.from) - Vector3::from(*wanted);
         assert!(apart.norm() < 1e-12, "{corner:?}");
     }
-    assert_eq!(ContactSphere::corners(&FEET[0], 0.005), None);
+    assert_eq!(Shape::corners(&FEET[0], 0.005, 0), None);
+}
+
+/// The rod of a shank over the edge of a box is carried by the edge, at rest, and no end touches anything.
+#[test]
+fn a_rod_lies_on_an_edge() {
+    let mut sim = plant(settings());
+    let rod = Shape {
+        from: [-0.4, 0.0, 0.0],
+        to: [0.4, 0.0, 0.0],
+        ..Shape::ball(Link::Base, [0.0; 3], 0.02, 5)
+    };
+    sim.shapes = [Shape::ball(Link::Base, [0.0; 3], -10.0, 0); 12];
+    sim.shapes[5] = rod;
+    sim.terrain.block = Some(Block {
+        lower: [-0.01, -1.0, 0.0],
+        upper: [0.01, 1.0, 0.5],
+    });
+    let mut start = standing(0.52);
+    start.base.translation.z = 0.52;
+    sim.reset(&start, &Tangent::ZERO);
+    for _ in 0..300 {
+        sim.step(&[0.0; 12]).unwrap();
+    }
+    let [first, last, between] = sim.contacts()[5];
+    assert!(between.force_w.z > 50.0, "{between:?}");
+    assert!(first.depth <= 0.0 && last.depth <= 0.0);
+    assert!(sim.contact_forces_w()[5].z > 50.0);
+}
+
+/// Two legs that are pressed together hold each other off; without pairs they pass through each other.
+#[test]
+fn links_that_collide_do_not_pass() {
+    let shapes: [Shape<f64>; 26] = a1_model::SHAPES;
+    let start = standing(2.0);
+    let pairs = contact_sim::self_contacts(&A1Geared, &shapes, &start);
+    let closest = |pairs: [u64; 26]| {
+        let sim =
+            NativeSimulator::<f64, _, 12, 26, 17>::new(A1Geared, shapes, Terrain::FLAT, settings());
+        let mut sim = sim.colliding(pairs);
+        sim.reset(&start, &Tangent::ZERO);
+        let mut felt = 0.0;
+        for _ in 0..3000 {
+            // The left legs turn inwards, and the right ones too.
+            let torque = core::array::from_fn(|i| match i {
+                0 | 6 => -8.0,
+                3 | 9 => 8.0,
+                _ => {
+                    40.0 * (start.joints[i] - sim.configuration().joints[i])
+                        - sim.velocity().joints[i]
+                }
+            });
+            sim.step(&torque).unwrap();
+            felt = f64::max(felt, sim.link_forces().iter().sum());
+        }
+        let q = sim.configuration().joints;
+        (q[3] - q[0], felt)
+    };
+    let (with, felt) = closest(pairs);
+    let (without, nothing) = closest([0; 26]);
+    assert!(felt > 10.0 && nothing == 0.0, "{felt} {nothing}");
+    assert!(with < without - 0.2, "{with} {without}");
+}
+
+/// A softer ground gives way more under the same weight: in proportion to the square of its time constant.
+#[test]
+fn the_ground_gives_way_by_its_time_constant() {
+    let depth = |time_constant: f64| {
+        let law = ContactLaw {
+            time_constant,
+            friction: 0.6,
+        };
+        depth_under(&law, 20.0)
+    };
+    let (firm, soft) = (depth(0.01), depth(0.02));
+    assert!((soft / firm - 4.0).abs() < 0.8, "{firm} {soft}");
+    assert!(depth(0.002) < 0.1 * firm);
 }

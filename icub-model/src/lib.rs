@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+pub mod budgets;
 #[rustfmt::skip]
 pub mod cad;
 #[rustfmt::skip]
@@ -9,6 +10,7 @@ pub mod hardware;
 pub mod limits;
 pub mod robots;
 
+pub use budgets::BUDGETS;
 pub use hardware::{MOTORS, SOLES};
 pub use limits::{ANKLE_SHIFT, LIMITS};
-pub use robots::{Icub23, Icub23Cad, Icub23Geared};
+pub use robots::{Icub23, Icub23Cad, Icub23GazeboGeared, Icub23Geared};

@@ -16,16 +16,27 @@ pub struct Icub23;
 pub struct Icub23Cad;
 
 /// [`Icub23Cad`] whose joints also feel the rotors of [`MOTORS`].
-///
-/// The Gazebo inertias have no such companion: they are inflated for a simulator's sake already.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Icub23Geared;
+
+/// [`Icub23`] whose joints also feel the rotors of [`MOTORS`]: the robot of paper B's simulations with its gears.
+///
+/// Some of the Gazebo moments are inflated to 0.01 kg m² for a simulator's sake; the rotors are 0.08 to 0.31 kg m², so that little is
+/// counted twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Icub23GazeboGeared;
 
 /// The CAD bodies with rotors.
 pub static GEARED: [Body<f64>; 23] = with_rotors(&cad::BODIES, &MOTORS);
 
 /// [`GEARED`] in single precision.
 pub static GEARED_F32: [Body<f32>; 23] = bodies_f32(&GEARED);
+
+/// The Gazebo bodies with rotors.
+pub static GAZEBO_GEARED: [Body<f64>; 23] = with_rotors(&gazebo::BODIES, &MOTORS);
+
+/// [`GAZEBO_GEARED`] in single precision.
+pub static GAZEBO_GEARED_F32: [Body<f32>; 23] = bodies_f32(&GAZEBO_GEARED);
 
 macro_rules! icub {
     ($($Robot:ident $T:ident: $base:path, $bodies:path, $limits:path, $frames:path, $soles:path, $motors:path;)*) => { $(
@@ -49,6 +60,8 @@ macro_rules! icub {
 icub! {
     Icub23 f64: gazebo::BASE, gazebo::BODIES, LIMITS, gazebo::FRAMES, SOLES, MOTORS;
     Icub23 f32: gazebo::BASE_F32, gazebo::BODIES_F32, LIMITS_F32, gazebo::FRAMES_F32, SOLES_F32, MOTORS_F32;
+    Icub23GazeboGeared f64: gazebo::BASE, GAZEBO_GEARED, LIMITS, gazebo::FRAMES, SOLES, MOTORS;
+    Icub23GazeboGeared f32: gazebo::BASE_F32, GAZEBO_GEARED_F32, LIMITS_F32, gazebo::FRAMES_F32, SOLES_F32, MOTORS_F32;
     Icub23Cad f64: cad::BASE, cad::BODIES, CAD_LIMITS, cad::FRAMES, SOLES, MOTORS;
     Icub23Cad f32: cad::BASE_F32, cad::BODIES_F32, CAD_LIMITS_F32, cad::FRAMES_F32, SOLES_F32, MOTORS_F32;
     Icub23Geared f64: cad::BASE, GEARED, CAD_LIMITS, cad::FRAMES, SOLES, MOTORS;

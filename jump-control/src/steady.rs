@@ -51,18 +51,6 @@ impl<T: Scalar> Steady<T> {
         }
     }
 
-    /// Gains for A1 where the base's place and speed are known to a millimetre and a millimetre per second, as in a room
-    /// with cameras, or in a simulator that tells. With more of the couple the double barrel roll saturates a hip.
-    #[must_use]
-    pub fn a1_known_base() -> Self {
-        Self {
-            stiffness: T::of(40.0),
-            damping: T::of(10.0),
-            turning: T::TWO,
-            ..Self::a1()
-        }
-    }
-
     /// The share of the lean by which feet's places are turned back after `node`: on all feet the legs hold the attitude instead.
     #[must_use]
     pub fn grip<const N: usize, const F: usize>(&self, plan: &Plan<'_, T, N, F>, node: usize) -> T {

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use jump_control::Plan;
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Rotation3;
 use so3::Scalar;
 
 /// One jump: a plan and where it is to end.
@@ -13,8 +13,6 @@ pub struct Jump<'a, T: Scalar, const N: usize, const F: usize> {
     pub plan: Plan<'a, T, N, F>,
     /// Weight that was planned with, N.
     pub weight: T,
-    /// Where the centre of mass is to come to rest, world axes, m; the height does not matter.
-    pub goal_w: Vector3<T>,
     /// Orientation of the base at rest.
     pub rot_goal: Rotation3<T>,
     /// Joint positions in which the legs meet the ground, body level, rad.

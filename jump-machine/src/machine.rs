@@ -152,7 +152,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// One tick of 1 kHz at the time `now`, s, on a clock of the caller that only goes forward.
     ///
     /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
-    /// missed tick is bridged likewise. Both end in [`Phase::Abort`] after [`Settings::max_age`].
+    /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
     pub fn tick(&mut self, now: T, heard: Option<&Inputs<T, N, F>>) -> Tick {
         let work = match self.hear(now, heard) {
             Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
@@ -169,17 +169,17 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
 
     /// One tick of 10 kHz, `dt` seconds after the last: torques for the motors, N m, from joint positions and velocities of
     /// now. Always finite and within the motors' torques; damping alone once [`Machine::tick`] has been missing for
-    /// [`Settings::max_age`].
+    /// [`Settings::max_silence`].
     pub fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
         // Also false for NaN.
-        let dt = if dt > T::ZERO && dt <= self.settings.max_age {
+        let dt = if dt > T::ZERO && dt <= self.settings.max_silence {
             dt
         } else {
             self.abort(Fault::Clock);
             T::ZERO
         };
         self.silence += dt;
-        if self.silence > self.settings.max_age {
+        if self.silence > self.settings.max_silence {
             self.abort(Fault::Silent);
         } else if let Some(fault) = Watch::joints(q, qd) {
             self.abort(fault);
@@ -231,7 +231,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         if !(now.is_finite_number() && passed > T::ZERO) {
             return Err(Fault::Clock);
         }
-        if passed > s.max_age {
+        if passed > s.max_silence {
             return Err(Fault::Silent);
         }
         self.last_tick = Some(now);
@@ -398,18 +398,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         )
     }
 
-    /// On the ground: forces on the feet in contact that bring the body to rest over them, leaning towards the goal.
+    /// On the ground: forces on the feet in contact that bring the body to rest over them.
     fn stand(&mut self, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
         let mut target = Target {
             height: self.settings.stand_height,
             ..Target::LEVEL
         };
         if let Some(jump) = &self.jump {
-            let sum: Vector3<T> = self.limbs.ends.iter().map(|end| end.position).sum();
-            let middle_w = self.limbs.posture.base().point(&(sum / T::of(F as f64)));
-            let most = self.settings.lean;
-            let lean = jump.goal_w - middle_w;
-            target.offset_w = [lean.x, lean.y].map(|x| math::clamp(x, -most, most));
             target.rot_wb = jump.rot_goal;
         }
         let c = self.landing.step_at(

@@ -10,8 +10,10 @@ use so3::Scalar;
 pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     /// Period of [`Machine::tick`](crate::Machine::tick), s.
     pub period: T,
-    /// Oldest measurement to act on, and longest silence of either loop, s.
+    /// Oldest measurement to act on, s: links are late by a few milliseconds, and a few packets in a row get lost.
     pub max_age: T,
+    /// Longest silence of either loop, s.
+    pub max_silence: T,
     /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
     pub lookahead: T,
     /// Time before the start during which the weight on the feet is measured, s.
@@ -34,8 +36,6 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub settling: T,
     /// Height of the centre of mass over the feet's centres when standing, m.
     pub stand_height: T,
-    /// How far the body may lean from the middle of the feet towards the goal, m.
-    pub lean: T,
     /// Damping of the safe command, N m s/rad.
     pub safe_damping: T,
     /// Largest rate of a joint's torque, N m/s.
@@ -57,7 +57,7 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
-    /// Measured on A1's jumps: 1 kHz, 5 ms of silence, and the gains with which `saltus run` executes.
+    /// Measured on A1's jumps: 1 kHz, 10 ms of age, 5 ms of silence, and the gains with which `saltus run` executes.
     ///
     /// `standing` are joint positions for legs without ground while no jump is armed.
     #[must_use]
@@ -65,7 +65,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
         let of = T::of;
         Self {
             period: of(1e-3),
-            max_age: of(0.005),
+            max_age: of(0.010),
+            max_silence: of(0.005),
             lookahead: of(0.001),
             weighing: of(0.15),
             max_payload: of(0.15),
@@ -77,7 +78,6 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             rest: (of(0.05), of(0.2)),
             settling: of(0.2),
             stand_height: of(0.25),
-            lean: of(0.10),
             safe_damping: T::TWO,
             slew: of(1e4),
             pd: CartesianPd::a1(feet),

@@ -58,7 +58,6 @@ fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
     Jump {
         plan: Plan::new(nodes, TAKEOFF, TOUCHDOWN - POSED, TOUCHDOWN, Torques::Hold).unwrap(),
         weight: MASS * 9.81,
-        goal_w: Vector3::zeros(),
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
     }

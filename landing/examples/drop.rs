@@ -3,20 +3,19 @@
 //! `cargo run --release -p landing --example drop`
 
 use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
-use contact_sim::{ContactSphere, Error, NativeSimulator, Simulator, Terrain};
+use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use landing::{Landing, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, Tangent};
 
 fn main() -> Result<(), Error> {
-    let spheres = FEET.map(|foot| ContactSphere {
-        link: foot.frame.link,
-        offset: foot.frame.offset,
-        radius: FOOT_RADIUS,
+    let balls = core::array::from_fn(|i| {
+        let frame = FEET[i].frame;
+        Shape::ball(frame.link, frame.offset, FOOT_RADIUS, i)
     });
     let settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
     let mut plant =
-        NativeSimulator::<f64, _, 12, 4>::new(A1Geared, spheres, Terrain::FLAT, settings);
+        NativeSimulator::<f64, _, 12, 4, 4>::new(A1Geared, balls, Terrain::FLAT, settings);
     let mut start = Configuration::NEUTRAL;
     start.joints = core::array::from_fn(|i| [0.0, 0.77, -1.54][i % 3]);
     start.base.rotation = Rotation3::from_euler_angles(0.17, 0.0, 0.0);

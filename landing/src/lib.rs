@@ -17,6 +17,7 @@ mod tuck;
 mod wrench;
 
 pub use controller::{Command, Landing, Outcome, Workspace};
+pub use dense_qp::Status;
 pub use detector::{Detector, DetectorState};
 pub use grip::Grip;
 pub use observer::{ForceObserver, ObserverState};

@@ -2,7 +2,7 @@
 //!
 //! Every movable joint carries one body; links on fixed and locked joints are lumped into the body above.
 //! The frame of a body has its origin at the joint, and at zero position the axes of the frame above
-//! wherever the joint axis is ± one of these. Otherwise the joint is tilted: its z axis is the joint axis,
+//! wherever the joint axis is ± one of these, up to `Options::axis_rounding`. Otherwise the joint is tilted: its z axis is the joint axis,
 //! and its x axis is the first joint axis further out that is perpendicular to it, so that the joints of
 //! an inclined limb are aligned again from its second one on.
 
@@ -12,12 +12,16 @@ use rbd_core::model::{BaseBody, Body, Frame, Link};
 use rbd_core::spatial::{Inertia, Transform};
 use so3::math;
 
+use crate::error::Warning;
 use crate::robot::{JointInfo, LinkFrame};
+
 use crate::tree::LinkTree;
 use crate::urdf::{JointType, Urdf, UrdfJoint};
 
-/// Largest deviation from a coordinate axis that counts as round-off.
-const AXIS_ROUND_OFF: f64 = 1e-9;
+/// Cosine below which an axis is a good guide for the x axis of a tilted frame; the frame is made orthogonal all the same.
+const PERPENDICULAR: f64 = 1e-9;
+/// Deviation from a coordinate axis below which its author may have meant that axis.
+const NEARLY_ALIGNED: f64 = 1e-6;
 /// Largest deviation of a number from 0, 1 or −1 in a rotation or offset that counts as round-off.
 const ROUND_OFF: f64 = 1e-14;
 
@@ -29,6 +33,8 @@ pub(crate) struct Tables {
     pub(crate) frames: Vec<LinkFrame>,
     /// What each link of the file is lumped into.
     pub(crate) body_of: Vec<Link>,
+    /// Axes that are nearly aligned.
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// A link to visit: what it is lumped into, and where it is there.
@@ -40,13 +46,19 @@ struct Visit {
 }
 
 /// Walks the tree depth first and fills the tables.
-pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Tables {
+pub(crate) fn tables(
+    urdf: &Urdf,
+    tree: &LinkTree,
+    locked: &[Option<f64>],
+    axis_rounding: f64,
+) -> Tables {
     let mut out = Tables {
         base: BaseBody::EMPTY,
         bodies: Vec::new(),
         joints: Vec::new(),
         frames: Vec::new(),
         body_of: vec![Link::Base; urdf.links.len()],
+        warnings: Vec::new(),
     };
     let mut base = Inertia::ZERO;
     let mut inertias: Vec<Inertia<f64>> = Vec::new();
@@ -66,7 +78,10 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
                     .compose(&displaced(joint, locked[j].unwrap_or(0.0)));
             } else {
                 let axes = descendant_axes(urdf, tree, locked, j, &at.placement);
-                let (body, placement) = canonical_body(joint, at.body, &at.placement, &axes);
+                let axis = at.placement.rotation * joint.axis;
+                let aligned = aligned(&joint.name, &axis, axis_rounding, &mut out.warnings);
+                let (body, placement) =
+                    canonical_body(joint, at.body, &at.placement, &axes, aligned);
                 at.body = Link::Joint(out.bodies.len());
                 at.placement = placement;
                 out.bodies.push(body);
@@ -103,14 +118,19 @@ pub(crate) fn tables(urdf: &Urdf, tree: &LinkTree, locked: &[Option<f64>]) -> Ta
             });
         }
     }
-    (out.base.mass, out.base.first, out.base.second) = moments(&base);
+    fill(&mut out, &base, &inertias);
+    out
+}
+
+/// Writes the lumped moments and the extents of the subtrees.
+fn fill(out: &mut Tables, base: &Inertia<f64>, inertias: &[Inertia<f64>]) {
+    (out.base.mass, out.base.first, out.base.second) = moments(base);
     for (i, inertia) in inertias.iter().enumerate() {
         let end = subtree_end(&out.bodies, i);
         let body = &mut out.bodies[i];
         (body.mass, body.first, body.second) = moments(inertia);
         body.subtree_end = end;
     }
-    out
 }
 
 fn is_still(joint: &UrdfJoint, locked: Option<f64>) -> bool {
@@ -166,15 +186,17 @@ fn canonical_body(
     parent: Link,
     placement: &Transform<f64>,
     axes_beyond: &[Vector3<f64>],
+    aligned: Option<(usize, f64)>,
 ) -> (Body<f64>, Transform<f64>) {
     let revolute = joint.kind != JointType::Prismatic;
     let axis = placement.rotation * joint.axis;
     let mut body = Body::<f64> {
         parent,
         offset: placement.translation.map(clean).into(),
+        rotor_inertia: joint.rotor_inertia,
         ..Body::EMPTY
     };
-    if let Some((k, sign)) = coordinate_axis(&axis) {
+    if let Some((k, sign)) = aligned {
         let [turn, slide] = [
             [Kind::RevoluteX, Kind::PrismaticX],
             [Kind::RevoluteY, Kind::PrismaticY],
@@ -195,19 +217,34 @@ fn canonical_body(
     (body, Transform::new(rotation, Vector3::zeros()))
 }
 
-/// Index and sign of the coordinate axis that `axis` is, up to round-off.
-fn coordinate_axis(axis: &Vector3<f64>) -> Option<(usize, f64)> {
-    (0..3).find_map(|k| {
-        let unit = Vector3::ith(k, math::copysign(1.0, axis[k]));
-        ((axis - unit).amax() < AXIS_ROUND_OFF).then(|| (k, unit[k]))
-    })
+/// Index and sign of the coordinate axis that `axis` is, up to `rounding`; one that is nearly missed is said.
+fn aligned(
+    joint: &str,
+    axis: &Vector3<f64>,
+    rounding: f64,
+    warnings: &mut Vec<Warning>,
+) -> Option<(usize, f64)> {
+    let k = axis.iamax();
+    let unit = Vector3::ith(k, math::copysign(1.0, axis[k]));
+    let off = (axis - unit).amax();
+    if off < rounding {
+        return Some((k, unit[k]));
+    }
+    if off < NEARLY_ALIGNED {
+        warnings.push(Warning::AxisNearlyAligned {
+            joint: joint.to_owned(),
+            off,
+            suggest: 2.0 * off,
+        });
+    }
+    None
 }
 
 /// A rotation whose third column is `axis`; see the module's text for the others.
 fn tilt(axis: &Vector3<f64>, axes_beyond: &[Vector3<f64>], own: &Rotation3<f64>) -> Matrix3<f64> {
     let z = axis.normalize();
     let own_axes = [0, 1, 2].map(|k| own.matrix().column(k).into_owned());
-    let perpendicular = |x: &&Vector3<f64>| math::abs(x.dot(&z)) < AXIS_ROUND_OFF;
+    let perpendicular = |x: &&Vector3<f64>| math::abs(x.dot(&z)) < PERPENDICULAR;
     let nearest = |x: &&Vector3<f64>, y: &&Vector3<f64>| {
         math::abs(x.dot(&z)).total_cmp(&math::abs(y.dot(&z)))
     };

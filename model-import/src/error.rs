@@ -1,4 +1,4 @@
-//! What can be wrong with a URDF, and what is only worth a word.
+//! What can be wrong with a URDF or an MJCF, and what is only worth a word.
 
 use thiserror::Error;
 
@@ -16,9 +16,9 @@ pub enum ImportError {
         /// The parser's words.
         message: String,
     },
-    /// The root element is not `<robot>`.
+    /// The root element is not `<robot>`, or not `<mujoco>` of an MJCF.
     #[error(
-        "the root element is <{found}>, not <robot>: give a URDF (run xacro first if it is a macro file)"
+        "the root element is <{found}>, not <robot> or <mujoco>: give a URDF (run xacro first if it is a macro file) or an MJCF"
     )]
     NotARobot {
         /// Name of the root element.
@@ -80,6 +80,14 @@ pub enum ImportError {
         element: String,
         /// Its type.
         kind: String,
+    },
+    /// Something in an MJCF that a tree of rigid bodies cannot keep, or this crate does not read.
+    #[error("{element}: {what}")]
+    Unsupported {
+        /// The element, by kind, name and line.
+        element: String,
+        /// What it is, and the remedy.
+        what: String,
     },
     /// A link is the child of two joints.
     #[error(
@@ -188,7 +196,7 @@ pub enum ImportError {
     },
     /// A mimic joint, and the caller has not said what to do with it.
     #[error(
-        "{element} mimics `{leader}`, which a tree cannot keep: lock it (--lock {joint}=value or --mimic lock), or let it move on its own (--mimic free)"
+        "{element} mimics `{leader}`: lock it (--lock {joint}=value or --mimic lock), or make it a joint of its own with the coupling beside the tree (--mimic free)"
     )]
     Mimic {
         /// The joint.
@@ -270,13 +278,45 @@ pub enum Warning {
         /// Upper limit.
         upper: f64,
     },
-    /// A mimic joint moves on its own.
-    #[error("joint `{joint}` mimics `{leader}` in the file and moves on its own here")]
+    /// A mimic joint is a joint of its own in the tree; the coupling is kept in the reduction.
+    #[error(
+        "joint `{joint}` mimics `{leader}` in the file and is a joint of its own in the tree; the coupling stands in the reduction"
+    )]
     MimicFreed {
+        /// The joint.
+        joint: String,
+        /// The joint it follows.
+        leader: String,
+    },
+    /// A mimic joint moves on its own, because what it follows does not move, is not there, or follows it.
+    #[error(
+        "joint `{joint}` mimics `{leader}` in the file and moves on its own here: `{leader}` {why}; lock it with --lock {joint}=value if it should stand"
+    )]
+    MimicLost {
         /// The joint.
         joint: String,
         /// The joint it should follow.
         leader: String,
+        /// What is wrong with the leader.
+        why: &'static str,
+    },
+    /// Something in an MJCF that changes how the robot moves and is not kept.
+    #[error("not kept: {what}")]
+    NotKept {
+        /// What it is.
+        what: String,
+    },
+    /// A joint axis that is nearly a coordinate axis of the body above, and kept as it is.
+    #[error(
+        "joint `{joint}`: its axis is {off:.1e} off a coordinate axis and kept so, as a tilted joint; more digits in the file, or --axis-rounding {suggest:.0e}, make it an aligned one, which computes faster"
+    )]
+    AxisNearlyAligned {
+        /// The joint.
+        joint: String,
+        /// Largest deviation of an entry.
+        off: f64,
+        /// A tolerance that would align it.
+        suggest: f64,
     },
     /// A mimic joint was locked.
     #[error("joint `{joint}` mimics `{leader}` in the file and is locked at {value} here")]

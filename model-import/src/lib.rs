@@ -1,8 +1,10 @@
 #![doc = include_str!("../README.md")]
 
+pub mod couplings;
 pub mod emit;
 pub mod error;
 pub mod limbs;
+pub mod mjcf;
 pub mod options;
 pub mod robot;
 pub mod urdf;
@@ -11,6 +13,10 @@ mod canonical;
 mod locks;
 mod tree;
 
+// The vectors and matrices of this crate's interface.
+pub use nalgebra;
+
+pub use couplings::JointCoupling;
 pub use error::{ImportError, Warning};
 pub use options::{InertiaPolicy, MimicPolicy, Options, parse_lock};
 pub use robot::{JointInfo, LinkFrame, Robot};

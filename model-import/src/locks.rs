@@ -65,10 +65,8 @@ fn followers(
                     leader: above,
                 });
             }
-            MimicPolicy::Free => warnings.push(Warning::MimicFreed {
-                joint: name,
-                leader: above,
-            }),
+            // Said by `couplings`, which knows whether the leader moves.
+            MimicPolicy::Free => {}
             MimicPolicy::Lock => {
                 let leader = urdf.joints.iter().position(|j| j.name == mimic.leader);
                 let leader = leader.ok_or_else(|| ImportError::UnknownLeader {

@@ -7,13 +7,14 @@ use crate::error::ImportError;
 /// What becomes of joints that follow another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MimicPolicy {
-    /// They are an error unless locked by name: a tree of independent joints cannot keep the coupling.
+    /// They are joints of their own in the tree, as Pinocchio reads them by default (`mimic=False`), and the coupling is
+    /// kept beside it: [`Robot::reduction`](crate::Robot::reduction) is Pinocchio's `mimic=True`.
     #[default]
-    Refuse,
+    Free,
     /// They are locked where their leader stands: at its lock value, or at zero if it moves.
     Lock,
-    /// They move on their own, as Pinocchio reads them by default.
-    Free,
+    /// They are an error unless locked by name.
+    Refuse,
 }
 
 /// What becomes of moved bodies with moments of inertia that no body has.
@@ -37,15 +38,23 @@ pub struct Options {
     pub mimic: MimicPolicy,
     /// What becomes of moments of inertia that no body has.
     pub inertia: InertiaPolicy,
+    /// Largest deviation of an entry of a joint axis from ± a coordinate axis that is taken for rounding: the joint becomes an
+    /// aligned one, which is cheaper than a tilted one. By default [`AXIS_EXACT`], so that no digit of the file is lost. Files
+    /// that write π/2 with eleven digits need 1e-10 for aligned joints, and their dynamics change by about as much.
+    pub axis_rounding: f64,
 }
+
+/// A deviation of a joint axis that only rounding in f64 explains.
+pub const AXIS_EXACT: f64 = 1e-14;
 
 impl Default for Options {
     fn default() -> Self {
         Self {
             base: BaseKind::Floating,
             locks: Vec::new(),
-            mimic: MimicPolicy::Refuse,
+            mimic: MimicPolicy::default(),
             inertia: InertiaPolicy::Physical,
+            axis_rounding: AXIS_EXACT,
         }
     }
 }

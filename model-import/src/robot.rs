@@ -7,8 +7,10 @@ use rbd_core::{TableError, TableModel};
 use so3::Scalar;
 
 use crate::canonical;
+use crate::couplings::{JointCoupling, couplings};
 use crate::error::{ImportError, Warning};
 use crate::locks::locked_positions;
+use crate::mjcf;
 use crate::options::{InertiaPolicy, Options};
 use crate::tree::LinkTree;
 use crate::urdf::Urdf;
@@ -56,6 +58,8 @@ pub struct Robot {
     pub bodies: Vec<Body<f64>>,
     /// The joint of each body.
     pub joints: Vec<JointInfo>,
+    /// How each joint follows another, if its `<mimic>` says so: the tree does not know, [`Robot::reduction`] does.
+    pub couplings: Vec<Option<JointCoupling>>,
     /// Every link's frame, depth first.
     pub frames: Vec<LinkFrame>,
     /// Joints locked, with their positions.
@@ -72,18 +76,35 @@ impl Robot {
     /// # Errors
     /// Names the first element that does not make a robot, and what to do about it.
     pub fn from_urdf(text: &str, options: &Options) -> Result<Self, ImportError> {
-        let mut urdf = Urdf::parse(text)?;
+        Self::of(Urdf::parse(text)?, options.base, options)
+    }
+
+    /// Imports the text of an MJCF, its includes resolved by [`mjcf::read`](crate::mjcf::read).
+    ///
+    /// The file says whether the base floats: by a free joint, which `options.base` fixed welds to the world.
+    ///
+    /// # Errors
+    /// Names the first element that does not make a robot, and what to do about it.
+    pub fn from_mjcf(text: &str, options: &Options) -> Result<Self, ImportError> {
+        let (urdf, base) = mjcf::parse(text, options.base)?;
+        Self::of(urdf, base, options)
+    }
+
+    fn of(mut urdf: Urdf, base: BaseKind, options: &Options) -> Result<Self, ImportError> {
         let tree = LinkTree::new(&urdf)?;
         let mut warnings = core::mem::take(&mut urdf.warnings);
         let at = locked_positions(&urdf, options, &mut warnings)?;
-        let tables = canonical::tables(&urdf, &tree, &at);
+        let mut tables = canonical::tables(&urdf, &tree, &at, options.axis_rounding);
+        warnings.append(&mut tables.warnings);
+        let couplings = couplings(&urdf, &tables.joints, &mut warnings);
         let locked = urdf.joints.iter().zip(&at);
         let mut robot = Self {
             name: urdf.name.clone(),
-            base_kind: options.base,
+            base_kind: base,
             base: tables.base,
             bodies: tables.bodies,
             joints: tables.joints,
+            couplings,
             frames: tables.frames,
             locked: locked
                 .filter_map(|(j, at)| at.map(|x| (j.name.clone(), x)))
@@ -95,7 +116,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// Mass of the whole robot, kg; of a fixed base too.
+    /// Mass of the whole robot, kg; of a fixed base too, which the algorithms of rbd-core take for a part of the world.
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.base.mass + self.bodies.iter().map(|b| b.mass).sum::<f64>()

@@ -10,7 +10,7 @@ use crate::urdf::Urdf;
 pub(crate) struct LinkTree {
     /// The link without a parent.
     pub(crate) root: usize,
-    /// Joints below each link, in the order of their names: the order in which Pinocchio numbers them.
+    /// Joints below each link, in the order in which they are numbered.
     pub(crate) joints_below: Vec<Vec<usize>>,
     /// Link below each joint.
     pub(crate) child: Vec<usize>,
@@ -51,7 +51,7 @@ impl LinkTree {
             joints_below[parent].push(j);
             child.push(below);
         }
-        for joints in &mut joints_below {
+        for joints in joints_below.iter_mut().filter(|_| urdf.sorted) {
             joints.sort_by(|&a, &b| urdf.joints[a].name.cmp(&urdf.joints[b].name));
         }
         let mut roots = (0..urdf.links.len()).filter(|&l| above[l].is_none());

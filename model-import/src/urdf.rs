@@ -29,6 +29,8 @@ pub struct Urdf {
     pub joints: Vec<UrdfJoint>,
     /// What was tolerated.
     pub warnings: Vec<Warning>,
+    /// Joints of one link are numbered by their names, as Pinocchio does with a URDF, and not as they stand in the file.
+    pub sorted: bool,
 }
 
 /// A link.
@@ -96,6 +98,8 @@ pub struct UrdfJoint {
     pub axis: Vector3<f64>,
     /// Limits and losses.
     pub limits: JointLimits<f64>,
+    /// What its rotor adds to the inertia that it feels, kg m² or kg; a URDF has none.
+    pub rotor_inertia: f64,
     /// The joint it follows, if any.
     pub mimic: Option<Mimic>,
 }
@@ -121,6 +125,7 @@ impl Urdf {
             links: Vec::new(),
             joints: Vec::new(),
             warnings: Vec::new(),
+            sorted: true,
         };
         for node in robot.children() {
             match node.tag_name().name() {
@@ -228,6 +233,7 @@ impl Urdf {
             origin,
             axis,
             limits,
+            rotor_inertia: 0.0,
             mimic,
         });
         Ok(())
@@ -302,7 +308,7 @@ impl Urdf {
     }
 }
 
-fn violation(rotational: &Matrix3<f64>) -> Option<Violation> {
+pub(crate) fn violation(rotational: &Matrix3<f64>) -> Option<Violation> {
     let mut moments: [f64; 3] = rotational.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);
     let [low, middle, high] = moments;

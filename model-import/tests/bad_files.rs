@@ -411,7 +411,16 @@ fn mimic_joints_are_refused_locked_or_freed() {
             .len(),
         1
     );
-    assert_eq!(with(MimicPolicy::Free, &[]).unwrap().joints.len(), 2);
+    let free = with(MimicPolicy::Free, &[]).unwrap();
+    assert_eq!(MimicPolicy::default(), MimicPolicy::Free, "as Pinocchio");
+    assert_eq!(free.joints.len(), 2);
+    assert!(matches!(
+        &free.warnings[..],
+        [Warning::MimicFreed { joint, leader }] if joint == "elbow" && leader == "shoulder"
+    ));
+    let lost = with(MimicPolicy::Free, &[("shoulder", 0.5)]).unwrap();
+    assert!(matches!(&lost.warnings[..], [Warning::MimicLost { .. }]));
+    assert!(lost.warnings[0].to_string().contains("is locked"));
     assert_eq!(
         with(MimicPolicy::Lock, &[]).unwrap().locked,
         [("elbow".to_owned(), 0.25)]

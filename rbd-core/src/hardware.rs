@@ -120,6 +120,31 @@ impl Motor<f64> {
     }
 }
 
+/// What a robot's hardware may be asked for in one jump, each figure with its source where it is set.
+///
+/// A limit that is exceeded does not mean that the robot breaks at once; it means that nobody would put this jump on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budgets {
+    /// Longest time in which a motor gives all it has, s: in the push-off, in flight, in the landing.
+    pub saturation: [f64; 3],
+    /// Longest time in which a joint presses on its stop, s.
+    pub stop_time: f64,
+    /// Largest torque of a joint's stop, N m.
+    pub stop_torque: f64,
+    /// Longest time in which a joint is faster than its limit, s.
+    pub overspeed: f64,
+    /// Largest mean over 10 ms of the ground's force on the whole robot, in its weights.
+    pub ground_force: f64,
+    /// Heat that a motor's winding takes up before it is too hot, J.
+    pub winding_heat: f64,
+    /// Torque constant of the motors at the motor's shaft, N m/A.
+    pub torque_constant: f64,
+    /// Resistance of a motor's winding, Ω.
+    pub resistance: f64,
+    /// Largest mean over 10 ms of the power that the supply gives, W; infinite where nobody knows.
+    pub supply_power: f64,
+}
+
 /// Bodies whose joints feel the rotors of these motors, for `static` items of model crates.
 #[must_use]
 pub const fn with_rotors<const N: usize>(

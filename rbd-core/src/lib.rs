@@ -8,11 +8,16 @@ pub mod joint;
 pub mod linear;
 pub mod manifold;
 pub mod model;
+pub mod reduction;
 pub mod robot;
+mod shape;
 pub mod spatial;
 pub mod state;
 pub mod table;
 pub mod tree;
+
+// The vectors and matrices of this crate's interface: use them from here and the versions agree.
+pub use nalgebra;
 
 pub use algo::aba::{AbaWorkspace, aba, aba_with_forces, mass_solve};
 pub use algo::aba_derivatives::{
@@ -45,10 +50,12 @@ pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
-pub use hardware::{Contact, ContactShape, Motor};
+pub use hardware::{Budgets, Contact, ContactShape, Motor};
 pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};
+pub use reduction::{CoupledWorkspace, Coupling, Reduction, ReductionError, coupled_dynamics};
 pub use robot::Model;
+pub use shape::Shape;
 pub use spatial::{ArticulatedInertia, Force, Inertia, Motion, Symmetric3, Transform};
 pub use state::{Configuration, Effort, Posture, Tangent};
 pub use table::{TableError, TableModel};

@@ -20,7 +20,7 @@ pub enum Link {
 pub enum BaseKind {
     /// Six degrees of freedom: nv = 6 + n.
     Floating,
-    /// None: nv = n.
+    /// None: nv = n; the base is part of the world, and its inertia is not the robot's (see [`algo`](crate::algo)).
     Fixed,
 }
 
@@ -160,7 +160,8 @@ impl Frame<f64> {
     }
 }
 
-/// Inertia of the base about the base frame's origin, as numbers.
+/// Inertia of the base about the base frame's origin, as numbers. That of a fixed base is part of the world: only the
+/// reaction of the ground knows it, see [`algo`](crate::algo).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseBody<T> {
     /// Mass, kg.

@@ -8,8 +8,9 @@ Begin with:
 Tasks: a1/lateral, a1/lateral-down, a1/spin-90, a1/diagonal, a1/forward-60, a1/barrel-roll, a1/barrel-roll-box,
 a1/double-barrel-roll, a1/double-backflip; icub/velocity and icub/torque for `run`; or a TOML file of your own.
 
-Exit codes: 0 done and good; 2 the answer is no, or the command line or a file is refused; 1 not done, for the reason on
-standard error; 130 stopped by Ctrl-C. NO_COLOR=1 switches colours off.";
+Exit codes of every command: 0 done and good; 2 the answer is no, or the command line is refused, or a file or folder that it names: the
+same command fails again; 1 not done, or not told, for a reason outside such as a full disk: the same command may do later; 130 stopped by
+Ctrl-C; 141 in silence where the reader of the output has gone, with the files complete. NO_COLOR=1 switches colours off.";
 
 pub(crate) const PLAN: &str = "\
 Examples:
@@ -19,14 +20,15 @@ Examples:
   saltus plan a1/forward-60 --timing 0.5,0.3,0.55     with given durations of the phases
   saltus plan --reference spin --stage whole-body     a reference problem of paper A
 
-Exit codes: 0 planned and passed its audit; 2 everything else: the output tells what blocks and what would have to change.";
+Exit codes: 0 planned and passed its audit; 2 there is no such plan (the output tells what blocks and what would have to change), or a file or
+an option is refused; 1 the plan cannot be written. A file or folder of a plan appears only with code 0.";
 
 pub(crate) const VERIFY: &str = "\
 Examples:
   saltus verify out/lateral/plan.bin
   saltus verify plan.bin --robot my.urdf --json
 
-Exit codes: 0 the plan passes; 2 it does not, or cannot be read.";
+Exit codes: 0 the plan passes; 2 it does not, or is refused; 1 the answer cannot be written.";
 
 pub(crate) const IMPORT: &str = "\
 Examples:
@@ -34,18 +36,21 @@ Examples:
   saltus import my.urdf --out my-model                a no_std crate with its tables
   saltus import arm.urdf --base fixed --lock gripper=0.02
 
-Exit codes: 0 the robot is good (warnings go to standard error); 2 the file, an option or the folder is refused.";
+Exit codes: 0 the robot is good (warnings go to standard error); 2 the file, an option or the folder is refused;
+1 the crate cannot be written.";
 
 pub(crate) const RUN: &str = "\
 Examples:
   saltus run a1/barrel-roll                           report, log and result in out/a1-barrel-roll
-  saltus run a1/lateral --seed 3                      a disturbed robot with noisy sensors
+  saltus run a1/lateral --seed 3                      the lab of seed 3: masses, ground, motors, sensors, delays
+  saltus run a1/lateral --plant ground=soft,payload=2@0,0,0.05 --interface joint-pd
   saltus run out/lateral/plan.bin                     a stored plan, as `saltus plan --out` wrote it
   saltus run icub/velocity --height 0.03 --plant mass=1.05,noise
   saltus run my-task.toml --json --out out/mine
 
-Exit codes: 0 on target (landed, upright 2 s later, within 0.10 m and 10°; a humanoid: upright and high enough); 2 not on target, or
-proven to be impossible; 1 not executed, for the reason on standard error. The folder appears only when it is complete.";
+Exit codes: 0 on target (flown as planned, standing 2 s later within 0.10 m and 10°, hardware within its budgets; a humanoid: upright
+and high enough); 2 not on target, or proven to be impossible, or a file or an option is refused; 1 the results cannot be
+written. The folder appears only when it is complete.";
 
 pub(crate) const ENVELOPE: &str = "\
 Examples:
@@ -55,15 +60,27 @@ Examples:
   saltus envelope a1/diagonal --ablate                 the study beside the same study without each measure
 
 Exit codes: 0 the study or its shard is complete; 130 stopped by Ctrl-C, with the table of the samples so far: the same command goes on;
-1 not done, for the reason on standard error.";
+2 the task, the folder or an option is refused; 1 the results cannot be written.";
+
+pub(crate) const VERDICTS: &str = "\
+Examples:
+  saltus verdicts                                      the nine tasks of A1, every measure
+  saltus verdicts --plant ground=soft --interface joint-pd
+  saltus verdicts saltus/tasks/extra/*.toml            tasks of your own
+  saltus verdicts --conditions --lab 100               what each condition does, and a hundred seeds of the lab
+  saltus verdicts --ranges                             what may differ from the plan, and the lab's ranges
+  saltus verdicts --expect saltus/verdicts.toml        the gate: every verdict as expected
+
+Exit codes: 0 all on target, or all as expected; 2 one is not: it is named, or a task is refused; 130 stopped by Ctrl-C.";
 
 pub(crate) const REPRODUCE: &str = "\
 Examples:
   saltus reproduce --quick                            native simulator only
+  saltus reproduce --expect saltus/expected.toml      the gate: every item as expected
   saltus reproduce --json --out out/papers            also MuJoCo, in a build with the feature `mujoco`
 
-Exit codes: 0 every claim that can be judged holds; 2 one does not; 130 stopped by Ctrl-C, with the page of the rows so far; 1 not done,
-for the reason on standard error.";
+Exit codes: 0 every claim that can be judged holds; 2 one does not, or the folder is refused; 130 stopped by Ctrl-C, with the page of the
+rows so far; 1 the page cannot be written.";
 
 pub(crate) const COMPLETIONS: &str = "\
 Examples:

@@ -1,26 +1,38 @@
 //! Plans jumps of legged robots.
 
+// They panic where nobody reads: `say`, `put` and `tell` do not.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+// Before all others: its macros print for them.
+#[macro_use]
+mod stream;
+
 mod audit;
 mod cmd;
 mod examples;
+mod file;
 mod humanoid;
 mod jump;
+mod lab;
 mod log;
 mod noise;
 mod observer;
+mod range;
 mod recording;
 mod reference;
 mod report;
 mod reproduce;
 mod robot;
 mod track;
+mod verdict;
 
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use serde_json::json;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 #[derive(Parser)]
-#[command(version, about, after_help = examples::PROGRAM)]
+#[command(version = VERSION.as_str(), about, after_help = examples::PROGRAM)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -43,6 +55,9 @@ enum Command {
     /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
     #[command(after_help = examples::ENVELOPE)]
     Envelope(cmd::envelope::Args),
+    /// Run tasks in both simulators and print their verdicts as a table, or compare them with the expected ones.
+    #[command(after_help = examples::VERDICTS)]
+    Verdicts(cmd::verdicts::Args),
     /// Run both papers whole, and print their figures beside ours.
     #[command(after_help = examples::REPRODUCE)]
     Reproduce(cmd::reproduce::Args),
@@ -50,6 +65,16 @@ enum Command {
     #[command(after_help = examples::COMPLETIONS)]
     Completions(cmd::completions::Args),
 }
+
+/// What `--version` prints: with the simulator that this build has besides its own, or how to get it.
+static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let own = env!("CARGO_PKG_VERSION");
+    #[cfg(feature = "mujoco")]
+    let more = format!("with MuJoCo {}", contact_sim::mujoco_version());
+    #[cfg(not(feature = "mujoco"))]
+    let more = "without MuJoCo; in the workspace, `cargo xtask mujoco build --release -p saltus --features mujoco` builds with it";
+    format!("{own} ({more})")
+});
 
 impl Command {
     /// Whether errors are JSON too.
@@ -60,6 +85,7 @@ impl Command {
             Self::Import(args) => args.output.json,
             Self::Run(args) => args.output.json,
             Self::Envelope(args) => args.output.json,
+            Self::Verdicts(args) => args.output.json,
             Self::Reproduce(args) => args.output.json,
             Self::Completions(_) => false,
         }
@@ -67,23 +93,35 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    let command = Cli::parse().command;
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(error) => return stream::finish(grammar(&error)),
+    };
     let outcome = match &command {
         Command::Plan(args) => cmd::plan::run(args),
-        Command::Verify(args) => Ok(cmd::verify::run(args)),
-        Command::Import(args) => Ok(cmd::import::run(args)),
+        Command::Verify(args) => cmd::verify::run(args),
+        Command::Import(args) => cmd::import::run(args),
         Command::Run(args) => cmd::run::run(args),
         Command::Envelope(args) => cmd::envelope::run(args),
+        Command::Verdicts(args) => cmd::verdicts::run(args),
         Command::Reproduce(args) => cmd::reproduce::run(args),
         Command::Completions(args) => cmd::completions::run(args, Cli::command()),
     };
-    outcome.unwrap_or_else(|message| {
-        if command.is_json() {
-            println!("{}", json!({ "status": "Error", "error": message }));
-        }
-        eprintln!("saltus: {message}");
-        ExitCode::from(1)
-    })
+    stream::finish(outcome.unwrap_or_else(|failure| failure.tell(command.is_json())))
+}
+
+/// Help, version, and what the grammar of the command line refuses.
+fn grammar(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    // Help is as long as it is; what repeats an argument is cut, and then goes without colours.
+    let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    let told = cmd::failure::brief(&text);
+    if is_help || !error.use_stderr() || told.len() + text.lines().count() >= text.len() {
+        stream::clap(error);
+    } else {
+        tell!("{told}");
+    }
+    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
 }
 
 #[cfg(test)]

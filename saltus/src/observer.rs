@@ -1,6 +1,6 @@
 //! An IMU at the base's origin, and what `state-est` makes of it and of the legs.
 
-use crate::jump::plant::Imu;
+use crate::lab::{Disturbance, Key};
 use crate::noise::Noise;
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Tangent, Transform, Tree};
@@ -9,11 +9,15 @@ use state_est::{Estimate, Estimator, Foot, Sample, Settings, State};
 /// Time between two samples, s.
 const PERIOD: f64 = 1e-3;
 
+/// Bias of a gyroscope over that of an accelerometer, rad/s per m/s².
+const GYROSCOPE_BIAS: f64 = 0.2;
+
 /// The IMU with the estimator behind it; `S` is F + 2.
 pub(crate) struct Observer<const N: usize, const F: usize, const S: usize> {
     estimator: Estimator<f64, N, F, S>,
     state: State<f64, F, S>,
-    imu: Imu,
+    /// Standard deviations of a gyroscope's and an accelerometer's sample: rad/s, m/s².
+    deviations: [f64; 2],
     /// Velocity of the base at the last sample, world axes.
     last_w: Vector3<f64>,
     gyroscope_bias: Vector3<f64>,
@@ -33,7 +37,7 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
     pub(crate) fn new<M: Tree<f64, N>>(
         model: &M,
         feet: [Foot<f64>; F],
-        imu: Imu,
+        disturbance: &Disturbance,
         start: &Configuration<f64, N>,
         noise: &mut Noise,
     ) -> Self {
@@ -45,10 +49,10 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         Self {
             state: State::new(&estimator, model, start),
             estimator,
-            imu,
+            deviations: [Key::GyroNoise, Key::AccelerometerNoise].map(|key| disturbance.get(key)),
             last_w: Vector3::zeros(),
-            gyroscope_bias: vector(noise, imu.gyroscope_bias),
-            accelerometer_bias: vector(noise, imu.accelerometer_bias),
+            gyroscope_bias: vector(noise, GYROSCOPE_BIAS * disturbance.get(Key::ImuBias)),
+            accelerometer_bias: vector(noise, disturbance.get(Key::ImuBias)),
         }
     }
 
@@ -67,10 +71,10 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         let sample = Sample {
             specific_force_i: q.base.rotation.inverse() * felt_w
                 + self.accelerometer_bias
-                + vector(noise, self.imu.accelerometer),
+                + vector(noise, self.deviations[1]),
             angular_velocity_i: v.base.angular
                 + self.gyroscope_bias
-                + vector(noise, self.imu.gyroscope),
+                + vector(noise, self.deviations[0]),
             joints: legs.joints,
             joint_velocities: legs.joint_velocities,
             evidence: legs.evidence,

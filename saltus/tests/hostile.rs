@@ -45,101 +45,84 @@ fn folder() -> PathBuf {
     path
 }
 
-/// Command line, exit code, and words that the answer must hold.
-const MISTAKES: &[(&[&str], i32, &[&str])] = &[
-    (&[], 2, &["Usage", "saltus help COMMAND"]),
-    (&["runn", "a1/lateral"], 2, &["a similar subcommand", "run"]),
-    (&["run"], 2, &["<TASK|PLAN>"]),
+/// Command line, and words that the answer must hold. What is refused, and what cannot be, has one exit code in all commands: 2.
+const MISTAKES: &[(&[&str], &[&str])] = &[
+    (&[], &["Usage", "saltus help COMMAND"]),
+    (&["runn", "a1/lateral"], &["a similar subcommand", "run"]),
+    (&["run"], &["<TASK|PLAN>"]),
     (
         &["run", "a1/moonwalk"],
-        1,
         &["no task `a1/moonwalk`", "a1/lateral"],
     ),
     (
         &["plan", "a1/moonwalk"],
-        2,
         &["no task `a1/moonwalk`", "a1/lateral"],
     ),
-    (&["run", "nowhere.toml"], 1, &["nowhere.toml"]),
-    (&["run", "empty.toml"], 1, &["empty.toml", "missing field"]),
-    (&["run", "nan.toml"], 1, &["goal_m", "finite"]),
-    (&["run", "far.toml"], 2, &["Infeasible", "friction"]),
+    (&["run", "nowhere.toml"], &["nowhere.toml"]),
+    (&["run", "empty.toml"], &["empty.toml", "missing field"]),
+    (&["run", "nan.toml"], &["goal_m", "finite"]),
+    (&["run", "far.toml"], &["Infeasible", "friction"]),
     (
         &["run", "short.bin"],
-        1,
         &["short.bin", "cut off", "copy the plan again"],
     ),
-    (&["run", "urdf.txt"], 1, &["urdf.txt", "cut off"]),
+    (&["run", "urdf.txt"], &["urdf.txt", "cut off"]),
     (
         &["run", "a1/lateral", "--task", "a1/lateral"],
-        1,
         &["--task", "alone"],
     ),
-    (&["run", "a1/lateral", "--seed", "-1"], 2, &["--seed"]),
+    (&["run", "a1/lateral", "--seed", "-1"], &["--seed"]),
     (
-        &["run", "a1/lateral", "--plant", "mass=2"],
-        1,
-        &["--plant", "--seed"],
+        &["run", "a1/lateral", "--plant", "wind=2"],
+        &["wind=2", "payload"],
     ),
     (
         &["run", "a1/lateral", "--json", "--quiet"],
-        2,
         &["cannot be used with"],
     ),
     (
         &["run", "icub/velocity", "--height", "nan"],
-        2,
         &["--height", "0.04"],
     ),
     (
         &["run", "icub/velocity", "--torque-share", "-1"],
-        2,
         &["--torque-share", "0.8"],
     ),
     (
         &["run", "icub/velocity", "--plant", "mass=0"],
-        2,
-        &["mass must be positive"],
+        &["mass=0", "from 0.1"],
     ),
     (
         &["run", "a1/lateral", "--out", "folder.urdf"],
-        1,
         &["nothing is overwritten"],
     ),
     (
         &["run", "a1/lateral", "--out", "short.bin"],
-        1,
         &["nothing is overwritten"],
     ),
     (
         &["envelope", "a1/lateral", "--samples", "0"],
-        2,
         &["--samples"],
     ),
     (
         &["envelope", "a1/lateral", "--samples", "-3"],
-        2,
         &["--samples"],
     ),
     (
         &["envelope", "a1/lateral", "--shard", "3/2"],
-        2,
         &["1 <= k <= n"],
     ),
     (
         &["envelope", "a1/lateral", "--out", "."],
-        1,
         &["something else than a study"],
     ),
-    (&["envelope", "icub/velocity"], 1, &["no task"]),
+    (&["envelope", "icub/velocity"], &["no task"]),
     (
         &["envelope", "a1/lateral", "--without", "luck"],
-        2,
         &["luck", "weighing"],
     ),
     (
         &["envelope", "a1/lateral", "--ablate", "--without", "delay"],
-        2,
         &["--ablate"],
     ),
     (
@@ -151,53 +134,37 @@ const MISTAKES: &[(&[&str], i32, &[&str])] = &[
             "--without",
             "drives",
         ],
-        1,
         &["whole-body"],
     ),
-    (
-        &["plan", "a1/lateral", "--timing", "0.5,nan"],
-        2,
-        &["timing"],
-    ),
+    (&["plan", "a1/lateral", "--timing", "0.5,nan"], &["timing"]),
     (
         &["plan", "a1/lateral", "--robot", "folder.urdf"],
-        2,
         &["folder.urdf", "folder"],
     ),
     (
         &["plan", "a1/lateral", "--robot", "arm.urdf"],
-        2,
         &["arm.urdf", "12 movable joints"],
     ),
     (
         &["plan", "--reference", "nope"],
-        1,
         &["no task `nope`", "spin"],
     ),
-    (&["plan", "--problem", "empty.toml"], 1, &["empty.toml"]),
-    (&["verify", "short.bin"], 2, &["short.bin", "cut off"]),
-    (
-        &["verify", "folder.urdf"],
-        2,
-        &["folder.urdf", "give a file"],
-    ),
-    (&["verify", "nowhere"], 2, &["nowhere", "check the path"]),
-    (
-        &["import", "folder.urdf"],
-        2,
-        &["folder.urdf", "give a file"],
-    ),
-    (&["import", "urdf.txt"], 2, &["urdf.txt", "not XML"]),
-    (&["completions", "tcl"], 2, &["bash", "zsh"]),
+    (&["plan", "--problem", "empty.toml"], &["empty.toml"]),
+    (&["verify", "short.bin"], &["short.bin", "cut off"]),
+    (&["verify", "folder.urdf"], &["folder.urdf", "give a file"]),
+    (&["verify", "nowhere"], &["nowhere", "check the path"]),
+    (&["import", "folder.urdf"], &["folder.urdf", "give a file"]),
+    (&["import", "urdf.txt"], &["urdf.txt", "not XML"]),
+    (&["completions", "tcl"], &["bash", "zsh"]),
 ];
 
 #[test]
 fn mistakes_are_named_with_their_remedy() {
-    for (arguments, code, words) in MISTAKES {
+    for (arguments, words) in MISTAKES {
         let output = saltus(arguments);
         let said = [output.stdout, output.stderr].concat();
         let said = String::from_utf8(said).unwrap();
-        assert_eq!(output.status.code(), Some(*code), "{arguments:?}: {said}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
         for word in *words {
             assert!(
                 said.contains(word),
@@ -214,7 +181,7 @@ fn mistakes_are_named_with_their_remedy() {
 
 #[test]
 fn with_json_an_error_is_one_object_too() {
-    for (arguments, code, words) in MISTAKES {
+    for (arguments, _) in MISTAKES {
         let is_known = arguments
             .first()
             .is_some_and(|name| *name != "runn" && *name != "completions");
@@ -223,14 +190,9 @@ fn with_json_an_error_is_one_object_too() {
             continue;
         }
         let output = saltus(&[*arguments, &["--json"]].concat());
-        assert_eq!(output.status.code(), Some(*code), "{arguments:?}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let Ok(report) = serde_json::from_slice::<Value>(&output.stdout) else {
             assert!(output.stdout.is_empty(), "{arguments:?}");
-            assert!(
-                String::from_utf8_lossy(&output.stderr).contains("Usage")
-                    || words.len() == 1
-                    || *code == 2
-            );
             continue;
         };
         assert!(

@@ -185,7 +185,8 @@ fn impossible_tasks_are_answered() {
     let cases = [
         (
             "goal",
-            lateral.replace("[0.0, 0.3, 0.0]", "[0.0, 0.3, 5.0]"),
+            down.replace("-0.3]", "5.0]")
+                .replace("drop_m = 0.3", "drop_m = -5.0"),
             "force",
         ),
         (
@@ -196,7 +197,8 @@ fn impossible_tasks_are_answered() {
         (
             "box",
             down.replace("beyond_feet_m = 0.0492", "distance_m = 0.05")
-                .replace("drop_m = 0.3", "drop_m = -0.3"),
+                .replace("drop_m = 0.3", "drop_m = -0.3")
+                .replace("-0.3]", "0.3]"),
             "farther",
         ),
         (

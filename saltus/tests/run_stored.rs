@@ -59,7 +59,7 @@ fn a_stored_plan_jumps_as_the_one_that_was_just_made() {
     // Its task is looked for under the name in the plan, and can be given.
     std::fs::rename(folder.join("mine.toml"), folder.join("moved.toml")).unwrap();
     let lost = run(&["run", "plan/plan.bin"]);
-    assert_eq!(lost.status.code(), Some(1));
+    assert_eq!(lost.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&lost.stderr).contains("give it with --task"));
     result(&run(&[
         "run",
@@ -73,7 +73,7 @@ fn a_stored_plan_jumps_as_the_one_that_was_just_made() {
 
     // Another task's ground is not the plan's.
     let other = run(&["run", "plan/plan.bin", "--task", "a1/lateral-down"]);
-    assert_eq!(other.status.code(), Some(1));
+    assert_eq!(other.status.code(), Some(2));
     let said = String::from_utf8_lossy(&other.stderr);
     assert!(said.contains("plan again"), "{said}");
 }

@@ -1,5 +1,5 @@
 //! The single rigid body over one interval, with first and second derivatives: position, paper A eq. (1a), angular velocity,
-//! eq. (1b), and rotation, eq. (1c) in the steps of eq. (2c).
+//! eq. (1b), and rotation, eq. (1c) in the steps of eq. (2c); what is missing to the next node is eq. (2b).
 //!
 //! ```text
 //! p⁺ = p + dt v + ½ dt² a,   v⁺ = v + dt a,   a = Σ f / m − g

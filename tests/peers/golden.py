@@ -2,6 +2,8 @@
 
     golden.py                                  writes tests/data/golden/{a1,icub23}.txt
     golden.py --others DIR                     twelve robots of pip example-robot-data, and DIR/index.txt
+    golden.py --all DIR                        every URDF of pip example-robot-data on both bases, and DIR/index.txt, which says
+                                               which of them Pinocchio does not read
     golden.py --urdf R.urdf [--lock j=v ...] [--base floating|fixed] [--frame f ...] --out FILE [--states N]
 
 The file is text. `#` starts a comment; every other line is `key rows cols value ...`, row-major, SI units, shortest
@@ -96,8 +98,12 @@ def state_lines(robot, model, rng, heavy):
     add("rnea", rnea)
     add("nonlinear_effects", bias)
     add("gravity", pin.computeGeneralizedGravity(model, data, q))
-    add("aba", pin.aba(model, data, q, v, tau))
+    forward = pin.aba(model, data, q, v, tau)
+    if not np.all(np.isfinite(forward)):
+        raise SystemExit("no forward dynamics: a joint moves no inertia")
+    add("aba", forward)
     add("mass_matrix_lower", mass[np.tril_indices(model.nv)])
+    add("mass_condition", np.linalg.cond(mass))
 
     # configurations
     q2, u = robots.random_q(model, rng), rng.uniform()
@@ -265,9 +271,54 @@ def write(robot, out, states, heavy):
     print(f"{out}: nv {model.nv}, {states} states, {out.stat().st_size / 1e3:.0f} kB")
 
 
+def write_mimic(robot, out):
+    """Inverse dynamics and mass matrix over the independent joints, as Pinocchio has them with `mimic=True`."""
+    root = (pin.JointModelFreeFlyer(),) if robot.floating else ()
+    model = pin.buildModelFromUrdf(str(robot.urdf), *root, mimic=True)
+    model.armature[:] = 0
+    model.gravity.linear = np.array([0.0, 0.0, -9.81])
+    rng = np.random.default_rng(SEED)
+    lines = [line("nv", model.nv)]
+    for i in range(2):
+        q = pin.randomConfiguration(model, *[np.full(model.nq, x) for x in (-0.5, 0.5)])
+        v, a = rng.uniform(-2, 2, model.nv), rng.uniform(-5, 5, model.nv)
+        data = model.createData()
+        mass = symmetric(pin.crba(model, data, q))
+        lines += [line("state", i), line("q", robots.as_angles(model, q)), line("v", v), line("a", a)]
+        lines.append(line("rnea", pin.rnea(model, data, q, v, a)))
+        lines.append(line("mass_matrix_lower", mass[np.tril_indices(model.nv)]))
+        lines.append(line("acceleration", solve(mass, a - pin.nonLinearEffects(model, data, q, v))))
+    out.write_text("\n".join(lines) + "\n")
+
+
+def write_all(folder):
+    """Golden values of every URDF, on a floating and on a fixed base; index lines are `name base urdf` or `name - urdf reason`."""
+    index = ["# name base urdf; golden values in NAME.BASE.txt; base `-`: Pinocchio does not read it, and why"]
+    for name, urdf in robots.every_urdf():
+        try:
+            tree = pin.buildModelFromUrdf(str(urdf))
+            tips = robots.tips(tree)
+            for floating in (True, False) if tree.nv else (True,):
+                base = "floating" if floating else "fixed"
+                robot = robots.Robot(name, urdf, floating=floating, frames=tips)
+                write(robot, folder / f"{name}.{base}.txt", 2, 1)
+                mimic = folder / f"{name}.{base}.mimic.txt"
+                mimic.unlink(missing_ok=True)
+                if "<mimic" in urdf.read_text(errors="replace"):
+                    try:
+                        write_mimic(robot, mimic)
+                    except ValueError as reason:
+                        print(f"{name}: Pinocchio does not couple its joints: {reason}")
+                index.append(f"{name} {base} {urdf}")
+        except (Exception, SystemExit) as reason:
+            index.append(f"{name} - {urdf} {' '.join(str(reason).split())}")
+    (folder / "index.txt").write_text("\n".join(index) + "\n")
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     p.add_argument("--others", type=Path, metavar="DIR")
+    p.add_argument("--all", type=Path, metavar="DIR")
     p.add_argument("--urdf", type=Path)
     p.add_argument("--name")
     p.add_argument("--lock", nargs="*", default=[], metavar="JOINT=VALUE")
@@ -284,6 +335,9 @@ def main():
             base = "floating" if robot.floating else "fixed"
             index.append(f"{robot.name} {base} {robot.urdf} {locked(robot)}".rstrip())
         (args.others / "index.txt").write_text("\n".join(index) + "\n")
+        return
+    if args.all is not None:
+        write_all(args.all)
         return
     if args.urdf is None:
         for robot in robots.ROBOTS.values():

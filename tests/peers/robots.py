@@ -65,14 +65,32 @@ ICUB23 = Robot(
 ROBOTS = {r.name: r for r in (A1, ICUB23)}
 
 
-def others() -> list[Robot]:
-    """Robots of pip `example-robot-data` that `saltus import` is checked against."""
+def example_data() -> Path:
+    """The robots of pip `example-robot-data`."""
     data = Path(pin.__file__).resolve()
     while not (data / "share" / "example-robot-data").is_dir():
         if data == data.parent:
             raise SystemExit("pip package example-robot-data is not installed")
         data = data.parent
-    data = data / "share" / "example-robot-data" / "robots"
+    return data / "share" / "example-robot-data" / "robots"
+
+
+def every_urdf() -> list[tuple[str, Path]]:
+    """Every URDF of pip `example-robot-data`, with a name of its own."""
+    data = example_data()
+    files = sorted(data.rglob("*.urdf"))
+    return [(f.relative_to(data).with_suffix("").as_posix().replace("/", "."), f) for f in files]
+
+
+def tips(model: pin.Model) -> list[str]:
+    """The last two links whose names stand for one frame only."""
+    names = [f.name for f in model.frames]
+    return [f.name for f in model.frames if f.type == pin.BODY and names.count(f.name) == 1 and " " not in f.name][-2:]
+
+
+def others() -> list[Robot]:
+    """Robots of pip `example-robot-data` that `saltus import` is checked against."""
+    data = example_data()
     hands = {f"{side}_{finger}_joint": 0.1 for side in ("left", "right") for finger in
              ("hand_thumb_0", "hand_thumb_1", "hand_thumb_2", "hand_middle_0", "hand_middle_1", "hand_index_0", "hand_index_1")}
     return [

@@ -2,6 +2,7 @@
 # Prepares what stands beside Saltus: a Python with pinned Pinocchio and CasADi, and the peer benches.
 #   setup.sh venv    the Python environment in .venv (about 300 MB)
 #   setup.sh ratios  the environment, with what the tables of QPs and planners need (another 150 MB)
+#   setup.sh mjcf    the environment, MuJoCo, and the packages whose MJCF files are compared (another 150 MB)
 #   setup.sh bench   the environment, and the C++ benches (6 minutes of clang; needs Debian's clang and libeigen3-dev)
 # Results go to target/peers (SALTUS_PEERS_DIR to place them elsewhere); what is up to date is not built again.
 set -euo pipefail
@@ -23,6 +24,12 @@ install() {
     "$python" -m pip install --quiet --requirement "$here/$1"
     cp "$here/$1" "$venv/$2"
   fi
+}
+
+# MuJoCo; gymnasium and dm_control only for the robots in them, without what they need to run
+install_mjcf() {
+  install requirements-mjcf.txt .saltus-requirements-mjcf
+  "$python" -m pip install --quiet --no-deps gymnasium==1.4.0 dm_control==1.0.50
 }
 
 # newer TARGET SOURCE...: TARGET exists and is newer than every SOURCE
@@ -67,6 +74,7 @@ make_bench() {
 case "${1:-bench}" in
   venv) make_venv ;;
   ratios) make_venv; install requirements-bench.txt .saltus-requirements-bench ;;
+  mjcf) make_venv; install_mjcf ;;
   bench) make_venv; make_bench ;;
-  *) echo "usage: setup.sh [venv|ratios|bench]" >&2; exit 2 ;;
+  *) echo "usage: setup.sh [venv|ratios|mjcf|bench]" >&2; exit 2 ;;
 esac

@@ -1,9 +1,11 @@
 //! A1 dropped on its feet: the landing controller in closed loop with any simulator.
 
 use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
-use contact_sim::{ContactSphere, Error, NativeSimulator, Simulator, Terrain};
+use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use jump_control::{JointCommand, JointGains};
-use landing::{Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace};
+use landing::{
+    Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Status, Target, Workspace,
+};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
     Configuration, Kinematics, Link, Motion, Posture, Tangent, forward_kinematics, joint_friction,
@@ -60,8 +62,10 @@ pub struct End {
     pub trunk_touched: bool,
     /// Slower than 5 cm/s after three seconds.
     pub at_rest: bool,
-    /// Ticks at which the QP was not solved.
+    /// Ticks at which the force program had no answer.
     pub failures: u32,
+    /// Ticks at which it was stopped at its cap of factorisations.
+    pub capped: u32,
     /// Sensors that the detector did not believe at some time.
     pub faulty: [bool; 4],
 }
@@ -77,19 +81,12 @@ impl End {
 /// The native simulator: feet and trunk corners as balls.
 #[must_use]
 pub fn native() -> Plant {
-    let spheres: [ContactSphere<f64>; CONTACTS] = core::array::from_fn(|i| match FEET.get(i) {
-        Some(foot) => ContactSphere {
-            link: foot.frame.link,
-            offset: foot.frame.offset,
-            radius: FOOT_RADIUS,
-        },
+    let spheres: [Shape<f64>; CONTACTS] = core::array::from_fn(|i| match FEET.get(i) {
+        Some(foot) => Shape::ball(foot.frame.link, foot.frame.offset, FOOT_RADIUS, i),
         None => {
             let side = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
-            ContactSphere {
-                link: Link::Base,
-                offset: [0.1235 * side(0), 0.087 * side(1), 0.047 * side(2)],
-                radius: 0.01,
-            }
+            let corner = [0.1235 * side(0), 0.087 * side(1), 0.047 * side(2)];
+            Shape::ball(Link::Base, corner, 0.01, i)
         }
     });
     let settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
@@ -107,20 +104,20 @@ pub fn native() -> Plant {
 /// What MuJoCo says of the model.
 #[cfg(feature = "mujoco")]
 pub fn mujoco() -> Result<Plant, contact_sim::ModelRefused> {
-    use contact_sim::{Geom, GeomShape, MujocoSimulator};
+    use contact_sim::{Geom, MujocoSimulator};
     let mut geoms: Vec<Geom> = FEET
         .iter()
         .enumerate()
         .map(|(i, foot)| Geom::of(foot, i))
         .collect();
-    geoms.push(Geom {
+    geoms.push(Geom::Box {
         frame: rbd_core::Frame::IDENTITY,
-        shape: GeomShape::Box([0.1335, 0.097, 0.057]),
-        contact: 4,
+        half: [0.1335, 0.097, 0.057],
+        owner: 4,
     });
     let mut settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
     settings.substeps = 1;
-    let sim = MujocoSimulator::new(&A1Geared, &geoms, &Terrain::FLAT, settings)?;
+    let sim = MujocoSimulator::new(&A1Geared, (&geoms, &[]), &Terrain::FLAT, settings)?;
     Ok(Box::new(sim))
 }
 
@@ -224,6 +221,7 @@ pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
         trunk_touched: false,
         at_rest: false,
         failures: 0,
+        capped: 0,
         faulty: [false; 4],
     };
     // Another chattering for every drop.
@@ -256,7 +254,11 @@ pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
             &waiting,
             &mut workspace,
         );
-        end.failures += u32::from(!matches!(c.outcome, Outcome::Solved(_) | Outcome::Airborne));
+        match c.outcome {
+            Outcome::Solved(_) | Outcome::Airborne => {}
+            Outcome::Failed(Status::Limit) => end.capped += 1,
+            Outcome::Failed(_) | Outcome::BadData => end.failures += 1,
+        }
         let command = JointCommand {
             position: c.position,
             velocity: [0.0; 12],

@@ -5,6 +5,7 @@
 pub mod agree;
 pub mod bench;
 pub mod drops;
+pub mod everything;
 pub mod golden;
 #[cfg(doctest)]
 pub mod guide;

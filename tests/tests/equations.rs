@@ -1,4 +1,4 @@
-//! The index of equations names what exists, in files that cite the equation, and leaves none out.
+//! The index of equations names what exists, in files that cite the equation, and tests that execute it, and leaves none out.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeSet;
@@ -36,6 +36,25 @@ fn every_equation_has_its_code() {
             assert!(seen.insert(equation), "{paper} ({equation}) twice");
             let code = links(cells[3]);
             assert!(!code.is_empty(), "{paper} ({equation}) has no code");
+            let tests = links(cells[4]);
+            assert!(
+                !tests.is_empty(),
+                "{paper} ({equation}) is executed by no test"
+            );
+            for (test, path) in tests {
+                let source = fs::read_to_string(docs.join(path)).unwrap();
+                let (before, _) = source.split_once(&format!("fn {test}(")).unwrap();
+                let marked = before
+                    .trim_end()
+                    .lines()
+                    .rev()
+                    .take(3)
+                    .any(|line| line.trim() == "#[test]");
+                assert!(
+                    marked || before.contains("proptest!"),
+                    "{test} in {path} is no test"
+                );
+            }
             for (item, path) in code {
                 let source = fs::read_to_string(docs.join(path)).unwrap();
                 let is_defined = ["fn ", "struct ", "enum "]

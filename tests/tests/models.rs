@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use a1_model::{A1, A1Geared, A1Reference, a1, a1_reference, geared};
-use icub_model::{Icub23, Icub23Cad, Icub23Geared, cad, gazebo, robots};
+use icub_model::{Icub23, Icub23Cad, Icub23GazeboGeared, Icub23Geared, cad, gazebo, robots};
 use model_import::limbs::{expression, structure};
 use rbd_core::hardware::ContactShape;
 use rbd_core::{
@@ -60,6 +60,7 @@ fn const_models_walk_their_own_tables() {
     walks_its_tables::<Icub23, 23>(&Icub23);
     walks_its_tables::<Icub23Cad, 23>(&Icub23Cad);
     walks_its_tables::<Icub23Geared, 23>(&Icub23Geared);
+    walks_its_tables::<Icub23GazeboGeared, 23>(&Icub23GazeboGeared);
     assert_eq!(
         expression(&structure(&a1::BODIES)),
         "4 * [RevoluteX, RevoluteY, RevoluteY]"

@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use a1_model::{A1Geared, FEET, MOTORS, a1};
-use contact_sim::{ContactSphere, Error, NativeSimulator, Simulator, Terrain};
+use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use icub_model::{Icub23Cad, SOLES};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, ContactShape, Model, Motion, Tangent, Transform, Tree};
@@ -132,7 +132,8 @@ struct Flight<const N: usize> {
     gains: (f64, f64),
     /// Velocity given to the base, base axes.
     toss: Motion<f64>,
-    /// Time after the toss, ms.
+    /// Time in the air, and time after the toss, ms.
+    air: usize,
     after: usize,
     /// A foot whose sensor reads full contact from the toss on.
     stuck: Option<usize>,
@@ -186,11 +187,20 @@ where
         }
         let sample = sensors.sample(&q, &v, evidence);
         let estimate = estimator.step(model, &mut state, Some(&sample), 1e-3);
-        assert_eq!((estimate.status, estimate.fault), (Status::Good, None));
+        // A sole that lands flat and stiff shakes the sensor beyond its range for a moment: that is named, and only that.
+        let range = estimator.settings.max_specific_force;
+        let beyond = sample.specific_force_i.iter().any(|f| f.abs() > range);
+        let said = (estimate.status, estimate.fault);
+        let expected = if beyond {
+            (Status::Coasting, Some(Fault::Accelerometer))
+        } else {
+            (Status::Good, None)
+        };
+        assert_eq!(said, expected, "{:?}", sample.specific_force_i);
         let errors = Errors::of(&q, &v, &estimate);
         let phase = if k < hold {
             0
-        } else if k < hold + 300 {
+        } else if k < hold + flight.air {
             1
         } else if k + 200 >= hold + flight.after {
             2
@@ -215,8 +225,8 @@ const CROUCH: [f64; 12] = [
 ];
 
 fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [Errors; 3] {
-    let spheres: [ContactSphere<f64>; 4] = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
-    let mut plant = NativeSimulator::<f64, _, 12, 4>::new(
+    let spheres: [Shape<f64>; 4] = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
+    let mut plant = NativeSimulator::<f64, _, 12, 4, 4>::new(
         A1Geared,
         spheres,
         Terrain::FLAT,
@@ -232,6 +242,7 @@ fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [
         posture: CROUCH,
         gains: (100.0, 3.0),
         toss: Motion::from_array([0.5, 0.4, 2.2, 0.4, -0.5, 1.0]),
+        air: 300,
         after: 1500,
         stuck,
     };
@@ -239,7 +250,9 @@ fn fly_a1(seed: u64, scale: f64, stuck: Option<usize>, imu: Transform<f64>) -> [
         &A1Geared,
         &mut plant,
         &a1_estimator(imu),
-        |plant: &NativeSimulator<f64, A1Geared, 12, 4>| plant.contact_forces_w().map(|f| f.norm()),
+        |plant: &NativeSimulator<f64, A1Geared, 12, 4, 4>| {
+            plant.contact_forces_w().map(|f| f.norm())
+        },
         &start,
         &flight,
         Sensors::new(seed, scale, imu),
@@ -297,21 +310,18 @@ fn a_stuck_foot_sensor_does_not_hold_the_flying_robot() {
 /// iCub: soles, 23 joints, IMU at the root.
 #[test]
 fn icub_is_followed_through_a_hop() {
-    let spheres: [ContactSphere<f64>; 8] = core::array::from_fn(|i| {
+    let spheres: [Shape<f64>; 8] = core::array::from_fn(|i| {
         let sole = &SOLES[i / 4];
         let ContactShape::Rectangle { x, y } = sole.shape else {
             unreachable!()
         };
         let corner = Vector3::new(x[i & 1], y[(i >> 1) & 1], 0.005);
-        ContactSphere {
-            link: sole.frame.link,
-            offset: sole.frame.placement().point(&corner).into(),
-            radius: 0.005,
-        }
+        let center = sole.frame.placement().point(&corner).into();
+        Shape::ball(sole.frame.link, center, 0.005, i)
     });
     let limits = Model::<f64, 23>::limits(&Icub23Cad);
     let motors = Model::<f64, 23>::motors(&Icub23Cad).unwrap();
-    let mut plant = NativeSimulator::<f64, _, 23, 8>::new(
+    let mut plant = NativeSimulator::<f64, _, 23, 8, 8>::new(
         Icub23Cad,
         spheres,
         Terrain::FLAT,
@@ -333,7 +343,9 @@ fn icub_is_followed_through_a_hop() {
     let flight = Flight {
         posture: [0.0; 23],
         gains: (300.0, 8.0),
-        toss: Motion::from_array([0.0, 0.0, 1.6, 0.0, 0.0, 0.0]),
+        // Paper B's own take-off speed. From 1.6 m/s the straight legs on concrete shake the sensor by more than the 32 g of its range.
+        toss: Motion::from_array([0.0, 0.0, 0.9, 0.0, 0.0, 0.0]),
+        air: 160,
         after: 700,
         stuck: None,
     };
@@ -342,7 +354,7 @@ fn icub_is_followed_through_a_hop() {
             &Icub23Cad,
             &mut plant,
             &estimator,
-            |plant: &NativeSimulator<f64, Icub23Cad, 23, 8>| {
+            |plant: &NativeSimulator<f64, Icub23Cad, 23, 8, 8>| {
                 let f = plant.contact_forces_w();
                 [0, 4].map(|k| f[k..k + 4].iter().map(|f| f.z).sum())
             },

@@ -8,7 +8,7 @@
     reason = "a measuring program"
 )]
 
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use core::fmt::Write as _;
 use dense_qp::{Problem, Status, Workspace, solve, solve_warm};
 use nalgebra::{Rotation3, Vector3};
@@ -283,14 +283,19 @@ fn icub(out: &Path) {
         (joints[arm], joints[arm + 1], joints[arm + 3]) = (-0.5, 0.4, 0.8);
     }
     let start = on_the_floor(&Icub23, joints, &SOLES[0].frame, 0.0);
-    let corners = SOLES.map(|sole| ContactSphere::corners(&sole, 0.005).unwrap());
-    let spheres: [ContactSphere<f64>; 8] = core::array::from_fn(|i| corners[i / 4][i % 4]);
+    let corners = [0, 1].map(|i| Shape::corners(&SOLES[i], 0.005, 4 * i).unwrap());
+    let spheres: [Shape<f64>; 8] = core::array::from_fn(|i| corners[i / 4][i % 4]);
     let settings = Settings::new(&LIMITS, &MOTORS);
     let mut s = Snapshot::ZERO;
     s.update(&Icub23, &start, &Tangent::ZERO);
     let robot = Robot {
         name: "icub23",
-        plant: NativeSimulator::<f64, Icub23, 23, 8>::new(Icub23, spheres, Terrain::FLAT, settings),
+        plant: NativeSimulator::<f64, Icub23, 23, 8, 8>::new(
+            Icub23,
+            spheres,
+            Terrain::FLAT,
+            settings,
+        ),
         start,
         home: s.com_w(),
         push: [0.89, 0.36],
@@ -305,13 +310,13 @@ fn a1(out: &Path) {
     use a1_model::{A1, FEET, FOOT_RADIUS, MOTORS, a1::LIMITS};
     let joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);
     let start = on_the_floor(&A1, joints, &FEET[0].frame, FOOT_RADIUS);
-    let spheres = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
+    let spheres = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
     let settings = Settings::new(&LIMITS, &MOTORS);
     let mut s = Snapshot::ZERO;
     s.update(&A1, &start, &Tangent::ZERO);
     let robot = Robot {
         name: "a1",
-        plant: NativeSimulator::<f64, A1, 12, 4>::new(A1, spheres, Terrain::FLAT, settings),
+        plant: NativeSimulator::<f64, A1, 12, 4, 4>::new(A1, spheres, Terrain::FLAT, settings),
         start,
         home: s.com_w(),
         push: [1.0, 0.2],

@@ -2,13 +2,13 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
 use a1_model::{A1, FEET, MOTORS, a1};
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, Frame, Tangent, joint_friction};
 use wbc_qp::task::{orientation_error, position_error};
 use wbc_qp::{Contact, Gains, Snapshot, TorqueQp, Yielded};
 
-type Plant = NativeSimulator<f64, A1, 12, 4>;
+type Plant = NativeSimulator<f64, A1, 12, 4, 4>;
 
 fn standing() -> Configuration<f64, 12> {
     let mut q = Configuration::NEUTRAL;
@@ -43,7 +43,7 @@ struct Tick {
 
 /// Runs the torque program until `end`.
 fn run(end: f64, wanted: impl Fn(f64) -> Wanted) -> Vec<Tick> {
-    let spheres = FEET.map(|foot| ContactSphere::of(&foot).unwrap());
+    let spheres = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
     let settings = Settings::new(&a1::LIMITS, &MOTORS);
     let mut plant = Plant::new(A1, spheres, Terrain::FLAT, settings);
     let start = standing();

@@ -83,6 +83,7 @@ const HOST: &[Step<'_>] = &[
 
 /// The lane of release builds, and of those that have a folder of their own.
 const RELEASE: &[Step<'_>] = &[
+    ("verdicts as expected", &["xtask", "verdicts"]),
     ("both papers", &["xtask", "reproduce"]),
     ("the report in a browser", &["xtask", "report"]),
     ("instruction counts", &["xtask", "icount"]),

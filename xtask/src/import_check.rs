@@ -2,7 +2,8 @@
 //!
 //! Robots: those of `models/`, and those that `tests/peers/golden.py --others` picks from pip `example-robot-data`.
 //! All crates stand in one workspace in `target/import-check`, with one program that compares them, so that the
-//! dynamics are compiled once.
+//! dynamics are compiled once. With `--all`, every URDF of that package at run time instead, and every quantity, on both bases;
+//! a robot is refused only if Pinocchio refuses it as well or has no forward dynamics of it.
 
 use core::fmt::Write as _;
 use std::fs;
@@ -22,6 +23,12 @@ pub(crate) struct Args {
     /// Only robots whose name contains this.
     #[arg(long)]
     only: Option<String>,
+    /// Every URDF of pip example-robot-data, at run time, and every quantity: instead of the crates.
+    #[arg(long)]
+    all: bool,
+    /// MJCF files of pip gymnasium and dm_control (`pip install --no-deps`) beside MuJoCo: instead of the crates.
+    #[arg(long, conflicts_with = "all")]
+    mjcf: bool,
 }
 
 /// One robot to import.
@@ -49,6 +56,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let root = run::root();
     let folder = root.join("target/import-check");
     let python = python(args, &root)?;
+    if args.all || args.mjcf {
+        return at_run_time(&python, &root, &folder, args.mjcf);
+    }
     let robots = robots(&python, &root, &folder, args.only.as_deref())?;
     let crates = folder.join("crates");
     run::remove_folder(&crates)?;
@@ -71,6 +81,33 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     run::succeed(&mut check)
 }
 
+/// Every URDF or MJCF that the packages have, without crates of their own.
+fn at_run_time(python: &Path, root: &Path, folder: &Path, mjcf: bool) -> Result<()> {
+    let golden = folder.join(if mjcf { "mjcf" } else { "all" });
+    fs::create_dir_all(&golden)?;
+    let mut make = Command::new(python);
+    if mjcf {
+        make.arg(root.join("tests/peers/golden_mjcf.py"));
+    } else {
+        make.arg(root.join("tests/peers/golden.py")).arg("--all");
+    }
+    let result = run::output(make.arg(&golden))?;
+    if !result.status.success() {
+        bail!("{}", String::from_utf8_lossy(&result.stderr));
+    }
+    let mut check = run::cargo();
+    check.args([
+        "run",
+        "--quiet",
+        "--package",
+        "saltus-tests",
+        "--bin",
+        "every-urdf",
+        "--",
+    ]);
+    run::succeed(check.arg(golden))
+}
+
 fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }
@@ -87,7 +124,7 @@ fn python(args: &Args, root: &Path) -> Result<PathBuf> {
         run::succeed(
             Command::new("bash")
                 .arg(root.join("tests/peers/setup.sh"))
-                .arg("venv"),
+                .arg(if args.mjcf { "mjcf" } else { "venv" }),
         )?;
     }
     if !python.exists() {
@@ -166,20 +203,26 @@ fn robots(python: &Path, root: &Path, folder: &Path, only: Option<&str>) -> Resu
     Ok(robots)
 }
 
-/// Runs `saltus import`. A robot that it refuses for its mimic joints or its inertias is imported with the
-/// options that its message offers, and the table says so.
+/// Runs `saltus import`. A robot that it refuses for its inertias is imported with the option that its message offers, and
+/// the table says so.
 fn import(saltus: &Path, root: &Path, crates: &Path, robot: &Robot) -> Result<Imported> {
     let package = format!("{}-model", robot.name.replace('_', "-"));
     let mut note = "";
     let mut output = None;
     for (extra, said) in [
         (&[][..], ""),
-        (&["--mimic", "free"], "mimic joints freed"),
         (&["--inertia", "as-written"], "unphysical inertias kept"),
     ] {
         let mut command = Command::new(saltus);
         command.arg("import").arg(&robot.urdf);
-        command.args(["--json", "--base", &robot.base, "--package", &package]);
+        command.args([
+            "--json",
+            "--base",
+            &robot.base,
+            "--package",
+            &package,
+            "--member",
+        ]);
         command.arg("--out").arg(crates.join(&robot.name));
         command.arg("--rbd-core").arg(root.join("rbd-core"));
         if !robot.locks.is_empty() {

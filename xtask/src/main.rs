@@ -27,6 +27,7 @@ mod report;
 mod reproduce;
 mod run;
 mod smoke;
+mod verdicts;
 
 use std::process::ExitCode;
 
@@ -71,6 +72,8 @@ enum Command {
     Report(report::Args),
     /// Run both papers at their quick size and see that every item is there.
     Reproduce(reproduce::Args),
+    /// Run every task in both simulators and compare the verdicts with the expected ones.
+    Verdicts(verdicts::Args),
     /// Type what the README tells a newcomer to type.
     FirstHour(first_hour::Args),
     /// Build every crate from its own archive, with the oldest compiler that it promises.
@@ -98,6 +101,7 @@ fn main() -> ExitCode {
         Command::ImportCheck(args) => import_check::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::Verdicts(args) => verdicts::run(&args),
         Command::FirstHour(args) => first_hour::run(&args),
         Command::Package(args) => package::run(&args),
         Command::Examples(args) => examples::run(&args),

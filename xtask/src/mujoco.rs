@@ -1,5 +1,8 @@
 //! `cargo xtask mujoco`: fetches the MuJoCo library that `mujoco-rs` is made for, and runs cargo with it.
 //!
+//! Programs for people (`run`, `build`, `install`) are built in `target/mujoco-build`, so that they do not take the place of those without
+//! MuJoCo, and find the library where it is without an environment variable (`saltus/build.rs`). Tests share the usual folder.
+//!
 //! The library is the one in the wheel `mujoco` on PyPI: it needs nothing but glibc. It is linked by the names
 //! `libmujoco.so` and `libmujoco.so.VERSION`, of which the second is its SONAME.
 
@@ -28,12 +31,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let folder = run::root().join("target/mujoco");
-    let library = folder.join(format!("libmujoco.so.{VERSION}"));
-    if !library.exists() {
-        fetch(&args.python, &folder, &library)?;
-    }
-    let search = search_path(&folder)?;
+    let (folder, search) = library(&args.python)?;
     if args.cargo.is_empty() {
         println!("export MUJOCO_DYNAMIC_LINK_DIR={}", folder.display());
         println!("export LD_LIBRARY_PATH={}", search.to_string_lossy());
@@ -42,7 +40,41 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let mut cargo = run::cargo();
     cargo.current_dir(env::current_dir()?).args(&args.cargo);
     cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
+    let first = args.cargo.first().and_then(|word| word.to_str());
+    if matches!(first, Some("run" | "r" | "build" | "b" | "install")) {
+        aside(&mut cargo);
+    }
     run::succeed(cargo.env("LD_LIBRARY_PATH", search))
+}
+
+/// `cargo run` of saltus with both simulators; its arguments follow.
+pub(crate) fn saltus() -> Result<Command> {
+    let (folder, search) = library(Path::new("python3"))?;
+    let mut cargo = run::cargo();
+    cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
+    cargo.env("LD_LIBRARY_PATH", search);
+    aside(&mut cargo);
+    let release = ["run", "--release", "--quiet", "--package", "saltus"];
+    cargo.args(release).args(["--features", "mujoco", "--"]);
+    Ok(cargo)
+}
+
+/// Builds in a folder of its own, unless the caller has chosen one.
+fn aside(cargo: &mut Command) {
+    if env::var_os("CARGO_TARGET_DIR").is_none() {
+        cargo.env("CARGO_TARGET_DIR", run::root().join("target/mujoco-build"));
+    }
+}
+
+/// The folder of the library, fetched if it is not there, and the path on which programs look for it.
+fn library(python: &Path) -> Result<(PathBuf, OsString)> {
+    let folder = run::root().join("target/mujoco");
+    let library = folder.join(format!("libmujoco.so.{VERSION}"));
+    if !library.exists() {
+        fetch(python, &folder, &library)?;
+    }
+    let search = search_path(&folder)?;
+    Ok((folder, search))
 }
 
 /// The folder before whatever the caller has.

@@ -14,7 +14,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 
 use crate::devtools::Browser;
-use crate::run;
+use crate::{mujoco, run};
 
 /// The window, pixels.
 const WINDOW: [u32; 2] = [1200, 900];
@@ -61,8 +61,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 /// Runs a short jump for its report.
 fn make(folder: &Path) -> Result<PathBuf> {
     let out = folder.join("run");
-    let mut saltus = run::cargo();
-    saltus.args(["run", "--release", "--quiet", "--package", "saltus", "--"]);
+    let mut saltus = mujoco::saltus()?;
     saltus
         .args(["run", "a1/lateral", "--json", "--out"])
         .arg(&out);

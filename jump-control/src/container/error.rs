@@ -39,6 +39,13 @@ pub enum ContainerError {
     },
     /// The header is not what its writer should have written.
     Header,
+    /// A value that no plan has, though the checksum fits.
+    Value {
+        /// The node, none for the header.
+        node: Option<u16>,
+        /// Which value.
+        what: &'static str,
+    },
     /// The caller's storage is too short.
     Buffer {
         /// Elements that are needed, or an upper bound of them.
@@ -75,6 +82,19 @@ impl fmt::Display for ContainerError {
                 "a plan for another robot: model {planned:016x}, this robot is {given:016x}"
             ),
             Self::Header => f.write_str("its header contradicts its length"),
+            Self::Value {
+                node: Some(node),
+                what,
+            } => write!(
+                f,
+                "damaged, though its checksum fits: node {node}: {what} cannot be; plan again"
+            ),
+            Self::Value { node: None, what } => {
+                write!(
+                    f,
+                    "damaged, though its checksum fits: {what} cannot be; plan again"
+                )
+            }
             Self::Buffer { needed, given } => {
                 write!(f, "storage for {given} elements, {needed} are needed")
             }

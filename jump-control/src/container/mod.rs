@@ -14,8 +14,9 @@
 //!
 //! Integers of the first rows are little-endian. Numbers are single precision: 10⁻⁷ of a joint's range is far below what an
 //! encoder tells. A container is refused with the reason: not a plan, another version, cut off, damaged (CRC-32 detects every
-//! burst of up to 32 bits), made for a robot of another size, or for another robot.
+//! burst of up to 32 bits), made for a robot of another size, or for another robot. [`Container::check`] looks at the values too.
 
+mod check;
 mod error;
 mod hash;
 mod record;

@@ -8,12 +8,24 @@ use super::names::type_name;
 use crate::robot::Robot;
 
 /// Where the written crate finds rbd-core.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dependency {
     /// By version, from a registry.
     Version(String),
     /// By path.
     Path(PathBuf),
+}
+
+impl Default for Dependency {
+    /// The rbd-core that this program was built with: by path if it was built from the workspace and that is still there, by version
+    /// if it came from a registry.
+    fn default() -> Self {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../rbd-core");
+        match folder.canonicalize() {
+            Ok(folder) if folder.join("Cargo.toml").is_file() => Self::Path(folder),
+            _ => Self::Version(env!("CARGO_PKG_VERSION").to_owned()),
+        }
+    }
 }
 
 /// What to call a written crate.
@@ -23,6 +35,9 @@ pub struct Crate {
     pub package: String,
     /// Where it finds rbd-core.
     pub rbd_core: Dependency,
+    /// It will be a member of the workspace around its folder. Otherwise it is a workspace of its own there, so that it builds
+    /// as it is.
+    pub member: bool,
 }
 
 /// Writes a crate with the robot's tables into a folder that does not exist yet or is empty.
@@ -48,7 +63,12 @@ pub fn write_crate(
     let robot_type = type_name(&robot.name);
     fs::write(
         folder.join("Cargo.toml"),
-        manifest(robot, about, provenance),
+        manifest(
+            robot,
+            about,
+            provenance,
+            !about.member && in_workspace(folder),
+        ),
     )?;
     fs::write(
         folder.join("README.md"),
@@ -61,6 +81,31 @@ pub fn write_crate(
     )
 }
 
+/// What to type to build and test a crate that was written to `folder`, one command per line.
+#[must_use]
+pub fn commands(folder: &Path) -> String {
+    let quoted = folder.display().to_string().replace('\'', r"'\''");
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+".contains(c);
+    if quoted.chars().all(plain) {
+        format!("cd {quoted}\ncargo build\ncargo test")
+    } else {
+        format!("cd '{quoted}'\ncargo build\ncargo test")
+    }
+}
+
+/// Whether a folder stands in a Cargo workspace, whose root would claim a package in it.
+fn in_workspace(folder: &Path) -> bool {
+    let Ok(folder) = folder.canonicalize() else {
+        return false;
+    };
+    let manifests = folder.ancestors().skip(1).map(|a| a.join("Cargo.toml"));
+    let mut texts = manifests.filter_map(|m| fs::read_to_string(m).ok());
+    texts.any(|text| {
+        text.lines()
+            .any(|line| line.trim().starts_with("[workspace"))
+    })
+}
+
 const LIB: &str = "#![doc = include_str!(\"../README.md\")]
 #![no_std]
 #![forbid(unsafe_code)]
@@ -71,7 +116,12 @@ mod tables;
 pub use tables::*;
 ";
 
-fn manifest(robot: &Robot, about: &Crate, provenance: &Provenance) -> String {
+fn manifest(robot: &Robot, about: &Crate, provenance: &Provenance, alone: bool) -> String {
+    let alone = if alone {
+        "\n# Stands alone in the workspace around it; remove this line to make it a member.\n[workspace]\n"
+    } else {
+        ""
+    };
     let dependency = match &about.rbd_core {
         Dependency::Version(version) => format!("rbd-core = {version:?}"),
         Dependency::Path(path) => {
@@ -88,7 +138,7 @@ license = {:?}
 
 [dependencies]
 {dependency}
-",
+{alone}",
         about.package,
         format!("Dynamics tables of the robot {}.", robot.name),
         provenance.licence,

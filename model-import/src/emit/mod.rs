@@ -4,6 +4,6 @@ mod krate;
 mod module;
 mod names;
 
-pub use krate::{Crate, Dependency, write_crate};
+pub use krate::{Crate, Dependency, commands, write_crate};
 pub use module::{Provenance, module};
 pub use names::{constant, type_name};

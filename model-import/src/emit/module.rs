@@ -106,7 +106,46 @@ fn write_module(
     }
     writeln!(w, "}}\n")?;
     tables(w, robot)?;
+    reduction(w, robot)?;
     frame_tables(w, robot, &frames)
+}
+
+/// How joints follow others, where any do.
+fn reduction(w: &mut String, robot: &Robot) -> fmt::Result {
+    if robot.couplings.iter().all(Option::is_none) {
+        return Ok(());
+    }
+    let (n, independent) = (robot.joints.len(), robot.independent());
+    let r = independent.len();
+    names(
+        w,
+        "INDEPENDENT_NAMES",
+        "Names of the joints that follow no other, in the order of the coordinates of [`REDUCTION`]",
+        (independent.iter().map(|&i| &robot.joints[i].name))
+            .collect::<Vec<_>>()
+            .into_iter(),
+    )?;
+    writeln!(
+        w,
+        "/// How the joints follow the independent ones, as their `<mimic>` says.\npub static REDUCTION: Reduction<f64, {n}, {r}> = Reduction {{\n    rows: ["
+    )?;
+    for (i, (joint, coupling)) in robot.joints.iter().zip(&robot.couplings).enumerate() {
+        let (leader, ratio, offset) =
+            coupling.map_or((i, 1.0, 0.0), |c| (c.leader, c.ratio, c.offset));
+        let coordinate = independent.partition_point(|&j| j < leader);
+        writeln!(w, "        // {}", joint.name)?;
+        writeln!(
+            w,
+            "        Coupling {{ coordinate: {coordinate}, ratio: {}, offset: {} }},",
+            number(ratio),
+            number(offset)
+        )?;
+    }
+    writeln!(w, "    ],\n}};\n")?;
+    writeln!(
+        w,
+        "/// [`REDUCTION`] in single precision.\npub static REDUCTION_F32: Reduction<f32, {n}, {r}> = REDUCTION.to_f32();\n"
+    )
 }
 
 fn header(w: &mut String, robot: &Robot, provenance: &Provenance) -> fmt::Result {
@@ -139,8 +178,12 @@ fn header(w: &mut String, robot: &Robot, provenance: &Provenance) -> fmt::Result
     writeln!(w, "use rbd_core::joint::Kind;")?;
     writeln!(
         w,
-        "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, bodies_f32, frames_f32, limits_f32}};\n"
-    )
+        "use rbd_core::model::{{BaseBody, Body, Frame, JointLimits, Link, bodies_f32, frames_f32, limits_f32}};"
+    )?;
+    if robot.couplings.iter().any(Option::is_some) {
+        writeln!(w, "use rbd_core::reduction::{{Coupling, Reduction}};")?;
+    }
+    writeln!(w)
 }
 
 fn kilograms(robot: &Robot) -> String {

@@ -137,6 +137,7 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     };
     let still = [T::ZERO; N];
     let moves = Moves {
+        base_inertia: model.base().inertia(),
         base_velocity: velocity.base,
         base_acceleration: Motion::new(-gravity_b, Vector3::zeros()),
         velocity: &velocity.joints,

@@ -2,7 +2,8 @@
 //!
 //! h_G = A_G(q) ν with h_G about the centre of mass c in world axes (Orin, Goswami, Lee 2013), paper B
 //! eq. (2): the rows of A_G are its J_M^l and J_M^ω, and H_ω is `momentum.angular`. Column j is the
-//! momentum of the subtree of joint j per unit joint velocity, I_c S_j, moved to c.
+//! momentum of the subtree of joint j per unit joint velocity, I_c S_j, moved to c. A fixed base counts in none of
+//! these, see [`algo`](crate::algo).
 
 use nalgebra::{Matrix3, Rotation3, SMatrix, Vector3};
 use so3::Scalar;
@@ -12,8 +13,8 @@ use super::crba::unit_force;
 use super::gravity::gravity;
 use super::jacobian::columns;
 use super::motion::carried;
-use super::rnea::sweep;
-use super::{at, place, put};
+use super::rnea::reactions;
+use super::{at, moving_base, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
 use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform, cross, product};
@@ -133,7 +134,7 @@ pub fn centroidal_map<T: Scalar, M: Tree<T, N>, const N: usize>(
         columns: &mut out.joints,
     };
     let children = model.fold(&mut fold, &(*r, Vector3::zeros()));
-    let whole = model.base().inertia() + children;
+    let whole = moving_base(model) + children;
     let com_b = whole.com();
     let arm_w = r * com_b;
 
@@ -286,7 +287,7 @@ pub fn centroidal_state<T: Scalar, M: Tree<T, N>, const N: usize>(
     posture: &Posture<T, N>,
     velocity: &Tangent<T, N>,
 ) -> CentroidalState<T> {
-    let base = model.base().inertia();
+    let base = moving_base(model);
     let own = base.mul(&velocity.base);
     let mut fold = Momentum {
         posture,
@@ -332,7 +333,7 @@ pub fn centroidal_bias<T: Scalar, M: Tree<T, N>, const N: usize>(
 }
 
 /// Rate of the centroidal momentum, ḣ_G = A_G ν̇ + Ȧ_G ν, world axes: the sum of all external forces
-/// but gravity, about the centre of mass. Its linear part over the mass is the acceleration of the
+/// but gravity, about the centre of mass; the ground's reaction on a fixed base is one of them. Its linear part over the mass is the acceleration of the
 /// centre of mass.
 #[inline]
 #[must_use]
@@ -353,9 +354,10 @@ fn momentum_rate<T: Scalar, M: Tree<T, N>, const N: usize>(
     acceleration: Option<&Tangent<T, N>>,
 ) -> Force<T> {
     let still = Vector3::zeros();
-    let effort = sweep(model, posture, velocity, acceleration, &still, None);
+    let (field, joints) = reactions(model, posture, velocity, acceleration, &still, None);
+    let rate = field.force(&moving_base(model)) + joints.base;
     let com_b = com_in_base(model, posture);
-    about_com(posture, &com_b, &effort.base)
+    about_com(posture, &com_b, &rate)
 }
 
 /// A wrench or momentum about the base's origin in base axes, about the centre of mass in world axes.

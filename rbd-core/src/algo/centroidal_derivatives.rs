@@ -10,14 +10,16 @@
 //! becomes x_ang − c × x_lin, hence ∂x_ang − c × ∂x_lin − ∂c × x_lin. World axes add e × x for a turn e of
 //! the base; a shift of the base changes nothing.
 //!
+//! A fixed base is part of the world and counts in none of these.
+//!
 //! The centre of mass itself has ∂c/∂q = J_c, see [`com_jacobian`](crate::com_jacobian).
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use so3::Scalar;
 
-use super::put;
 use super::rnea_derivatives::DerivativesWorkspace;
 use super::sweep::{Moves, sweep};
+use super::{moving_base, put};
 use crate::spatial::{Force, Motion};
 use crate::state::{Posture, Tangent, basis};
 use crate::tree::Tree;
@@ -143,6 +145,7 @@ pub fn centroidal_derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
     out: &mut CentroidalDerivatives<T, N>,
 ) {
     let moves = Moves {
+        base_inertia: moving_base(model),
         base_velocity: velocity.base,
         base_acceleration: acceleration.base,
         velocity: &velocity.joints,

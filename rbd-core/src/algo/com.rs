@@ -5,7 +5,7 @@ use so3::Scalar;
 
 use super::crba::unit_force;
 use super::rnea::Field;
-use super::{at, place, put};
+use super::{at, moving_base, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Body;
 use crate::spatial::{Inertia, Symmetric3};
@@ -94,10 +94,10 @@ impl<T: Scalar, const N: usize> Fold<T> for Com<'_, T, N> {
     }
 }
 
-/// Mass and centre of mass of the whole robot.
+/// Mass and centre of mass of the whole robot; of the links that joints move if the base is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CenterOfMass<T: Scalar> {
-    /// Mass, kg.
+    /// Mass, kg; without a fixed base.
     pub mass: T,
     /// Position in the world, m; the base's origin for a massless robot.
     pub position_w: Vector3<T>,
@@ -139,7 +139,7 @@ impl<T: Scalar, const N: usize> ComJacobian<T, N> {
     }
 }
 
-/// Mass and centre of mass in the world: c = Σ mᵢ cᵢ / m.
+/// Mass and centre of mass in the world: c = Σ mᵢ cᵢ / m, over all links but those of a fixed base.
 #[inline]
 #[must_use]
 pub fn center_of_mass<T: Scalar, M: Tree<T, N>, const N: usize>(
@@ -197,9 +197,9 @@ fn collect<T: Scalar, M: Tree<T, N>, const N: usize>(
     fold: &mut Com<'_, T, N>,
 ) -> (T, Vector3<T>) {
     let children = model.fold(fold, &Nothing);
-    let base = model.base();
+    let base = moving_base(model);
     let mass = base.mass + children.mass;
-    let first = Vector3::from(base.first) + children.first;
+    let first = base.first + children.first;
     (
         mass,
         if mass > T::ZERO {
@@ -320,7 +320,7 @@ impl<T: Scalar, const N: usize> Fold<T> for Moving<'_, T, N> {
     }
 }
 
-/// Position, velocity and acceleration of the centre of mass, in one pass.
+/// Position, velocity and acceleration of the centre of mass, in one pass; without the links of a fixed base.
 #[inline]
 #[must_use]
 pub fn com_motion<T: Scalar, M: Tree<T, N>, const N: usize>(
@@ -337,10 +337,10 @@ pub fn com_motion<T: Scalar, M: Tree<T, N>, const N: usize>(
         acceleration: &acceleration.joints,
     };
     let children = model.fold(&mut fold, &(velocity.base.linear, field));
-    let base = model.base();
+    let base = moving_base(model);
     let moments = Moments {
         mass: base.mass,
-        first: Vector3::from(base.first),
+        first: base.first,
     };
     let all = Linear::of(moments, &velocity.base.linear, &field) + children;
     let mass = all.moments.mass;

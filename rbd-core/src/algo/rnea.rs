@@ -173,16 +173,17 @@ fn at_rotor<T: Scalar, const N: usize>(acceleration: Option<&[T; N]>, here: At<'
     acceleration.map_or(T::ZERO, |x| at(x, here.index) * here.body.rotor_inertia)
 }
 
-/// Everything that can be switched off at compile time passes through here.
+/// Everything that can be switched off at compile time passes through here. The base of the effort is what the limbs
+/// ask of the base; the field is the base's, for what the base asks for itself.
 #[inline(always)]
-pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
+pub(crate) fn reactions<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,
     posture: &Posture<T, N>,
     velocity: &Tangent<T, N>,
     acceleration: Option<&Tangent<T, N>>,
     gravity_w: &Vector3<T>,
     applied: Option<(&Force<T>, &[Force<T>; N])>,
-) -> Effort<T, N> {
+) -> (Field<T>, Effort<T, N>) {
     let a = acceleration.map_or(Motion::ZERO, |a| a.base);
     let field = Field::base(posture, &velocity.base, &a, gravity_w);
     let mut fold = Rnea {
@@ -192,15 +193,27 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
         applied: applied.map(|f| f.1),
         effort: [T::ZERO; N],
     };
-    let children = model.fold(&mut fold, &field);
-    let mut base = field.force(&model.base().inertia()) + children;
+    let base = model.fold(&mut fold, &field);
+    let joints = fold.effort;
+    (field, Effort { base, joints })
+}
+
+/// The effort of the whole robot, base included.
+#[inline(always)]
+fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
+    model: &M,
+    posture: &Posture<T, N>,
+    velocity: &Tangent<T, N>,
+    acceleration: Option<&Tangent<T, N>>,
+    gravity_w: &Vector3<T>,
+    applied: Option<(&Force<T>, &[Force<T>; N])>,
+) -> Effort<T, N> {
+    let (field, mut effort) = reactions(model, posture, velocity, acceleration, gravity_w, applied);
+    effort.base = field.force(&model.base().inertia()) + effort.base;
     if let Some((applied, _)) = applied {
-        base = base - *applied;
+        effort.base = effort.base - *applied;
     }
-    Effort {
-        base,
-        joints: fold.effort,
-    }
+    effort
 }
 
 /// Inverse dynamics: the effort that causes an acceleration, τ = M ν̇ + C ν + g.

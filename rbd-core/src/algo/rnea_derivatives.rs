@@ -230,6 +230,7 @@ fn derivatives<T: Scalar, M: Tree<T, N>, const N: usize>(
         gravity_b,
     };
     let moves = Moves {
+        base_inertia: model.base().inertia(),
         base_velocity: velocity.base,
         base_acceleration: Motion::new(
             acceleration.base.linear - gravity_b,

@@ -611,7 +611,9 @@ impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
 
 /// How a robot moves: of the base, with gravity as an upward acceleration where it counts, and of the
 /// joints.
-pub(crate) struct Moves<'a, T, const N: usize> {
+pub(crate) struct Moves<'a, T: Scalar, const N: usize> {
+    /// What counts as the base's inertia.
+    pub(crate) base_inertia: Inertia<T>,
     pub(crate) base_velocity: Motion<T>,
     pub(crate) base_acceleration: Motion<T>,
     pub(crate) velocity: &'a [T; N],
@@ -645,7 +647,7 @@ pub(crate) fn sweep<T: Scalar, M: Tree<T, N>, const N: usize>(
         ws.subtract(applied);
     }
     let own = Composite::of(
-        model.base().inertia(),
+        moves.base_inertia,
         &moves.base_velocity,
         &moves.base_acceleration,
     );

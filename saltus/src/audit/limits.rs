@@ -1,5 +1,6 @@
 //! Every limit, in every step.
 
+use super::clearance::Clearance;
 use super::{Held, Margin};
 use crate::jump::stored::joint_name;
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
@@ -13,11 +14,13 @@ use super::forward::Velocity;
 const SATURATED: f64 = 1e-3;
 
 /// Watches the limits of a robot. Ranges: of a joint's position, its limits; of its speed and torque, the largest; of forces, the
-/// largest planned normal force of a foot (times friction); of heights, the leg. In the last interval feet come down, so their height is no limit there.
+/// largest planned normal force of a foot (times friction); of heights and gaps, the leg. In the last interval feet come down, so that their
+/// height is no limit there.
 pub(super) struct Limits<'a> {
     robot: &'a Quadruped,
     motors: Option<&'a [Motor<f64>; JOINTS]>,
     ground: Option<GroundStep>,
+    clearance: Option<Clearance>,
     friction: f64,
     force_range: f64,
     names: Vec<String>,
@@ -28,7 +31,8 @@ pub(super) struct Limits<'a> {
 }
 
 impl<'a> Limits<'a> {
-    pub(super) fn new(robot: &'a Quadruped, header: &Header<'_>) -> Self {
+    pub(super) fn new(robot: &'a Quadruped, header: &Header<'_>, start: &State) -> Self {
+        let clearance = Clearance::new(robot, header.ground, start);
         let names = (0..JOINTS).map(|i| joint_name(robot, i));
         let names = names.flat_map(|joint| {
             ["position", "speed", "torque"].map(|limit| format!("{joint} {limit}"))
@@ -46,7 +50,9 @@ impl<'a> Limits<'a> {
             names: names
                 .chain(feet)
                 .chain(["trunk height".to_owned()])
+                .chain(clearance.iter().flat_map(Clearance::names))
                 .collect(),
+            clearance,
             saturation: [0.0; JOINTS],
             any_saturation: 0.0,
             margins: Vec::new(),
@@ -105,6 +111,10 @@ impl<'a> Limits<'a> {
             .iter()
             .map(|c| self.height(&q.base.point(c)));
         values.push(corners.fold(f64::INFINITY, f64::min));
+        if let Some(clearance) = &self.clearance {
+            let gaps = clearance.gaps(&kinematics, held);
+            values.extend(gaps.map(|gap| gap / self.robot.leg_length));
+        }
         self.remember(time + h, &values);
     }
 

@@ -8,16 +8,21 @@
 //! - every interval from its own node, for the limits: an open-loop stance on two feet is unstable, and what is asked is whether a robot
 //!   that is on the plan keeps its limits between nodes.
 
+mod clearance;
 mod forward;
 mod limits;
+mod values;
 
 use crate::jump::{self, stored::Stored};
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use clearance::is_clearance;
 use forward::{Forward, Velocity};
 use jump_control::container::PlanNode;
 use limits::Limits;
+use nalgebra::Vector3;
 use rbd_core::difference;
 use serde_json::{Value, json};
+pub(crate) use values::check as check_values;
 
 /// Step of the integration, s.
 const STEP: f64 = 1e-4;
@@ -25,6 +30,10 @@ const STEP: f64 = 1e-4;
 const ORIENTATION: f64 = 2.0 * core::f64::consts::PI / 180.0;
 /// Largest position error after the flight, m.
 const POSITION: f64 = 0.01;
+/// Largest difference of an integrated interval from the next node, m or rad, and m/s or rad/s: transcriptions differ by a tenth of that.
+const DEFECT: [f64; 2] = [5e-3, 0.5];
+/// Largest difference of a force from that of the robot on its feet in the middle of the interval, as a share of the largest normal force.
+const FORCE: f64 = 0.02;
 /// How far a limit may be exceeded between nodes, as a share of its range.
 const BEYOND: f64 = 0.01;
 
@@ -52,8 +61,12 @@ pub(crate) struct Audit {
     pub(crate) any_saturation: f64,
     /// Largest difference of an integrated interval from the next node: base or joint position, m or rad, and velocity.
     pub(crate) defect: [f64; 2],
+    /// Largest difference of a stored force from that of the robot under the stored torques, as a share of the largest normal force.
+    pub(crate) force_error: f64,
     /// All limits, the worst first.
     pub(crate) margins: Vec<Margin>,
+    /// What heights and gaps are shares of, m.
+    leg_length: f64,
 }
 
 impl Audit {
@@ -62,8 +75,11 @@ impl Audit {
         let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
         let takeoff = f64::from(plan.header().takeoff);
         let mut forward = Forward::new(robot);
-        let mut limits = Limits::new(robot, plan.header());
+        let start = nodes.first().map(|node| state(node).0).ok_or("no nodes")?;
+        let mut limits = Limits::new(robot, plan.header(), &start);
         let mut defect = [0.0, 0.0];
+        let mut force_error: f64 = 0.0;
+        let force_range = f64::from(plan.header().margins.max_force);
         let mut flight = None;
         let last = nodes.len().saturating_sub(2);
         for (k, pair) in nodes.windows(2).enumerate() {
@@ -76,6 +92,14 @@ impl Audit {
                 let at = time + i as f64 * held.h;
                 let forces_w = forward.step(&mut q, &mut v, &held.torques, &held.contacts, held.h);
                 limits.check(at, held.h, &q, &v, &held, &forces_w);
+                if i == held.steps / 2 {
+                    let told = from.forces_w.0.map(|f| Vector3::from(f.map(f64::from)));
+                    let gaps = told
+                        .iter()
+                        .zip(&forces_w)
+                        .map(|(a, b)| (a - b).amax() / force_range);
+                    force_error = gaps.fold(force_error, f64::max);
+                }
             }
             let (end, end_v) = state(to);
             let miss = difference(&end, &q);
@@ -106,15 +130,30 @@ impl Audit {
             saturation: limits.saturation,
             any_saturation: limits.any_saturation,
             defect,
+            force_error,
             margins,
+            leg_length: robot.leg_length,
         })
     }
 
     /// Whether the plan may be called solved.
     pub(crate) fn passes(&self) -> bool {
+        self.is_a_motion() && self.margins.iter().all(|margin| margin.value >= -BEYOND)
+    }
+
+    /// Whether the robot could move so if its links passed through the ground and each other. A plan that only fails there is worth a
+    /// simulation, which shows what comes of it.
+    pub(crate) fn is_a_motion(&self) -> bool {
+        let mut inner = self.margins.iter().filter(|m| !is_clearance(&m.name));
         self.flight_orientation_error <= ORIENTATION
             && self.flight_position_error <= POSITION
-            && self.margins.iter().all(|margin| margin.value >= -BEYOND)
+            && self.agrees()
+            && inner.all(|margin| margin.value >= -BEYOND)
+    }
+
+    /// Whether the nodes are those of one motion, and the forces those that move it.
+    fn agrees(&self) -> bool {
+        self.defect[0] <= DEFECT[0] && self.defect[1] <= DEFECT[1] && self.force_error <= FORCE
     }
 
     /// What was found, in a line.
@@ -145,8 +184,21 @@ impl Audit {
                 self.flight_position_error * 1e3
             ));
         }
+        if !self.agrees() {
+            told.push(format!(
+                "nodes and forces are not those of one motion: they differ by {:.1e} m or rad, {:.1e} m/s or rad/s and {:.0} % of the largest force",
+                self.defect[0],
+                self.defect[1],
+                100.0 * self.force_error
+            ));
+        }
         let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
         told.extend(beyond.map(|m| {
+            if is_clearance(&m.name) {
+                let deep = -1e3 * m.value * self.leg_length;
+                let through = m.name.replace(" to ", " passes through ");
+                return format!("{through} by {deep:.0} mm at {:.3} s", m.time);
+            }
             format!(
                 "{} exceeds its limit by {:.1} % of its range at {:.3} s",
                 m.name,
@@ -177,6 +229,7 @@ impl Audit {
             "position": self.defect[0],
             "velocity": self.defect[1],
         });
+        details["force_error"] = json!(self.force_error);
         let row = |m: &Margin| json!({ "name": m.name, "value": m.value, "time_s": m.time });
         details["margins"] = self.margins.iter().map(row).collect();
         details

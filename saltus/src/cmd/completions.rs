@@ -1,8 +1,8 @@
 //! `saltus completions`: what a shell needs to complete this program's command lines.
 
+use super::failure::Failure;
 use clap::Command;
 use clap_complete::Shell;
-use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Options of `saltus completions`.
@@ -13,10 +13,9 @@ pub(crate) struct Args {
 }
 
 /// Prints the script.
-pub(crate) fn run(args: &Args, mut program: Command) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args, mut program: Command) -> Result<ExitCode, Failure> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut program, "saltus", &mut script);
-    let written = io::stdout().write_all(&script);
-    written.map_err(|error| format!("the script cannot be written: {error}"))?;
+    put!("{}", String::from_utf8_lossy(&script));
     Ok(ExitCode::SUCCESS)
 }

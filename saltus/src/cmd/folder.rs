@@ -1,28 +1,72 @@
 //! Files and folders of results: whole or not there, and nothing is overwritten.
 
+use super::failure::Failure;
+use super::leftovers::{self, unfinished};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// A file's error with its name and what to do.
 pub(crate) fn describe(path: &Path, error: &io::Error) -> String {
-    use io::ErrorKind::{IsADirectory, NotADirectory, NotFound, PermissionDenied, StorageFull};
+    use io::ErrorKind::{
+        FileTooLarge, InvalidData, IsADirectory, NotADirectory, NotFound, PermissionDenied,
+        ReadOnlyFilesystem, StorageFull,
+    };
     let remedy = match error.kind() {
         NotFound => "check the path",
         IsADirectory => "give a file, not a folder",
         NotADirectory => "a part of the path is a file: check it",
-        PermissionDenied => "choose a place that you may read and write",
+        PermissionDenied | ReadOnlyFilesystem => "choose a place that you may read and write",
         StorageFull => "make room on the disk",
+        FileTooLarge => "give another file",
+        InvalidData => "give a text file",
         _ => "check the path and the disk",
     };
     format!("{}: {error}: {remedy}", path.display())
 }
 
-/// Fails if a folder for results is there already: before the work that would fill it.
-pub(crate) fn must_be_new(path: Option<&Path>) -> Result<(), String> {
-    match path.filter(|path| path.exists()) {
-        Some(path) => Err(taken(path)),
-        None => Ok(()),
+/// Fails where a new folder of results cannot be made, before the work that would fill it: `wanted`, or one in `out`. What killed
+/// processes left there is removed.
+pub(crate) fn check_new(wanted: Option<&Path>) -> Result<(), Failure> {
+    match wanted.filter(|path| path.exists()) {
+        Some(path) => Err(taken(path).into()),
+        None => check_parent(wanted.unwrap_or(Path::new("out/new"))),
+    }
+}
+
+/// Fails where a file cannot be written, before the work of which it tells.
+pub(crate) fn check_file(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        let error = io::Error::from(io::ErrorKind::IsADirectory);
+        return Err(describe(path, &error).into());
+    }
+    if path.exists() && !path.is_file() {
+        return Ok(());
+    }
+    check_parent(path)
+}
+
+/// Tries to make something where `path` will be: rights alone do not tell whether that can be.
+fn check_parent(path: &Path) -> Result<(), Failure> {
+    let parent = parent(path);
+    leftovers::remove(parent);
+    let there = parent.ancestors().map(or_here).find(|path| path.exists());
+    let probe = unfinished(there.unwrap_or(Path::new(".")));
+    let made = fs::create_dir(&probe).and_then(|()| fs::remove_dir(&probe));
+    made.map_err(|error| describe(path, &error).into())
+}
+
+/// The folder of a path.
+fn parent(path: &Path) -> &Path {
+    or_here(path.parent().unwrap_or(Path::new("")))
+}
+
+/// The empty path is where the program runs.
+fn or_here(path: &Path) -> &Path {
+    if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
     }
 }
 
@@ -38,16 +82,11 @@ pub(crate) fn publish(
     wanted: Option<&Path>,
     name: &str,
     files: &[(&str, &[u8])],
-) -> Result<PathBuf, String> {
+) -> Result<PathBuf, Failure> {
     let name = name.replace(['/', '\\'], "-");
-    let parent = match wanted {
-        Some(path) => path.parent().unwrap_or(Path::new("")),
-        None => Path::new("out"),
-    };
-    if !parent.as_os_str().is_empty() {
-        fs::create_dir_all(parent).map_err(|error| describe(parent, &error))?;
-    }
-    let unfinished = parent.join(format!(".saltus-{}", std::process::id()));
+    let parent = wanted.map_or(Path::new("out"), parent);
+    fs::create_dir_all(parent).map_err(|error| Failure::Outside(describe(parent, &error)))?;
+    let unfinished = unfinished(parent);
     let result = fill(&unfinished, files).and_then(|()| match wanted {
         Some(path) => place(&unfinished, path)?.ok_or_else(|| taken(path)),
         None => number(parent, &name, |path| place(&unfinished, path)),
@@ -56,13 +95,14 @@ pub(crate) fn publish(
         // Best effort: the error that is told is the first one.
         let _ = fs::remove_dir_all(&unfinished);
     }
-    result
+    result.map_err(Failure::Outside)
 }
 
 fn fill(folder: &Path, files: &[(&str, &[u8])]) -> Result<(), String> {
     fs::create_dir(folder).map_err(|error| describe(folder, &error))?;
     for (name, bytes) in files {
-        write(folder, name, bytes)?;
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(|error| describe(&path, &error))?;
     }
     Ok(())
 }
@@ -77,7 +117,7 @@ fn place(finished: &Path, path: &Path) -> Result<Option<PathBuf>, String> {
 }
 
 /// A new empty folder that fills while the command works: `wanted`, or `out/NAME`, `out/NAME-2` and so on.
-pub(crate) fn create(wanted: Option<&Path>, name: &str) -> Result<PathBuf, String> {
+pub(crate) fn create(wanted: Option<&Path>, name: &str) -> Result<PathBuf, Failure> {
     let make = |path: &Path| {
         if let Some(parent) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
             fs::create_dir_all(parent).map_err(|error| describe(parent, &error))?;
@@ -88,10 +128,10 @@ pub(crate) fn create(wanted: Option<&Path>, name: &str) -> Result<PathBuf, Strin
             Err(error) => Err(describe(path, &error)),
         }
     };
-    match wanted {
-        Some(path) => make(path)?.ok_or_else(|| taken(path)),
-        None => number(Path::new("out"), name, make),
-    }
+    Ok(match wanted {
+        Some(path) => make(path)?.ok_or_else(|| taken(path))?,
+        None => number(Path::new("out"), name, make)?,
+    })
 }
 
 /// The first of NAME, NAME-2 and so on that `make` takes.
@@ -116,16 +156,31 @@ fn number(
     ))
 }
 
-/// Writes one file.
-pub(crate) fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), String> {
+/// Writes one file of a folder that fills while the command works.
+pub(crate) fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
     let path = folder.join(name);
-    fs::write(&path, bytes).map_err(|error| describe(&path, &error))
+    fs::write(&path, bytes).map_err(|error| Failure::Outside(describe(&path, &error)))
+}
+
+/// Writes a file that appears only when it is complete; a pipe or a device takes the bytes as they come.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let outside = |error| Failure::Outside(describe(path, &error));
+    if fs::symlink_metadata(path).is_ok_and(|there| !there.is_file()) {
+        return fs::write(path, bytes).map_err(outside);
+    }
+    let unfinished = unfinished(parent(path));
+    let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
+    if written.is_err() {
+        // Best effort: the error that is told is the first one.
+        let _ = fs::remove_file(&unfinished);
+    }
+    written.map_err(outside)
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::publish;
+    use super::{check_file, check_new, publish, write_file};
     use std::fs;
 
     #[test]
@@ -135,13 +190,43 @@ mod tests {
         let out = root.join("a/b");
         let made = publish(Some(&out), "x", &[("one", b"1"), ("two", b"2")]).unwrap();
         assert_eq!(fs::read(made.join("two")).unwrap(), b"2");
-        let error = publish(Some(&out), "x", &[("one", b"3")]).unwrap_err();
+        let error = publish(Some(&out), "x", &[("one", b"3")])
+            .unwrap_err()
+            .message();
         assert!(error.contains("nothing is overwritten"), "{error}");
         assert_eq!(fs::read(out.join("one")).unwrap(), b"1");
         // A file that cannot be written leaves nothing behind.
         let other = root.join("a/c");
         assert!(publish(Some(&other), "x", &[("one", b"1"), ("no/such", b"2")]).is_err());
         assert_eq!(fs::read_dir(root.join("a")).unwrap().count(), 1);
+        let file = root.join("a/file");
+        write_file(&file, b"1").unwrap();
+        write_file(&file, b"2").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"2");
+        assert!(write_file(&out, b"1").is_err());
+        assert_eq!(fs::read_dir(root.join("a")).unwrap().count(), 2);
+        fs::remove_dir_all(&root).unwrap();
+    }
+
+    #[test]
+    fn a_target_that_cannot_be_is_noticed_before() {
+        let root = std::env::temp_dir().join(format!("saltus-target-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&root);
+        fs::create_dir_all(&root).unwrap();
+        fs::write(root.join("file"), "").unwrap();
+        assert!(check_new(Some(&root.join("new/deep"))).is_ok());
+        assert!(check_file(&root.join("file")).is_ok());
+        for bad in [root.clone(), root.join("file"), root.join("file/below")] {
+            assert!(check_new(Some(&bad)).is_err(), "{}", bad.display());
+        }
+        for bad in [root.clone(), root.join("file/below")] {
+            assert!(check_file(&bad).is_err(), "{}", bad.display());
+        }
+        // Nobody, root neither, makes folders there.
+        #[cfg(target_os = "linux")]
+        assert!(check_new(Some("/proc/saltus/new".as_ref())).is_err());
+        // Looking left nothing.
+        assert_eq!(fs::read_dir(&root).unwrap().count(), 1);
         fs::remove_dir_all(&root).unwrap();
     }
 }

@@ -1,33 +1,40 @@
-//! `saltus import`: turn a URDF into a `no_std` model crate.
+//! `saltus import`: turn a URDF or an MJCF into a `no_std` model crate.
 //!
 //! Exit code 0 if the robot is good (warnings go to standard error), 2 if the file, an option or the target
-//! folder is not.
+//! folder is not, 1 if the crate cannot be written.
 
+use super::failure::{Failure, brief};
 use super::folder::describe;
 use super::output::Output;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use model_import::emit::{Crate, Dependency, Provenance, type_name, write_crate};
+use model_import::emit::{Crate, Dependency, Provenance, commands, type_name, write_crate};
 use model_import::limbs::{expression, structure};
-use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, parse_lock};
+use model_import::options::AXIS_EXACT;
+use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, mjcf, parse_lock};
 use rbd_core::BaseKind;
 use serde_json::{Value, json};
 
 /// Options of `saltus import`.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The URDF.
+    /// The URDF, or the MJCF (`.xml` with a `<mujoco>` in it).
     urdf: PathBuf,
     /// Lock joints at a position, rad or m.
     #[arg(long, num_args = 1.., value_name = "JOINT=VALUE")]
     lock: Vec<String>,
-    /// Whether the base moves.
+    /// Whether the base moves; of an MJCF, whether its free joint is kept.
     #[arg(long, default_value = "floating", value_parser = ["floating", "fixed"])]
     base: String,
-    /// What becomes of joints that follow another: an error, locked, or free to move on their own.
-    #[arg(long, default_value = "refuse", value_parser = ["refuse", "lock", "free"])]
+    /// What becomes of joints that follow another: joints of their own with the coupling beside them (`REDUCTION`), locked, or an
+    /// error.
+    #[arg(long, default_value = "free", value_parser = ["free", "lock", "refuse"])]
     mimic: String,
+    /// Largest deviation of a joint axis from a coordinate axis that is taken for rounding; aligned joints compute faster.
+    #[arg(long, default_value_t = AXIS_EXACT)]
+    axis_rounding: f64,
     /// Whether moments of inertia that no body has are an error or kept.
     #[arg(long, default_value = "physical", value_parser = ["physical", "as-written"])]
     inertia: String,
@@ -37,9 +44,12 @@ pub(crate) struct Args {
     /// Package name of the crate; the robot's name with `-model` by default.
     #[arg(long)]
     package: Option<String>,
-    /// Where the crate finds rbd-core: a folder, or a version.
-    #[arg(long, default_value = env!("CARGO_PKG_VERSION"), value_name = "FOLDER|VERSION")]
-    rbd_core: String,
+    /// Where the crate finds rbd-core: a folder, or a version. By default the one this program was built with.
+    #[arg(long, value_name = "FOLDER|VERSION")]
+    rbd_core: Option<String>,
+    /// The crate is a member of the workspace around the folder, and none of its own.
+    #[arg(long)]
+    member: bool,
     /// Licence of the URDF (SPDX), which becomes the crate's.
     #[arg(long, default_value = "LicenseRef-unknown")]
     licence: String,
@@ -48,34 +58,32 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> ExitCode {
-    match import(args) {
-        Ok((robot, provenance)) => {
-            report(args, &robot, &provenance);
-            ExitCode::SUCCESS
-        }
-        Err(message) => {
-            if args.output.json {
-                println!("{}", json!({ "status": "Error", "error": message }));
-            }
-            eprintln!("saltus: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn import(args: &Args) -> Result<(Robot, Provenance), String> {
-    let text = std::fs::read_to_string(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let read = |path: &Path| match path.extension().is_some_and(|e| e == "xml") {
+        true => mjcf::read(path),
+        false => crate::file::read_text(path),
+    };
+    let text = read(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)
-        .and_then(|options| Robot::from_urdf(&text, &options))
+        .and_then(
+            |options| match text.contains("<mujoco") && !text.contains("<robot") {
+                true => Robot::from_mjcf(&text, &options),
+                false => Robot::from_urdf(&text, &options),
+            },
+        )
         .map_err(|error| format!("{}: {error}", args.urdf.display()))?;
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
-        write_crate(folder, &robot, &about(args, &robot)?, &provenance)
-            .map_err(|error| error.to_string())?;
+        write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(
+            |error| match error.kind() {
+                ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
+                _ => Failure::Outside(describe(folder, &error)),
+            },
+        )?;
     }
-    Ok((robot, provenance))
+    report(args, &robot, &provenance);
+    Ok(ExitCode::SUCCESS)
 }
 
 fn options(args: &Args) -> Result<Options, ImportError> {
@@ -88,28 +96,31 @@ fn options(args: &Args) -> Result<Options, ImportError> {
         locks: locks.collect::<Result<_, _>>()?,
         mimic: match args.mimic.as_str() {
             "lock" => MimicPolicy::Lock,
-            "free" => MimicPolicy::Free,
-            _ => MimicPolicy::Refuse,
+            "refuse" => MimicPolicy::Refuse,
+            _ => MimicPolicy::Free,
         },
         inertia: match args.inertia.as_str() {
             "as-written" => InertiaPolicy::AsWritten,
             _ => InertiaPolicy::Physical,
         },
+        axis_rounding: args.axis_rounding,
     })
 }
 
 fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
-    let folder = Path::new(&args.rbd_core);
-    let rbd_core = if folder.is_dir() {
-        let path = folder.canonicalize().map_err(|error| error.to_string())?;
-        Dependency::Path(path)
-    } else if args.rbd_core.starts_with(|c: char| c.is_ascii_digit()) {
-        Dependency::Version(args.rbd_core.clone())
-    } else {
-        return Err(format!(
-            "--rbd-core {}: neither a folder nor a version",
-            args.rbd_core
-        ));
+    let rbd_core = match &args.rbd_core {
+        None => Dependency::default(),
+        Some(text) => {
+            let folder = Path::new(text);
+            if folder.is_dir() {
+                let path = folder.canonicalize().map_err(|error| error.to_string())?;
+                Dependency::Path(path)
+            } else if text.starts_with(|c: char| c.is_ascii_digit()) {
+                Dependency::Version(text.clone())
+            } else {
+                return Err(format!("--rbd-core {text}: neither a folder nor a version"));
+            }
+        }
     };
     let package = match &args.package {
         Some(package) => package.clone(),
@@ -119,7 +130,11 @@ fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
     if !package.starts_with(|c: char| c.is_ascii_alphabetic()) || !package.chars().all(word) {
         return Err(format!("--package {package}: not a package name"));
     }
-    Ok(Crate { package, rbd_core })
+    Ok(Crate {
+        package,
+        rbd_core,
+        member: args.member,
+    })
 }
 
 /// `My Robot_v2` to `my-robot-v2-model`.
@@ -141,9 +156,13 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         return;
     }
     for warning in &robot.warnings {
-        eprintln!("warning: {warning}");
+        tell!("warning: {}", brief(&warning.to_string()));
     }
     let limbs = expression(&structure(&robot.bodies));
+    let base = match robot.base_kind {
+        BaseKind::Floating => "floating",
+        BaseKind::Fixed => "fixed",
+    };
     if args.output.json {
         let locked: Value = (robot.locked.iter())
             .map(|(joint, value)| (joint.clone(), json!(value)))
@@ -153,7 +172,7 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
         let object = json!({
             "robot": robot.name,
             "type": type_name(&robot.name),
-            "base": args.base,
+            "base": base,
             "joints": robot.joints.iter().map(|j| &j.name).collect::<Vec<_>>(),
             "frames": robot.frames.len(),
             "mass_kg": robot.mass(),
@@ -162,20 +181,24 @@ fn report(args: &Args, robot: &Robot, provenance: &Provenance) {
             "warnings": warnings,
             "source": provenance.source,
             "sha256": provenance.sha256,
+            "independent": robot.independent().iter().map(|&i| &robot.joints[i].name).collect::<Vec<_>>(),
             "out": args.out,
         });
-        println!("{object}");
+        say!("{object}");
         return;
     }
     let (joints, frames) = (robot.joints.len(), robot.frames.len());
-    println!(
+    say!(
         "{}: {joints} joints on a {} base, {frames} frames, {:.6} kg",
         robot.name,
-        args.base,
+        base,
         robot.mass()
     );
-    println!("limbs: {limbs}");
+    say!("limbs: {limbs}");
     if let Some(folder) = &args.out {
-        println!("wrote {}", folder.display());
+        say!("wrote {}; to build it:", folder.display());
+        for command in commands(folder).lines() {
+            say!("  {command}");
+        }
     }
 }

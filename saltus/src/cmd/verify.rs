@@ -2,9 +2,10 @@
 //!
 //! Exit code 0 for a plan that passes, 2 for one that does not or cannot be read.
 
+use super::failure::Failure;
 use super::folder::describe;
 use super::output::Output;
-use crate::audit::Audit;
+use crate::audit::{Audit, check_values};
 use crate::jump::stored::open;
 use crate::robot::Quadruped;
 use serde_json::json;
@@ -27,30 +28,17 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> ExitCode {
-    match verify(args) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(2),
-        Err(message) => {
-            if args.output.json {
-                println!("{}", json!({ "status": "Error", "error": message }));
-            }
-            eprintln!("saltus: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Whether the plan passes.
-fn verify(args: &Args) -> Result<bool, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let robot = match &args.robot {
         Some(path) => Quadruped::from_urdf(path, &args.lock),
         None => Quadruped::a1(),
     };
     let robot = robot.map_err(|error| error.to_string())?;
-    let bytes = std::fs::read(&args.file).map_err(|error| describe(&args.file, &error))?;
+    let bytes = crate::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
-    let audit = Audit::of(&robot, &plan)?;
+    let show = |error| format!("{}: {error}", args.file.display());
+    check_values(&robot, &plan).map_err(show)?;
+    let audit = Audit::of(&robot, &plan).map_err(show)?;
     let header = plan.header();
     let status = if audit.passes() {
         "Solved"
@@ -64,13 +52,13 @@ fn verify(args: &Args) -> Result<bool, String> {
             "status": status,
             "audit": audit.details(&robot),
         });
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{} for {}: {status}", header.task, header.robot);
-        println!("  {}", audit.summary());
+        say!("{} for {}: {status}", header.task, header.robot);
+        say!("  {}", audit.summary());
         if !audit.passes() {
-            println!("  {}", audit.complaint());
+            say!("  {}", audit.complaint());
         }
     }
-    Ok(audit.passes())
+    Ok(ExitCode::from(if audit.passes() { 0 } else { 2 }))
 }

@@ -1,13 +1,13 @@
 //! The controller of a humanoid jump: push-off by a program; flight and landing by another, or by servos. 1 kHz.
 
 use super::sensors::Told;
-use super::{GRAVITY, JOINTS, Landing, Level, ROBOT, State, Task, Velocity, landing_posture};
-use super::{on_the_floor, poses};
+use super::{GRAVITY, JOINTS, Landing, Level, State, Task, Velocity, known, landing_posture};
+use super::{flight_time, middle_of_soles, on_the_floor, poses};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::{ComProfile, Event, JointCommand, JointGains, MinimumJerk, Phase, next_phase};
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{ContactShape, JointLimits, Transform};
+use rbd_core::{JointLimits, TableModel, Transform, Tree};
 use wbc_qp::jump::{
     Absorption, ComReference, LandingReference, LandingSettings, Residuals, TorqueJump,
     TorqueJumpSettings, TorqueTick, VelocityJump, VelocityJumpSettings,
@@ -16,8 +16,9 @@ use wbc_qp::{Contact, Snapshot, Yielded, anchored};
 
 /// Length of a tick, s.
 pub(crate) const TICK: f64 = 1e-3;
-/// Duration of the aerial motion, s: a flight of 4 cm takes 0.18 s.
-const AERIAL: f64 = 0.12;
+/// Duration of the aerial motion over that of the planned flight: joints that leave the ground at 7 rad/s with their rotors need all of it,
+/// less what ground that comes early takes away.
+const AERIAL: f64 = 0.9;
 /// Factors on the servos' gains of legs and torso once the ground is there: the hold of paper B, but compliant, since the
 /// stiff one throws the robot back into the air.
 const LANDING_STIFFNESS: f64 = 0.1;
@@ -31,6 +32,8 @@ const LOADING: f64 = 0.01;
 /// Way of the centre of mass in which the fall ends, m, and the longest time for it, s.
 const ABSORB: f64 = 0.08;
 const ABSORB_TIME: f64 = 0.4;
+/// Time in which the robot then rises to the landing posture, s.
+const RISE_TIME: f64 = 0.8;
 /// Ground friction that the controller counts on.
 const FRICTION: f64 = 0.5;
 /// Residuals up to which an equality of the paper counts as held: m/s and kg m²/s.
@@ -58,6 +61,8 @@ pub(crate) struct QpLog {
 /// The controller with its memory.
 pub(crate) struct Controller {
     task: Task,
+    /// The robot as far as it is known.
+    robot: TableModel<f64, JOINTS>,
     profile: ComProfile<f64>,
     pub(crate) phase: Phase,
     pub(crate) qp: QpLog,
@@ -67,20 +72,21 @@ pub(crate) struct Controller {
     velocity: Box<VelocityJump<f64, JOINTS, 29, 12>>,
     torque: Box<TorqueJump<f64, JOINTS, 12, 35, 55>>,
     landing: Box<wbc_qp::jump::Landing<f64, JOINTS, 12, 35, 55>>,
-    /// How the fall ends: since when, from which height.
+    /// How the fall ends: since when, from which height over the soles.
     absorption: Option<(f64, f64, Absorption<f64>)>,
-    /// Orientation of the base in the landing posture.
+    /// Orientation of the base in the landing posture, and its height of the centre of mass over the soles.
     upright: Rotation3<f64>,
+    standing: f64,
     start_com: Vector3<f64>,
     /// Where the left sole stands.
     anchor: Transform<f64>,
     /// Positions that the servos track.
     servo: [f64; JOINTS],
-    /// Velocities last asked of them.
-    commanded: [f64; JOINTS],
     /// Torques of the last program that was solved.
     last_torques: [f64; JOINTS],
     aerial: MinimumJerk<f64, JOINTS>,
+    /// Velocities of the joints at the take-off.
+    pushed: [f64; JOINTS],
     took_off: f64,
     calm: f64,
 }
@@ -128,9 +134,13 @@ impl Controller {
             torque.momentum_weight = 0.0;
         }
         let start_com = super::com(start);
+        let standing = on_the_floor(landing_posture());
+        let profile = task.profile()?;
+        let flight = flight_time(&profile, start_com.z);
         Ok(Self {
             task,
-            profile: task.profile()?,
+            robot: known(&task)?,
+            profile,
             phase: Phase::Hold,
             qp: QpLog::default(),
             reference: ComReference {
@@ -144,21 +154,29 @@ impl Controller {
             torque: Box::new(TorqueJump::new(torque, start.joints)),
             landing: Box::new(wbc_qp::jump::Landing::new(LandingSettings::icub())),
             absorption: None,
-            upright: on_the_floor(landing_posture()).base.rotation,
+            upright: standing.base.rotation,
+            standing: super::com(&standing).z,
             start_com,
             anchor: poses(start).frame(&SOLES[0].frame),
             servo: start.joints,
-            commanded: [0.0; JOINTS],
             last_torques: [0.0; JOINTS],
             aerial: MinimumJerk {
                 from: start.joints,
                 velocity: [0.0; JOINTS],
                 to: landing_posture(),
-                duration: AERIAL,
+                duration: AERIAL * flight,
             },
+            pushed: [0.0; JOINTS],
             took_off: f64::INFINITY,
             calm: 0.0,
         })
+    }
+
+    /// Mass of the robot as it is known, kg.
+    pub(crate) fn mass(&self) -> f64 {
+        let base = Tree::<f64, JOINTS>::base(&self.robot).mass;
+        let bodies = Tree::<f64, JOINTS>::bodies(&self.robot);
+        base + bodies.iter().map(|body| body.mass).sum::<f64>()
     }
 
     /// Planned time of take-off, s.
@@ -172,7 +190,10 @@ impl Controller {
         match self.phase {
             Phase::Hold => (t >= 0.0).then_some(Event::Start),
             Phase::Stance => (t >= self.profile.duration).then_some(Event::Takeoff),
-            Phase::Flight => (t >= self.took_off + AERIAL).then_some(Event::Posing),
+            // The ground cannot come before the robot falls.
+            Phase::Flight => {
+                (t >= self.took_off + self.profile.speed / GRAVITY).then_some(Event::Posing)
+            }
             Phase::PreLanding if sole_force > TOUCH => Some(Event::Touchdown),
             Phase::PreLanding => (t > self.took_off + 1.0).then_some(Event::Overdue),
             Phase::Landing => (self.calm > 0.2).then_some(Event::Settled),
@@ -188,6 +209,7 @@ impl Controller {
             self.phase = next_phase(self.phase, event);
             if before == Phase::Stance {
                 self.took_off = t;
+                self.pushed = told.v.joints;
                 self.aerial.from = match self.task.landing {
                     Landing::Qp => told.q.joints,
                     Landing::Hold | Landing::Stiff => self.servo,
@@ -197,8 +219,12 @@ impl Controller {
         match self.phase {
             Phase::Hold | Phase::Stance => self.push(t, &told.q, &told.v),
             Phase::Flight | Phase::PreLanding | Phase::Landing | Phase::Stand => {
-                let (position, velocity) = self.aerial.at(t - self.took_off);
+                let [position, mut velocity, acceleration] = self.in_the_air(t - self.took_off);
                 if self.task.landing == Landing::Qp {
+                    // The program's posture is damped towards a velocity: this much more of it asks for the acceleration as well.
+                    for (v, a) in velocity.iter_mut().zip(acceleration) {
+                        *v += a / self.landing.settings.posture[0].damping;
+                    }
                     return self.land(t, told, position, velocity);
                 }
                 self.servo = position;
@@ -215,6 +241,30 @@ impl Controller {
         }
     }
 
+    /// Positions, velocities and accelerations of the joints a time after the take-off: a minimum jerk from rest to the landing posture, and
+    /// what is left of the push-off's velocity v: v (1 − x)³ after a share x of the duration T, a way of v T/4.
+    ///
+    /// A minimum jerk that starts with v alone brakes from nothing: the soles would go on to push. This brakes with 3 v/T at once, harder
+    /// than the body falls for all T < 3 v/g, and at no time harder than that.
+    fn in_the_air(&self, time: f64) -> [[f64; JOINTS]; 3] {
+        let all = self.aerial.duration;
+        let x = (time / all).clamp(0.0, 1.0);
+        let left = 1.0 - x;
+        let mut rest = self.aerial;
+        for (to, v) in rest.to.iter_mut().zip(&self.pushed) {
+            *to -= 0.25 * v * all;
+        }
+        let (mut position, mut velocity) = rest.at(time);
+        let acceleration = core::array::from_fn(|i| {
+            let v = self.pushed[i];
+            position[i] += 0.25 * v * all * (1.0 - left * left * left * left);
+            velocity[i] += v * left * left * left;
+            let way = rest.to[i] - rest.from[i];
+            60.0 * way * x * left * (1.0 - 2.0 * x) / (all * all) - 3.0 * v * left * left / all
+        });
+        [position, velocity, acceleration]
+    }
+
     /// Whether the robot has come down.
     fn on_ground(&self) -> bool {
         matches!(self.phase, Phase::Landing | Phase::Stand)
@@ -228,7 +278,7 @@ impl Controller {
         posture: [f64; JOINTS],
         velocity: [f64; JOINTS],
     ) -> JointCommand<f64, JOINTS> {
-        self.snapshot.update(&ROBOT, &told.q, &told.v);
+        self.snapshot.update(&self.robot, &told.q, &told.v);
         let on_ground = self.on_ground();
         for (contact, force) in self.contacts.iter_mut().zip(told.forces) {
             let there = on_ground && force > SOLE_TOUCH;
@@ -239,21 +289,9 @@ impl Controller {
                 (contact.load + step).clamp(0.0, 1.0)
             };
         }
-        let com = self.snapshot.com_w();
-        if self.on_ground() && self.absorption.is_none() {
-            let speed = self.snapshot.com_velocity_w().z.min(0.0);
-            let absorption = Absorption::new(speed, ABSORB, ABSORB_TIME);
-            self.absorption = Some((t, com.z, absorption));
-        }
-        let (height, speed, acceleration) = self.absorption.map_or(
-            (com.z, self.snapshot.com_velocity_w().z, -GRAVITY),
-            |(start, height, absorption)| {
-                let [way, speed, acceleration] = absorption.at(t - start);
-                (height + way, speed, acceleration)
-            },
-        );
-        let mut position_w = self.middle_of_soles();
-        position_w.z = height;
+        let soles = middle_of_soles(&self.snapshot.kinematics);
+        let [height, speed, acceleration] = self.height(t, soles.z);
+        let position_w = Vector3::new(soles.x, soles.y, soles.z + height);
         let up = Vector3::z();
         let wanted = LandingReference {
             com: ComReference {
@@ -267,7 +305,7 @@ impl Controller {
         };
         self.qp.solves += 1;
         let tick = self.landing.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             (&guarded_limits(), &self.task.motors()),
@@ -276,20 +314,32 @@ impl Controller {
         self.command(tick, None)
     }
 
-    /// Middle of both soles in the world.
-    fn middle_of_soles(&self) -> Vector3<f64> {
-        let middles = SOLES.map(|sole| {
-            let ContactShape::Rectangle {
-                x: [a, b],
-                y: [c, d],
-            } = sole.shape
-            else {
-                unreachable!("the soles are rectangles")
-            };
-            let middle = Vector3::new(0.5 * (a + b), 0.5 * (c + d), 0.0);
-            self.snapshot.pose(&sole.frame).point(&middle)
-        });
-        (middles[0] + middles[1]) * 0.5
+    /// Height of the centre of mass over soles that are `floor` high, its speed and acceleration as they should be: a free fall, its end,
+    /// and a rise to the landing posture. Over the soles, since legs measure it; the estimated height over the world drifts with a blow.
+    fn height(&mut self, t: f64, floor: f64) -> [f64; 3] {
+        let (now, speed) = (
+            self.snapshot.com_w().z - floor,
+            self.snapshot.com_velocity_w().z,
+        );
+        if self.on_ground() && self.absorption.is_none() {
+            let absorption = Absorption::new(speed.min(0.0), ABSORB, ABSORB_TIME);
+            self.absorption = Some((t, now, absorption));
+        }
+        let Some((start, first, absorption)) = self.absorption else {
+            return [now, speed, -GRAVITY];
+        };
+        let [way, speed, acceleration] = absorption.at(t - start);
+        let left = t - start - absorption.duration;
+        if left < 0.0 {
+            return [first + way, speed, acceleration];
+        }
+        let x = (left / RISE_TIME).min(1.0);
+        let rise = self.standing - first - way;
+        [
+            first + way + rise * x * x * x * (10.0 - x * (15.0 - 6.0 * x)),
+            rise * 30.0 * x * x * (1.0 - x) * (1.0 - x) / RISE_TIME,
+            rise * 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (RISE_TIME * RISE_TIME),
+        ]
     }
 
     fn track(&self, velocity: [f64; JOINTS]) -> JointCommand<f64, JOINTS> {
@@ -305,11 +355,11 @@ impl Controller {
         let sole = &SOLES[0].frame;
         let (q, v) = match self.task.level {
             // Servos hide the soles' own small motion, and a centre of mass that ignores it is smooth.
-            Level::Velocity => anchored(&ROBOT, &q.joints, &v.joints, sole, &self.anchor),
+            Level::Velocity => anchored(&self.robot, &q.joints, &v.joints, sole, &self.anchor),
             // Torques do not: a sole that rocks would look like the whole robot rocking.
             Level::Torque => (*q, *v),
         };
-        self.snapshot.update(&ROBOT, &q, &v);
+        self.snapshot.update(&self.robot, &q, &v);
         let point = self.profile.at(t);
         let up = Vector3::z();
         self.reference = ComReference {
@@ -326,7 +376,7 @@ impl Controller {
 
     fn push_by_velocity(&mut self) -> JointCommand<f64, JOINTS> {
         let tick = self.velocity.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             &guarded_limits(),
@@ -343,17 +393,17 @@ impl Controller {
                 [0.0; JOINTS]
             }
         };
-        self.commanded = velocities;
+        let command = self.track(velocities);
         for (servo, qd) in self.servo.iter_mut().zip(velocities) {
             *servo += TICK * qd;
         }
-        self.track(velocities)
+        command
     }
 
     /// Torques are held for a tick; the servos only follow, to be ready for the flight.
     fn push_by_torque(&mut self) -> JointCommand<f64, JOINTS> {
         let tick = self.torque.tick(
-            &ROBOT,
+            &self.robot,
             &self.snapshot,
             &self.contacts,
             (&guarded_limits(), &self.task.motors()),

@@ -7,23 +7,24 @@ pub(crate) mod log;
 pub(crate) mod report;
 pub(crate) mod sensors;
 
-use crate::jump::plant::{Disturbance, Sim};
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use crate::jump::plant::Sim;
+use crate::lab::{self, Disturbance, Key};
+use contact_sim::{NativeSimulator, Settings, Shape, Terrain};
 use icub_model::gazebo::joint;
-use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, takeoff_speed};
 use nalgebra::Vector3;
 use rbd_core::{
-    Configuration, Kinematics, Motor, Posture, TableModel, Tangent, center_of_mass,
-    forward_kinematics,
+    BaseKind, Configuration, ContactShape, Kinematics, Motor, Posture, TableModel, Tangent, Tree,
+    center_of_mass, forward_kinematics,
 };
 
 /// Joints of the robot.
 pub(crate) const JOINTS: usize = 23;
 /// Balls in the corners of its two soles.
 pub(crate) const SPHERES: usize = 8;
-/// The robot, with the inertias of the Gazebo model that the paper simulated.
-pub(crate) const ROBOT: Icub23 = Icub23;
+/// The robot, with the inertias of the Gazebo model that the paper simulated and the rotors behind its gears.
+pub(crate) const ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
 /// Radius of the balls in the corners of the soles, m.
 const CORNER_RADIUS: f64 = 0.005;
 /// Magnitude of gravity, m/s².
@@ -65,6 +66,8 @@ pub(crate) struct Task {
     pub(crate) torque_share: f64,
     /// Controller of flight and landing.
     pub(crate) landing: Landing,
+    /// Whether the controller's model has the rotors, which are on the motors' data sheets.
+    pub(crate) knows_rotors: bool,
 }
 
 impl Task {
@@ -81,7 +84,26 @@ impl Task {
             momentum: true,
             torque_share: 1.0,
             landing: Landing::Qp,
+            knows_rotors: true,
         })
+    }
+
+    /// As [`named`](Self::named), with variants behind the name: `+stiff`, paper B's own landing; `+blind`, a controller that does not
+    /// know of the rotors; `+3cm`, another height.
+    pub(crate) fn variant(name: &str) -> Option<Self> {
+        let mut parts = name.split('+');
+        let mut task = Self::named(parts.next()?)?;
+        for part in parts {
+            match part {
+                "stiff" => task.landing = Landing::Stiff,
+                "blind" => task.knows_rotors = false,
+                height => {
+                    let cm: f64 = height.strip_suffix("cm")?.parse().ok()?;
+                    task.height = Some(0.01 * cm).filter(|h| *h > 0.0 && *h <= 1.0)?;
+                }
+            }
+        }
+        Some(task)
     }
 
     /// The motors there are.
@@ -106,6 +128,17 @@ impl Task {
         ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY)
             .ok_or_else(|| format!("height {} m: a positive height is needed", self.height))
     }
+}
+
+/// The robot as its controller knows it.
+pub(crate) fn known(task: &Task) -> Result<TableModel<f64, JOINTS>, String> {
+    let mut bodies = *ROBOT.bodies();
+    if !task.knows_rotors {
+        for body in &mut bodies {
+            body.rotor_inertia = 0.0;
+        }
+    }
+    TableModel::new(BaseKind::Floating, *ROBOT.base(), &bodies).map_err(|error| error.to_string())
 }
 
 /// A posture with both legs alike: hip, knee and ankle pitch and torso pitch, the arms half bent at the sides.
@@ -141,6 +174,22 @@ pub(crate) fn com(q: &State) -> Vector3<f64> {
     center_of_mass(&ROBOT, &Posture::new(&ROBOT, q)).position_w
 }
 
+/// Middle of both soles' rectangles in the world.
+pub(crate) fn middle_of_soles(poses: &Kinematics<f64, JOINTS>) -> Vector3<f64> {
+    let middles = SOLES.map(|sole| {
+        let ContactShape::Rectangle {
+            x: [a, b],
+            y: [c, d],
+        } = sole.shape
+        else {
+            unreachable!("the soles are rectangles")
+        };
+        let middle = Vector3::new(0.5 * (a + b), 0.5 * (c + d), 0.0);
+        poses.frame(&sole.frame).point(&middle)
+    });
+    (middles[0] + middles[1]) * 0.5
+}
+
 /// The robot with these joints and its left sole flat on the floor, toes along x, the middle between the soles' frames at
 /// the origin.
 pub(crate) fn on_the_floor(joints: [f64; JOINTS]) -> State {
@@ -165,9 +214,18 @@ pub(crate) fn landing_posture() -> [f64; JOINTS] {
     posture(1.08, -1.35, -0.5, 0.2)
 }
 
+/// Time from the planned take-off to the planned touchdown, s, of a push-off that starts with the centre of mass at height `start`: the
+/// throw ends where the legs of the landing posture reach the ground.
+pub(crate) fn flight_time(profile: &ComProfile<f64>, start: f64) -> f64 {
+    let takeoff = start + profile.at(profile.duration).rise;
+    let drop = takeoff - com(&on_the_floor(landing_posture())).z;
+    let v = profile.speed;
+    (v + so3::math::sqrt((v * v + 2.0 * GRAVITY * drop).max(0.0))) / GRAVITY
+}
+
 /// The corners of the soles.
-pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
-    let corners = SOLES.map(|sole| ContactSphere::corners(&sole, CORNER_RADIUS));
+pub(crate) fn spheres() -> [Shape<f64>; SPHERES] {
+    let corners: [_; 2] = core::array::from_fn(|i| Shape::corners(&SOLES[i], CORNER_RADIUS, 4 * i));
     core::array::from_fn(|i| match &corners[i / 4] {
         Some(balls) => balls[i % 4],
         None => unreachable!("the soles are rectangles"),
@@ -175,19 +233,29 @@ pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
 }
 
 /// A simulator of the robot.
-pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
+type Plant = lab::Plant<JOINTS, SPHERES>;
 
-/// The robot in a simulator.
-pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<Plant, String> {
+/// The robot in its lab.
+pub(crate) type World = lab::Ground<JOINTS, SPHERES>;
+
+/// The robot in a simulator, at rest at `start`.
+pub(crate) fn plant(
+    task: &Task,
+    sim: Sim,
+    disturbance: &Disturbance,
+    start: &State,
+) -> Result<World, String> {
     let limits = LIMITS.map(|mut limits| {
-        limits.damping *= disturbance.joint_friction;
-        limits.friction *= disturbance.joint_friction;
+        limits.friction = disturbance
+            .set_to(Key::JointFriction)
+            .unwrap_or(limits.friction);
         limits
     });
     let mut settings = Settings::new(&limits, &task.motors());
-    settings.contact.friction = disturbance.friction;
-    let robot = disturbance.robot(&ROBOT)?;
-    Ok(match sim {
+    settings.contact.friction = disturbance.get(Key::Friction);
+    settings.contact.time_constant = disturbance.seconds(Key::Ground);
+    let robot = lab::robot(disturbance, &ROBOT)?;
+    let mut plant: Plant = match sim {
         Sim::Native => Box::new(NativeSimulator::new(
             robot,
             spheres(),
@@ -195,7 +263,9 @@ pub(crate) fn plant(task: &Task, sim: Sim, disturbance: &Disturbance) -> Result<
             settings,
         )),
         Sim::Mujoco => mujoco(&robot, settings)?,
-    })
+    };
+    plant.reset(start, &Tangent::ZERO);
+    Ok(World::new(plant, disturbance.get(Key::GroundHeight)))
 }
 
 /// MuJoCo, with the soles as boxes.
@@ -213,7 +283,7 @@ fn mujoco(
         .map(|(i, sole)| Geom::of(sole, 4 * i))
         .collect();
     settings.substeps = 1;
-    let sim = MujocoSimulator::new(robot, &geoms, &Terrain::FLAT, settings);
+    let sim = MujocoSimulator::new(robot, (&geoms, &[]), &Terrain::FLAT, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 

@@ -1,104 +1,88 @@
 //! Rates of success with their confidence, by cells of what was disturbed.
 
-use super::execute::Run;
-use super::judge::Verdict;
-use super::plant::Disturbance;
+use super::execute::Trial;
+use super::judge::Judged;
+use crate::lab::Key;
+use crate::lab::keys::{COUNT, ROWS, Row};
+use crate::verdict::TARGET;
 use core::fmt::Write;
+use std::collections::BTreeMap;
 
 /// Intervals per disturbance.
 const BINS: usize = 4;
 
-/// One disturbance: name, value in a sample, range.
-type Axis = (&'static str, fn(&Sample) -> f64, [f64; 2]);
+/// The two disturbances of the picture.
+const PICTURE: [Key; 2] = [Key::Ground, Key::TorqueGain];
 
-/// The disturbances whose cells are counted, relative to nominal, with the ranges of [`Disturbance::draw`].
-const AXES: [Axis; 4] = [
-    ("friction", |s| s.values[0], [0.8, 1.2]),
-    ("mass", |s| s.values[1], [0.95, 1.05]),
-    ("rotors", |s| s.values[2], [0.7, 1.3]),
-    ("joint_friction", |s| s.values[3], [0.7, 1.3]),
-];
-
-/// What an [`outcome`](Sample) is where the target is met.
-const TARGET: &str = "target";
-/// Why a run is not on target, gravest first.
-pub(crate) const CAUSES: [&str; 6] = ["fault", "no_touchdown", "fell", "trunk", "place", "heading"];
-/// Place that counts as near, m.
-const NEAR: f64 = 0.20;
+/// What differs between the samples of a study: whatever A1's lab draws.
+fn axes() -> impl Iterator<Item = &'static Row> {
+    ROWS.iter().filter(|row| row.lab[0][0] < row.lab[0][1])
+}
 
 /// One run of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) index: u64,
     seed: u64,
-    /// Ground friction, mass, rotor inertia and joint friction, relative to nominal.
-    values: [f64; 4],
-    position_error: f64,
-    orientation_error: f64,
-    /// `target`, or why not: the first of [`CAUSES`] that holds.
+    /// By key.
+    values: [f64; COUNT],
+    feet_error: f64,
+    rotation_error: f64,
+    /// `target`, or what failed first.
     outcome: String,
 }
 
 impl Sample {
     /// Names of the columns.
-    pub(crate) const HEADER: &str = "index,seed,friction,mass,rotors,joint_friction,position_error_m,orientation_error_deg,outcome";
+    pub(crate) fn header() -> String {
+        let names: Vec<&str> = ROWS.iter().map(|row| row.name).collect();
+        format!(
+            "index,seed,{},feet_error_m,rotation_error_deg,outcome",
+            names.join(",")
+        )
+    }
 
-    pub(crate) fn new(
-        index: u64,
-        seed: u64,
-        disturbance: &Disturbance,
-        run: &Run,
-        verdict: &Verdict,
-    ) -> Self {
-        let holds = [
-            run.fault.is_some(),
-            run.first_contact.is_none(),
-            !(verdict.landed && verdict.upright),
-            !verdict.trunk_is_right,
-            verdict.position_error > 0.10,
-            !verdict.on_target(),
-        ];
-        let mut causes = CAUSES.into_iter().zip(holds);
-        let outcome = causes.find_map(|(cause, holds)| holds.then_some(cause));
+    pub(crate) fn new(index: u64, trial: &Trial<'_>, judged: &Judged) -> Self {
+        let stand = judged.verdict.stand;
         Self {
             index,
-            seed,
-            values: [
-                disturbance.friction / Disturbance::NOMINAL.friction,
-                disturbance.mass,
-                disturbance.rotors,
-                disturbance.joint_friction,
-            ],
-            position_error: verdict.position_error,
-            orientation_error: verdict.orientation_error,
-            outcome: outcome.unwrap_or(TARGET).to_owned(),
+            seed: trial.seed,
+            values: core::array::from_fn(|i| trial.disturbance.get(ROWS[i].key)),
+            feet_error: stand.map_or(f64::NAN, |stand| stand.feet),
+            rotation_error: stand.map_or(f64::NAN, |stand| stand.rotation),
+            outcome: judged.verdict.outcome().to_owned(),
         }
     }
 
-    /// As a line of the file.
+    /// As a line of the file; a comma ends it, so that one that was cut is seen.
     pub(crate) fn line(&self) -> String {
-        let [a, b, c, d] = self.values;
-        format!(
-            "{},{},{a:.6},{b:.6},{c:.6},{d:.6},{:.6},{:.4},{}",
-            self.index, self.seed, self.position_error, self.orientation_error, self.outcome
-        )
+        let mut out = format!("{},{},", self.index, self.seed);
+        for value in self.values {
+            let _ = write!(out, "{value:.6},");
+        }
+        let _ = write!(
+            out,
+            "{:.6},{:.4},{},",
+            self.feet_error, self.rotation_error, self.outcome
+        );
+        out
     }
 
     /// The way back from [`Sample::line`]; `None` for headings and broken lines.
     pub(crate) fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.split(',').collect();
-        let [index, seed, a, b, c, d, place, turn, outcome] = cells[..] else {
+        let [index, seed, values @ .., feet, rotation, outcome, ""] = cells.as_slice() else {
             return None;
         };
         let number = |text: &str| text.parse::<f64>().ok();
-        (outcome == TARGET || CAUSES.contains(&outcome)).then_some(())?;
+        let values: Option<Vec<f64>> = values.iter().map(|text| number(text)).collect();
         Some(Self {
             index: index.parse().ok()?,
             seed: seed.parse().ok()?,
-            values: [number(a)?, number(b)?, number(c)?, number(d)?],
-            position_error: number(place)?,
-            orientation_error: number(turn)?,
-            outcome: outcome.to_owned(),
+            values: values?.try_into().ok()?,
+            feet_error: number(feet)?,
+            rotation_error: number(rotation)?,
+            outcome: (*outcome).to_owned(),
         })
     }
 
@@ -106,10 +90,8 @@ impl Sample {
         self.outcome == TARGET
     }
 
-    /// As [`Sample::good`], but within 0.20 m.
-    fn near(&self) -> bool {
-        let placed = self.outcome == "place" && self.position_error <= NEAR;
-        self.good() || placed && self.orientation_error <= 10.0
+    fn value(&self, key: Key) -> f64 {
+        self.values[key as usize]
     }
 }
 
@@ -118,34 +100,29 @@ impl Sample {
 pub(crate) struct Counts {
     pub(crate) samples: usize,
     pub(crate) on_target: usize,
-    /// On target but for a place within 0.20 m.
-    pub(crate) near: usize,
-    /// Those not on target, by [`CAUSES`].
-    pub(crate) failed: [usize; CAUSES.len()],
+    /// Those not on target, by what failed first.
+    pub(crate) failed: BTreeMap<String, usize>,
 }
 
 impl Counts {
     pub(crate) fn of(samples: &[Sample]) -> Self {
-        let count = |is: &dyn Fn(&Sample) -> bool| samples.iter().filter(|s| is(s)).count();
+        let mut failed = BTreeMap::new();
+        for sample in samples.iter().filter(|sample| !sample.good()) {
+            *failed.entry(sample.outcome.clone()).or_insert(0) += 1;
+        }
         Self {
             samples: samples.len(),
-            on_target: count(&Sample::good),
-            near: count(&Sample::near),
-            failed: CAUSES.map(|cause| count(&|s| s.outcome == cause)),
+            on_target: samples.iter().filter(|sample| sample.good()).count(),
+            failed,
         }
     }
 
-    /// Causes with the number of their samples, without those that have none.
-    pub(crate) fn causes(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let causes = CAUSES.into_iter().zip(self.failed);
-        causes.filter(|(_, count)| *count > 0)
-    }
-
-    /// Causes for people: `place 3, fell 1`.
+    /// What failed first, for people: `flight.rotation_deg 3, stand.upright 1`.
     pub(crate) fn failures(&self) -> String {
         let words: Vec<String> = self
-            .causes()
-            .map(|(name, n)| format!("{name} {n}"))
+            .failed
+            .iter()
+            .map(|(name, count)| format!("{name} {count}"))
             .collect();
         words.join(", ")
     }
@@ -178,7 +155,7 @@ fn edges([low, high]: [f64; 2], bin: usize) -> [f64; 2] {
     [low + width * bin as f64, low + width * (bin + 1) as f64]
 }
 
-/// All samples, then the cells of each disturbance, then those of friction and mass together; then failures by cause.
+/// All samples, then the cells of each disturbance, then those of the picture's two together; then what failed first.
 pub(crate) fn table(samples: &[Sample]) -> String {
     let mut out =
         String::from("cell,from,to,cell2,from2,to2,samples,on_target,rate,low95,high95\n");
@@ -193,40 +170,41 @@ pub(crate) fn table(samples: &[Sample]) -> String {
         );
     };
     row("all,,,,,", &samples.iter().collect::<Vec<_>>());
-    for (name, value, range) in AXES {
+    for axis in axes() {
+        let range = axis.lab[0];
         for k in 0..BINS {
-            let cell: Vec<&Sample> = samples
-                .iter()
-                .filter(|s| bin(value(s), range) == k)
-                .collect();
+            let inside = |s: &&Sample| bin(s.value(axis.key), range) == k;
+            let cell: Vec<&Sample> = samples.iter().filter(inside).collect();
             let [from, to] = edges(range, k);
-            row(&format!("{name},{from:.4},{to:.4},,,"), &cell);
+            row(&format!("{},{from:.4},{to:.4},,,", axis.name), &cell);
         }
     }
+    let [a, b] = PICTURE.map(Key::row);
     for (i, j, cell) in grid(samples) {
-        let ([f0, f1], [m0, m1]) = (edges(AXES[0].2, i), edges(AXES[1].2, j));
-        let name = format!("friction,{f0:.4},{f1:.4},mass,{m0:.4},{m1:.4}");
+        let ([a0, a1], [b0, b1]) = (edges(a.lab[0], i), edges(b.lab[0], j));
+        let name = format!("{},{a0:.4},{a1:.4},{},{b0:.4},{b1:.4}", a.name, b.name);
         row(&name, &cell);
     }
-    for (cause, count) in Counts::of(samples).causes() {
+    for (cause, count) in Counts::of(samples).failed {
         let _ = writeln!(out, "# failed: {cause} {count}");
     }
     out
 }
 
-/// Cells of friction and mass.
+/// Cells of the picture's two disturbances.
 fn grid(samples: &[Sample]) -> impl Iterator<Item = (usize, usize, Vec<&Sample>)> {
+    let [a, b] = PICTURE.map(Key::row);
     (0..BINS).flat_map(move |i| {
         (0..BINS).map(move |j| {
             let inside = |s: &&Sample| {
-                bin((AXES[0].1)(s), AXES[0].2) == i && bin((AXES[1].1)(s), AXES[1].2) == j
+                bin(s.value(a.key), a.lab[0]) == i && bin(s.value(b.key), b.lab[0]) == j
             };
             (i, j, samples.iter().filter(inside).collect())
         })
     })
 }
 
-/// Cells of friction and mass as a picture: darker is better, with the rate and the number of samples.
+/// Cells of ground and torque as a picture: darker is better, with the rate and the number of samples.
 pub(crate) fn picture(samples: &[Sample], title: &str) -> String {
     let side = 90;
     let (left, top) = (90, 50);
@@ -263,18 +241,19 @@ pub(crate) fn picture(samples: &[Sample], title: &str) -> String {
             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{:.2}</text><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.3}</text>",
             left + side * k,
             top + side * BINS + 20,
-            at(AXES[0].2),
+            at(PICTURE[0].row().lab[0]),
             left - 6,
             top + side * (BINS - k) + 5,
-            at(AXES[1].2)
+            at(PICTURE[1].row().lab[0])
         );
     }
     let _ = writeln!(
         out,
-        "<text x=\"{}\" y=\"{}\">friction, relative</text><text x=\"10\" y=\"{}\">mass</text>\n</svg>",
-        left,
+        "<text x=\"{left}\" y=\"{}\">{}</text><text x=\"10\" y=\"{}\">{}</text>\n</svg>",
         top + side * BINS + 44,
-        top - 10
+        PICTURE[0].row().name,
+        top - 10,
+        PICTURE[1].row().name
     );
     out
 }
@@ -282,14 +261,18 @@ pub(crate) fn picture(samples: &[Sample], title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{Counts, Sample, bin, table, wilson};
+    use crate::lab::Key;
+    use crate::lab::keys::ROWS;
 
-    fn sample(index: u64, friction: f64, outcome: &str) -> Sample {
+    fn sample(index: u64, ground: f64, outcome: &str) -> Sample {
+        let mut values = ROWS.each_ref().map(|row| row.nominal.unwrap_or(0.25));
+        values[Key::Ground as usize] = ground;
         Sample {
             index,
             seed: 9,
-            values: [friction, 1.0, 1.0, 1.0],
-            position_error: 0.012,
-            orientation_error: 1.5,
+            values,
+            feet_error: 0.012,
+            rotation_error: 1.5,
             outcome: outcome.to_owned(),
         }
     }
@@ -310,13 +293,13 @@ mod tests {
 
     #[test]
     fn lines_come_back_and_broken_ones_do_not() {
-        let one = sample(3, 0.9, "target");
+        let one = sample(3, 9.0, "target");
         assert_eq!(Sample::parse(&one.line()), Some(one.clone()));
         let line = one.line();
         for cut in 1..line.len() {
             assert_eq!(Sample::parse(&line[..cut]), None, "{}", &line[..cut]);
         }
-        assert_eq!(Sample::parse(Sample::HEADER), None);
+        assert_eq!(Sample::parse(&Sample::header()), None);
     }
 
     #[test]
@@ -328,27 +311,24 @@ mod tests {
         );
         let samples: Vec<Sample> = (0..8)
             .map(|i| {
-                let outcome = if i < 6 { "target" } else { "fell" };
-                sample(i, 0.81 + 0.05 * i as f64, outcome)
+                let outcome = if i < 6 { "target" } else { "stand.upright" };
+                sample(i, 2.5 + 2.25 * i as f64, outcome)
             })
             .collect();
         let text = table(&samples);
         assert!(text.contains("all,,,,,,8,6,0.7500,"));
-        assert!(text.contains("friction,0.8000,0.9000,,,,2,2,1.0000,"));
-        assert!(text.contains("friction,1.1000,1.2000,,,,2,0,0.0000,"));
-        assert!(text.contains("# failed: fell 2"));
+        assert!(text.contains("ground,2.0000,6.5000,,,,2,2,1.0000,"));
+        assert!(text.contains("ground,15.5000,20.0000,,,,2,0,0.0000,"));
+        assert!(text.contains("# failed: stand.upright 2"));
     }
 
     #[test]
-    fn failures_are_counted_by_cause_and_near_ones_apart() {
-        let mut samples: Vec<Sample> = ["target", "place", "place", "place", "fell", "trunk"]
-            .map(|outcome| sample(0, 1.0, outcome))
+    fn failures_are_counted_by_what_failed_first() {
+        let samples: Vec<Sample> = ["target", "stand.feet_m", "stand.feet_m", "fault"]
+            .map(|outcome| sample(0, 2.0, outcome))
             .into();
-        samples[1].position_error = 0.15;
-        samples[2].position_error = 0.25;
-        (samples[3].position_error, samples[3].orientation_error) = (0.15, 12.0);
         let counts = Counts::of(&samples);
-        assert_eq!((counts.samples, counts.on_target, counts.near), (6, 1, 2));
-        assert_eq!(counts.failures(), "fell 1, trunk 1, place 3");
+        assert_eq!((counts.samples, counts.on_target), (4, 1));
+        assert_eq!(counts.failures(), "fault 1, stand.feet_m 2");
     }
 }

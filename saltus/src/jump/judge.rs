@@ -1,98 +1,145 @@
-//! What a run achieved, as numbers.
+//! A jump of a quadruped, measured for its verdict.
 
-use super::execute::{Run, SETTLE};
-use super::plant::Sim;
+use super::execute::{Run, SETTLE, Trial};
+use super::log::Sample;
 use super::reference::{Reference, heading_matrix};
 use super::task::{SrbPlan, Task};
+use super::{FOOT_COUNT, JOINTS, State, feet, kinematics, state};
+use crate::verdict::{FALLEN, Failure, Flight, Stand, Verdict};
 use jump_control::Phase;
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::Transform;
 use serde_json::{Value, json};
 
-/// Tilt up to which the robot counts as upright, rad.
-const UPRIGHT: f64 = 10.0 * core::f64::consts::PI / 180.0;
-
-/// Largest angle between the base and its goal on target, degrees.
-pub(crate) const ALLOWED_TURN: f64 = 10.0;
-
-/// The verdict on one run.
-pub(crate) struct Verdict {
+/// A run with its verdict and what else is told of it.
+pub(crate) struct Judged {
+    pub(crate) verdict: Verdict,
     /// Touched down on its feet and never lost them to a fault.
     pub(crate) landed: bool,
-    /// The trunk touched nothing, or the task allows that it does.
-    pub(crate) trunk_is_right: bool,
-    /// Tilt below 10° two seconds after touchdown.
-    pub(crate) upright: bool,
-    /// Time from touchdown until the tilt stays below 10°, s.
+    /// Time from touchdown until the tilt stays below that of a fallen robot, s.
     pub(crate) upright_after: Option<f64>,
-    /// Horizontal distance of the base from its goal at the end, m.
-    pub(crate) position_error: f64,
-    /// Angle between the base and its goal at the end, degrees.
-    pub(crate) orientation_error: f64,
-    /// The same angle at touchdown: what the jump itself missed, before the landing turns the robot on its feet.
-    pub(crate) touchdown_orientation_error: Option<f64>,
+    /// Angle between the base and its goal at the first contact, degrees.
+    pub(crate) touchdown_rotation: Option<f64>,
     /// Largest height of the centre of mass, m.
     pub(crate) apex: f64,
 }
 
-impl Verdict {
-    /// Judges a run.
-    pub(crate) fn of(task: &Task, run: &Run) -> Self {
-        let tilt = |s: &super::log::Sample| {
-            let up = s.orientation * nalgebra::Vector3::z();
-            so3::math::atan2(so3::math::hypot(up.x, up.y), up.z)
+/// Tilt of the body, degrees.
+fn tilt(s: &Sample) -> f64 {
+    let up = s.orientation * Vector3::z();
+    so3::math::atan2(so3::math::hypot(up.x, up.y), up.z).to_degrees()
+}
+
+/// Angle between two rotations, degrees.
+fn between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
+    so3::log(&(a.inverse() * b)).norm().to_degrees()
+}
+
+/// Middle of the feet, world axes.
+fn middle_of_feet(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Vector3<f64> {
+    let q = State {
+        base: *base,
+        joints: *joints,
+    };
+    let poses = kinematics::poses(&q);
+    let sum: Vector3<f64> = feet()
+        .iter()
+        .map(|foot| poses.frame(foot).translation)
+        .sum();
+    sum / FOOT_COUNT as f64
+}
+
+/// Beside the plan at its touchdown; `None` for a run that ended before.
+fn flight(reference: &Reference, samples: &[Sample]) -> Option<Flight> {
+    let sample = samples.iter().find(|s| s.time >= reference.touchdown)?;
+    let (q, _) = state(reference.nodes.last()?);
+    let pairs = sample.joints.iter().zip(&q.joints);
+    let joints = pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()));
+    Some(Flight {
+        time: sample.time,
+        position: (sample.com - kinematics::com(&q)).norm(),
+        rotation: between(&q.base.rotation, &sample.orientation.to_rotation_matrix()),
+        joints: joints.to_degrees(),
+    })
+}
+
+/// Beside the goal at `time`.
+fn stand(task: &Task, run: &Run, time: f64) -> Option<Stand> {
+    let sample = run.samples.iter().find(|s| s.time >= time)?;
+    let start = &task.start;
+    let turned = heading_matrix(task.heading);
+    let rotation = sample.orientation.to_rotation_matrix();
+    // The goal is where the start's base goes; its feet turn with its heading.
+    let first = middle_of_feet(&start.base, &start.joints) - start.base.translation;
+    let goal = start.base.translation + task.goal;
+    let here = Transform::new(rotation, sample.position);
+    let feet = middle_of_feet(&here, &sample.joints) - (goal + turned * first);
+    let heading = |r: &Rotation3<f64>| {
+        let ahead = r * Vector3::x();
+        so3::math::atan2(ahead.y, ahead.x)
+    };
+    let off = heading(&(turned.inverse() * rotation));
+    Some(Stand {
+        time: sample.time,
+        feet: so3::math::hypot(feet.x, feet.y),
+        heading: off.abs().to_degrees(),
+        height: (sample.position.z - goal.z).abs(),
+        rotation: between(&task.rot_goal, &rotation),
+        upright: tilt(sample) < FALLEN && stands(run.final_phase),
+    })
+}
+
+/// The machine says that the robot is on its feet.
+const fn stands(phase: Phase) -> bool {
+    matches!(phase, Phase::Landing | Phase::Stand)
+}
+
+impl Judged {
+    /// Measures and judges a run.
+    pub(crate) fn of(task: &Task, reference: &Reference, run: &Run) -> Self {
+        let end = run.samples.last().map_or(0.0, |s| s.time);
+        let mut gravest = Vec::new();
+        if let Some(fault) = run.fault {
+            let aborted = run.samples.iter().find(|s| s.phase == Phase::Abort);
+            gravest.push(Failure::new(
+                aborted.map_or(end, |s| s.time),
+                "fault",
+                fault.to_string(),
+            ));
+        } else if run.first_contact.is_none() {
+            gravest.push(Failure::new(end, "no_touchdown", "the ground did not come"));
+        }
+        let allowed: &[&str] = if task.trunk_may_touch {
+            &["trunk"]
+        } else {
+            &[]
         };
-        let landed_at = run.first_contact;
-        let after = |time: f64| {
-            run.samples
-                .iter()
-                .filter(move |s: &&super::log::Sample| s.time >= time)
-        };
-        let upright_after = landed_at.and_then(|t0| {
-            let tilted = after(t0).rfind(|s| tilt(s) >= UPRIGHT);
-            match tilted {
-                None => Some(0.0),
-                Some(s) => (s.time < run.samples.last()?.time - 0.2).then_some(s.time - t0),
-            }
-        });
-        let last = landed_at
-            .and_then(|t0| after(t0 + SETTLE).next())
-            .or(run.samples.last());
-        let turned = |s: &super::log::Sample| {
-            let turn = heading_matrix(task.heading).inverse() * s.orientation.to_rotation_matrix();
-            so3::log(&turn).norm().to_degrees()
-        };
-        let goal = task.start.base.translation + task.goal;
-        let (position_error, orientation_error, upright) =
-            last.map_or((f64::NAN, f64::NAN, false), |s| {
-                let missed = s.position - goal;
-                (
-                    so3::math::hypot(missed.x, missed.y),
-                    turned(s),
-                    tilt(s) < UPRIGHT,
-                )
-            });
+        let stand = run.first_contact.and_then(|t| stand(task, run, t + SETTLE));
+        let after = |time: f64| run.samples.iter().filter(move |s| s.time >= time);
+        let upright_after =
+            run.first_contact
+                .and_then(|t| match after(t).rfind(|s| tilt(s) >= FALLEN) {
+                    None => Some(0.0),
+                    Some(s) => (s.time < end - 0.2).then_some(s.time - t),
+                });
+        let touched = run.first_contact.and_then(|t| after(t).next());
+        let turned = |s: &Sample| between(&task.rot_goal, &s.orientation.to_rotation_matrix());
         Self {
-            landed: landed_at.is_some() && matches!(run.final_phase, Phase::Landing | Phase::Stand),
-            trunk_is_right: task.trunk_may_touch || !run.trunk_contact,
-            upright,
+            verdict: Verdict::new(
+                flight(reference, &run.samples),
+                stand,
+                run.hardware.found(allowed),
+                gravest,
+            ),
+            landed: run.first_contact.is_some() && stands(run.final_phase),
             upright_after,
-            position_error,
-            orientation_error,
-            touchdown_orientation_error: landed_at.and_then(|t| after(t).next()).map(turned),
+            touchdown_rotation: touched.map(turned),
             apex: run
                 .samples
                 .iter()
                 .map(|s| s.com.z)
                 .fold(f64::NEG_INFINITY, f64::max),
         }
-    }
-
-    /// Landed, upright, trunk untouched where the task wants that, within 0.10 m and 10°.
-    pub(crate) fn on_target(&self) -> bool {
-        self.landed
-            && self.trunk_is_right
-            && self.upright
-            && self.position_error <= 0.10
-            && self.orientation_error <= ALLOWED_TURN
     }
 
     /// The object of `--json`; a stored plan comes without its single rigid body.
@@ -102,26 +149,32 @@ impl Verdict {
         plan: Option<&SrbPlan>,
         reference: &Reference,
         run: &Run,
-        sim: Sim,
-        seed: u64,
+        trial: &Trial<'_>,
     ) -> Value {
-        json!({
+        let verdict = &self.verdict;
+        let found = &verdict.hardware;
+        let stand = verdict.stand;
+        let mut out = json!({
             "task": task.name,
-            "sim": sim.name(),
-            "seed": seed,
+            "sim": trial.sim.name(),
+            "seed": trial.seed,
+            "interface": trial.interface.to_string(),
+            "plant": trial.disturbance.json(),
+            "on_target": verdict.on_target(),
+            "verdict": verdict.json(),
             "landed": self.landed,
-            "upright": self.upright,
+            "upright": verdict.stands(),
             "upright_after_s": self.upright_after,
-            "final_position_error_m": self.position_error,
-            "final_orientation_error_deg": self.orientation_error,
-            "touchdown_orientation_error_deg": self.touchdown_orientation_error,
+            "final_position_error_m": stand.map(|s| s.feet),
+            "final_orientation_error_deg": stand.map(|s| s.rotation),
+            "touchdown_orientation_error_deg": self.touchdown_rotation,
             "apex_height_m": self.apex,
             "first_contact_s": run.first_contact,
             "peak_torque_nm": run.peak_torque,
-            "torque_saturation_ms": run.push_off_saturation * 1e3,
-            "landing_saturation_ms": run.landing_saturation * 1e3,
+            "torque_saturation_ms": found.saturation[0] * 1e3,
+            "landing_saturation_ms": found.saturation[2] * 1e3,
             "peak_foot_force_n": run.peak_foot_force,
-            "trunk_contact": run.trunk_contact,
+            "trunk_contact": found.touched.contains(&"trunk"),
             "fault": run.fault.map(|fault| fault.to_string()),
             "estimate": {
                 "max_position_error_m": run.estimate_errors[0],
@@ -133,23 +186,93 @@ impl Verdict {
                 "failures": run.qp_failures,
                 "max_iterations": run.qp_max_iterations,
             },
-            "plan": {
-                "reference": reference.origin.name(),
-                "durations_s": reference.durations,
-                "whole_body": reference.origin.solved().map(|solved| json!({
-                    "wall_ms": solved.wall_ms,
-                    "iterations": solved.iterations,
-                    "cost": solved.cost,
-                    "max_violation": solved.max_violation,
-                    "torque_limit_nm": solved.torque_limit,
-                })),
-                "solver_ms": plan.map(|plan| plan.wall_ms),
-                "iterations": plan.map(|plan| plan.iterations),
-                "violation": plan.map(|plan| plan.max_violation),
-                "peak_torque_nm": reference.peak_torque,
-                "peak_friction": reference.peak_friction,
-                "base_residual": reference.base_residual,
-            },
-        })
+        });
+        out["plan"] = plan_json(plan, reference);
+        out
+    }
+}
+
+/// What was planned.
+fn plan_json(plan: Option<&SrbPlan>, reference: &Reference) -> Value {
+    json!({
+        "reference": reference.origin.name(),
+        "durations_s": reference.durations,
+        "whole_body": reference.origin.solved().map(|solved| json!({
+            "wall_ms": solved.wall_ms,
+            "iterations": solved.iterations,
+            "cost": solved.cost,
+            "max_violation": solved.max_violation,
+            "torque_limit_nm": solved.torque_limit,
+        })),
+        "solver_ms": plan.map(|plan| plan.wall_ms),
+        "iterations": plan.map(|plan| plan.iterations),
+        "violation": plan.map(|plan| plan.max_violation),
+        "peak_torque_nm": reference.peak_torque,
+        "peak_friction": reference.peak_friction,
+        "base_residual": reference.base_residual,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
+    use crate::jump::{OWNERS, kinematics};
+    use jump_control::Phase;
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Transform};
+
+    fn sample(q: &State, time: f64) -> Sample {
+        Sample {
+            time,
+            phase: Phase::Stand,
+            position: q.base.translation,
+            orientation: so3::quat::from_rotation(&q.base.rotation),
+            velocity_w: Vector3::zeros(),
+            omega_b: Vector3::zeros(),
+            com: kinematics::com(q),
+            joints: q.joints,
+            joint_velocities: [0.0; 12],
+            torques: [0.0; 12],
+            forces_w: [Vector3::zeros(); OWNERS],
+            planned_position: Vector3::zeros(),
+            planned_joints: [0.0; 12],
+            planned_forces_w: [Vector3::zeros(); 4],
+        }
+    }
+
+    /// A body that leans over its goal while its feet stand 10 cm beside it: the base was judged, and was on target.
+    #[test]
+    fn a_lean_towards_the_goal_does_not_count() {
+        let task = Task::load("a1/lateral").unwrap();
+        let mut run = Run::new(&task, 1e-4);
+        run.final_phase = Phase::Stand;
+        let mut there = task.start;
+        there.base.translation += task.goal;
+        run.samples.push(sample(&there, SETTLE));
+        let good = stand(&task, &run, SETTLE).unwrap();
+        assert!(good.feet < 1e-12 && good.height < 1e-12 && good.upright);
+        // Legs turned at the hips, base where it was: the feet move aside.
+        let leaning: State = Configuration {
+            joints: core::array::from_fn(|i| there.joints[i] + if i % 3 == 0 { 0.4 } else { 0.0 }),
+            ..there
+        };
+        run.samples = vec![sample(&leaning, SETTLE)];
+        let bad = stand(&task, &run, SETTLE).unwrap();
+        assert!((leaning.base.translation - there.base.translation).norm() < 1e-12);
+        assert!(bad.feet > 0.09, "{}", bad.feet);
+    }
+
+    #[test]
+    fn the_middle_of_the_feet_moves_with_the_base() {
+        let task = Task::load("a1/lateral").unwrap();
+        let here = middle_of_feet(&task.start.base, &task.start.joints);
+        let shift = Vector3::new(0.1, -0.2, 0.3);
+        let base = Transform::new(
+            task.start.base.rotation,
+            task.start.base.translation + shift,
+        );
+        let there = middle_of_feet(&base, &task.start.joints);
+        assert!((there - here - shift).norm() < 1e-12);
     }
 }

@@ -44,31 +44,15 @@ pub(crate) fn contact_frame(kinematics: &Kinematics<f64, JOINTS>, leg: usize) ->
     frame
 }
 
-/// How a single rigid body turns, as the robot is to take it over; world axes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Turn {
-    /// The whole robot has its angular momentum about the centre of mass.
-    Momentum(Vector3<f64>),
-    /// The base has its angular velocity, whatever the legs do.
-    Rate(Vector3<f64>),
+/// Angular velocity, base axes, of a robot that has this angular momentum about its centre of mass, world axes, and turns as one body.
+pub(crate) fn locked(q: &State, momentum_w: &Vector3<f64>) -> Vector3<f64> {
+    let mut map = CentroidalMap::ZERO;
+    centroidal_map(&ROBOT, &Posture::new(&ROBOT, q), &mut map);
+    let momentum = Force::new(Vector3::zeros(), *momentum_w);
+    q.base.rotation.inverse() * map.locked_angular_velocity(&momentum)
 }
 
-impl Turn {
-    /// Angular velocity, base axes, of a robot turning as one body.
-    pub(crate) fn locked(self, q: &State) -> Vector3<f64> {
-        let to_base = q.base.rotation.inverse();
-        match self {
-            Self::Rate(rate) => to_base * rate,
-            Self::Momentum(momentum) => {
-                let mut map = CentroidalMap::ZERO;
-                centroidal_map(&ROBOT, &Posture::new(&ROBOT, q), &mut map);
-                to_base * map.locked_angular_velocity(&Force::new(Vector3::zeros(), momentum))
-            }
-        }
-    }
-}
-
-/// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and which turns like `turn`, while the
+/// The velocity of the whole robot whose centre of mass moves with `com_velocity_w` and which has this angular momentum, while the
 /// balls of the feet in `stance` roll without slip and the other joints move with `swing`.
 ///
 /// Found by fixed-point steps on the base's velocity: the legs are lighter than the rest.
@@ -76,7 +60,7 @@ pub(crate) fn rolling_velocity(
     q: &State,
     stance: &[bool; FOOT_COUNT],
     com_velocity_w: &Vector3<f64>,
-    turn: Turn,
+    momentum_w: &Vector3<f64>,
     swing: &[f64; JOINTS],
 ) -> Result<Velocity, String> {
     let kinematics = poses(q);
@@ -90,12 +74,8 @@ pub(crate) fn rolling_velocity(
         .collect();
     let mut map = CentroidalMap::ZERO;
     centroidal_map(&ROBOT, &posture, &mut map);
-    let begin = match turn {
-        Turn::Rate(rate) => to_base * rate,
-        Turn::Momentum(_) => Vector3::zeros(),
-    };
     let mut velocity = Velocity {
-        base: Motion::new(to_base * com_velocity_w, begin),
+        base: Motion::new(to_base * com_velocity_w, Vector3::zeros()),
         joints: *swing,
     };
     for _ in 0..200 {
@@ -109,13 +89,8 @@ pub(crate) fn rolling_velocity(
             velocity.joints[3 * leg..3 * leg + 3].copy_from_slice(qd.as_slice());
         }
         let now = centroidal_state(&ROBOT, &posture, &velocity);
-        let faster = match turn {
-            Turn::Rate(_) => Vector3::zeros(),
-            Turn::Momentum(momentum) => {
-                let missing = Force::new(Vector3::zeros(), momentum - now.momentum_w.angular);
-                to_base * map.locked_angular_velocity(&missing)
-            }
-        };
+        let missing = Force::new(Vector3::zeros(), momentum_w - now.momentum_w.angular);
+        let faster = to_base * map.locked_angular_velocity(&missing);
         let shift = to_base * (com_velocity_w - now.com_velocity_w);
         if shift.norm() < 1e-9 && faster.norm() < 1e-9 {
             return Ok(velocity);

@@ -1,6 +1,6 @@
 //! What is kept of a run: one sample per millisecond.
 
-use super::{FOOT_COUNT, JOINTS, SPHERES};
+use super::{FOOT_COUNT, JOINTS, OWNERS};
 use crate::log::Log;
 use jump_control::Phase;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,7 +19,7 @@ pub(crate) struct Sample {
     pub(crate) joints: [f64; JOINTS],
     pub(crate) joint_velocities: [f64; JOINTS],
     pub(crate) torques: [f64; JOINTS],
-    pub(crate) forces_w: [Vector3<f64>; SPHERES],
+    pub(crate) forces_w: [Vector3<f64>; OWNERS],
     pub(crate) planned_position: Vector3<f64>,
     pub(crate) planned_joints: [f64; JOINTS],
     pub(crate) planned_forces_w: [Vector3<f64>; FOOT_COUNT],

@@ -22,24 +22,18 @@ pub(crate) mod stored;
 pub(crate) mod strip;
 pub(crate) mod task;
 pub(crate) mod task_file;
+mod task_values;
 pub(crate) mod whole_body;
 
 use a1_model::{A1Geared, FEET};
-use contact_sim::ContactSphere;
 use rbd_core::{Configuration, Frame, Tangent};
 
 /// Joints of the robot.
 pub(crate) const JOINTS: usize = 12;
 /// Its feet.
 pub(crate) const FOOT_COUNT: usize = 4;
-/// Its contact spheres: feet, knees, corners of the trunk.
-pub(crate) const SPHERES: usize = 16;
-/// The first of the trunk's.
-pub(crate) const TRUNK: usize = 8;
-/// The published trunk is a box of this size, m.
-pub(crate) const TRUNK_SIZE: [f64; 3] = [0.267, 0.194, 0.114];
-/// Radius of the spheres at its corners in the native simulator, m.
-const CORNER_RADIUS: f64 = 0.01;
+/// What the forces on its shapes count for: feet first, then shanks, thighs, hips and the trunk.
+pub(crate) const OWNERS: usize = a1_model::OWNERS.len();
 
 /// The robot that is planned for and simulated: A1 as published, with rotors.
 pub(crate) const ROBOT: A1Geared = A1Geared;
@@ -64,35 +58,4 @@ pub(crate) fn state(node: &Node) -> (State, Velocity) {
 /// Frames of the feet: the centres of the balls.
 pub(crate) fn feet() -> [Frame<f64>; FOOT_COUNT] {
     FEET.map(|foot| foot.frame)
-}
-
-/// Feet, knees and trunk corners as spheres.
-pub(crate) fn spheres() -> [ContactSphere<f64>; SPHERES] {
-    core::array::from_fn(|i| match (FEET.get(i), i) {
-        (Some(foot), _) => ContactSphere {
-            link: foot.frame.link,
-            offset: foot.frame.offset,
-            radius: a1_model::FOOT_RADIUS,
-        },
-        (None, 4..TRUNK) => ContactSphere {
-            link: rbd_core::Link::Joint(3 * (i - 4) + 2),
-            offset: [0.0; 3],
-            radius: 0.02,
-        },
-        _ => {
-            let corner = |axis: usize| {
-                let inside = 0.5 * TRUNK_SIZE[axis] - CORNER_RADIUS;
-                if (i >> axis) & 1 == 0 {
-                    inside
-                } else {
-                    -inside
-                }
-            };
-            ContactSphere {
-                link: rbd_core::Link::Base,
-                offset: core::array::from_fn(corner),
-                radius: CORNER_RADIUS,
-            }
-        }
-    })
 }

@@ -1,6 +1,6 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
-use super::reference::{self, Legs, Reference, standing};
+use super::reference::{self, Reference, standing};
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, Timing, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
@@ -8,6 +8,7 @@ use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::Status;
 use rbd_core::{Motion, Transform};
+use std::time::Instant;
 use wb_opt::{BASE, Phase, State};
 
 /// How the legs are planned along the single rigid body's motion.
@@ -17,7 +18,8 @@ pub(crate) enum Planner {
     WholeBody,
     /// Leg kinematics along the rigid body's angular momentum, and inverse dynamics.
     Kinematics,
-    /// Leg kinematics under the rigid body's attitude, and torques of its forces alone: the baseline of paper A, V-A.
+    /// Trajectory optimisation in joint space with the dynamics of the rigid body, on legs that weigh nothing and without limits of
+    /// torque: the baseline of paper A, V-A.
     RigidBody,
 }
 
@@ -36,7 +38,9 @@ pub(crate) struct Solved {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Origin {
     /// Leg kinematics.
-    Kinematics(Legs),
+    Kinematics,
+    /// Optimisation on legs that weigh nothing, just now.
+    RigidBody(Solved),
     /// Whole-body optimisation, just now.
     WholeBody(Solved),
     /// A container that was stored before.
@@ -47,8 +51,8 @@ impl Origin {
     /// Its name in results.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::Kinematics(Legs::Heavy) => "srb+kinematics",
-            Self::Kinematics(Legs::Massless) => "srb+massless-legs",
+            Self::Kinematics => "srb+kinematics",
+            Self::RigidBody(_) => "srb+massless-legs",
             Self::WholeBody(_) => "whole-body",
             Self::Stored => "stored",
         }
@@ -57,8 +61,8 @@ impl Origin {
     /// How the whole-body problem was solved, where that is known.
     pub(crate) fn solved(self) -> Option<Solved> {
         match self {
-            Self::WholeBody(solved) => Some(solved),
-            Self::Kinematics(_) | Self::Stored => None,
+            Self::WholeBody(solved) | Self::RigidBody(solved) => Some(solved),
+            Self::Kinematics | Self::Stored => None,
         }
     }
 }
@@ -75,38 +79,63 @@ impl Planner {
 
     /// Plans the legs along a plan of the body.
     pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
-        let legs = match self {
-            Self::WholeBody => None,
-            Self::Kinematics => Some(Legs::Heavy),
-            Self::RigidBody => Some(Legs::Massless),
-        };
-        if let Some(legs) = legs {
-            return reference::build(task, srb, legs);
+        match self {
+            Self::WholeBody => whole_body(task, srb),
+            Self::Kinematics => reference::build(task, srb),
+            Self::RigidBody => rigid_body(task, srb),
         }
-        let whole = whole_body::audited(task, srb, Timing::Given, false, |_| {
-            ControlFlow::Continue(())
-        })?;
-        let plan = whole.plan;
-        if plan.outcome.status != Status::Solved {
-            return Err(format!(
-                "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
-                 ask for less, or try --planner kinematics",
-                task.name, plan.outcome.status, plan.outcome.iterations, plan.judged.max_violation
-            ));
-        }
-        if let Some(audit) = whole.audit.filter(|audit| !audit.passes()) {
-            return Err(format!(
-                "task {}: the plan failed its audit: {}",
-                task.name,
-                audit.complaint()
-            ));
-        }
-        follow(task, &plan, whole.wall_ms)
     }
 }
 
+fn whole_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+    let whole = whole_body::audited(task, srb, Timing::Given, false, |_| {
+        ControlFlow::Continue(())
+    })?;
+    let solved = solved(task, &whole.plan, whole.wall_ms)?;
+    if let Some(audit) = whole.audit.filter(|audit| !audit.is_a_motion()) {
+        return Err(format!(
+            "task {}: the plan failed its audit: {}",
+            task.name,
+            audit.complaint()
+        ));
+    }
+    follow(task, &whole.plan, Origin::WholeBody(solved))
+}
+
+/// Not audited: it is the plan of another robot.
+fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+    let robot = task.robot.on_massless_legs(&task.start);
+    let light = Task {
+        robot: robot.map_err(|error| error.to_string())?,
+        ..task.clone()
+    };
+    let clock = Instant::now();
+    let plan = whole_body::plan(&light, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
+    let solved = solved(task, &plan, clock.elapsed().as_secs_f64() * 1e3)?;
+    follow(task, &plan, Origin::RigidBody(solved))
+}
+
+/// How a plan was solved; an error if it was not.
+fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, String> {
+    let outcome = &plan.outcome;
+    if outcome.status != Status::Solved {
+        return Err(format!(
+            "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
+             ask for less, or try --planner kinematics",
+            task.name, outcome.status, outcome.iterations, plan.judged.max_violation
+        ));
+    }
+    Ok(Solved {
+        wall_ms,
+        iterations: outcome.iterations,
+        cost: plan.judged.cost,
+        max_violation: plan.judged.max_violation,
+        torque_limit: plan.torque_limit,
+    })
+}
+
 /// A whole-body plan as the controller follows it.
-fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, String> {
+fn follow(task: &Task, plan: &WholeBodyPlan, origin: Origin) -> Result<Reference, String> {
     let stands = |phase: &&Phase<f64, FOOT_COUNT>| phase.contacts.contains(&true);
     let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
     let takeoff: f64 = plan.phases.iter().take_while(stands).map(duration).sum();
@@ -128,13 +157,7 @@ fn follow(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Reference, 
         peak_torque,
         peak_friction,
         base_residual: plan.judged.max_violation,
-        origin: Origin::WholeBody(Solved {
-            wall_ms,
-            iterations: plan.outcome.iterations,
-            cost: plan.judged.cost,
-            max_violation: plan.judged.max_violation,
-            torque_limit: plan.torque_limit,
-        }),
+        origin,
     })
 }
 

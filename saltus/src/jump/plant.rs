@@ -1,18 +1,19 @@
-//! The simulated robot: which simulator, and how it differs from the robot that was planned for.
+//! The simulated robot: which simulator, in which world.
 
+use super::sensors::World;
 use super::task::Task;
-use super::{JOINTS, ROBOT, SPHERES, spheres};
-use crate::noise::Noise;
-use a1_model::{MOTORS, a1};
-use contact_sim::{Block, NativeSimulator, Settings, Simulator, Terrain};
+use super::{JOINTS, OWNERS, ROBOT};
+use crate::lab::{self, Disturbance, Key};
+use a1_model::{MOTORS, SHAPES, a1};
+use contact_sim::{Block, NativeSimulator, Settings, Terrain};
 use nalgebra::Vector3;
-use rbd_core::{BaseBody, BaseKind, Body, TableModel, Tangent, Tree};
+use rbd_core::Tangent;
 
 /// How far a box reaches from the middle of a robot on it, m.
 const AROUND: f64 = 0.6;
 
 /// A simulator of A1.
-pub(crate) type Plant = Box<dyn Simulator<f64, JOINTS, SPHERES, Error = contact_sim::Error>>;
+type Plant = lab::Plant<JOINTS, OWNERS>;
 
 /// The simulators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -33,154 +34,58 @@ impl Sim {
     }
 }
 
-/// How the plant and its sensors differ from what the planner knew.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Disturbance {
-    /// Friction of the ground.
-    pub(crate) friction: f64,
-    /// Every mass and moment of mass, relative.
-    pub(crate) mass: f64,
-    /// Rotor inertias, relative.
-    pub(crate) rotors: f64,
-    /// Viscous and Coulomb friction of the joints, relative.
-    pub(crate) joint_friction: f64,
-    /// Age of every measurement at 1 kHz, ms.
-    pub(crate) latency_ms: usize,
-    /// Standard deviations of encoder position and speed noise, rad and rad/s.
-    pub(crate) encoder: (f64, f64),
-    /// The IMU's noise; without it the controller is told the truth about the base.
-    pub(crate) imu: Option<Imu>,
-}
-
-/// Standard deviations of an IMU's samples at 1 kHz and of its biases: rad/s and m/s².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Imu {
-    pub(crate) gyroscope: f64,
-    pub(crate) gyroscope_bias: f64,
-    pub(crate) accelerometer: f64,
-    pub(crate) accelerometer_bias: f64,
-}
-
-impl Disturbance {
-    /// None: the nominal run.
-    pub(crate) const NOMINAL: Self = Self {
-        friction: 0.6,
-        mass: 1.0,
-        rotors: 1.0,
-        joint_friction: 1.0,
-        latency_ms: 0,
-        encoder: (0.0, 0.0),
-        imu: None,
-    };
-
-    /// Seed 0: none. Others: friction ± 20 %, mass ± 5 %, rotors and joint friction ± 30 %, 2 ms of latency, noisy
-    /// encoders, and an IMU of which `state-est` makes the base.
-    pub(crate) fn draw(seed: u64) -> Self {
-        if seed == 0 {
-            return Self::NOMINAL;
-        }
-        let mut noise = Noise::new(seed, 0.0);
-        let mut around = |share: f64| 1.0 + share * (2.0 * noise.uniform() - 1.0);
-        Self {
-            friction: Self::NOMINAL.friction * around(0.2),
-            mass: around(0.05),
-            rotors: around(0.3),
-            joint_friction: around(0.3),
-            latency_ms: 2,
-            encoder: (1e-3, 0.05),
-            imu: Some(Imu {
-                gyroscope: 0.01,
-                gyroscope_bias: 0.01,
-                accelerometer: 0.1,
-                accelerometer_bias: 0.05,
-            }),
-        }
-    }
-
-    /// Joint positions and speeds as encoders tell them.
-    pub(crate) fn encode<const N: usize>(
-        &self,
-        mut q: [f64; N],
-        mut v: [f64; N],
-        noise: &mut Noise,
-    ) -> ([f64; N], [f64; N]) {
-        let (dq, dv) = self.encoder;
-        if dq > 0.0 || dv > 0.0 {
-            for (q, v) in q.iter_mut().zip(&mut v) {
-                *q += dq * noise.sample();
-                *v += dv * noise.sample();
-            }
-        }
-        (q, v)
-    }
-
-    /// The disturbed robot.
-    pub(crate) fn robot<M: Tree<f64, N>, const N: usize>(
-        &self,
-        planned: &M,
-    ) -> Result<TableModel<f64, N>, String> {
-        let mut base: BaseBody<f64> = *planned.base();
-        let mut bodies: [Body<f64>; N] = *planned.bodies();
-        base.mass *= self.mass;
-        base.first = base.first.map(|x| x * self.mass);
-        base.second = base.second.map(|x| x * self.mass);
-        for body in &mut bodies {
-            body.mass *= self.mass;
-            body.first = body.first.map(|x| x * self.mass);
-            body.second = body.second.map(|x| x * self.mass);
-            body.rotor_inertia *= self.rotors;
-        }
-        TableModel::new(BaseKind::Floating, base, &bodies).map_err(|error| error.to_string())
-    }
-
-    fn settings(&self) -> Settings<f64, JOINTS> {
-        let limits = a1::LIMITS.map(|mut limits| {
-            limits.damping *= self.joint_friction;
-            limits.friction *= self.joint_friction;
-            limits
-        });
-        let mut settings = Settings::new(&limits, &MOTORS);
-        settings.contact.friction = self.friction;
-        settings
-    }
+/// Ground, motors and joint losses of the plant.
+fn settings(disturbance: &Disturbance) -> Settings<f64, JOINTS> {
+    let limits = a1::LIMITS.map(|mut limits| {
+        limits.friction = disturbance
+            .set_to(Key::JointFriction)
+            .unwrap_or(limits.friction);
+        limits
+    });
+    let mut settings = Settings::new(&limits, &MOTORS);
+    settings.contact.friction = disturbance.get(Key::Friction);
+    settings.contact.time_constant = disturbance.seconds(Key::Ground);
+    settings
 }
 
 /// The plant at the start of a task.
-pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
-    let mut plant = match sim {
-        Sim::Native => Box::new(NativeSimulator::new(
-            disturbance.robot(&ROBOT)?,
-            spheres(),
-            terrain(task),
-            disturbance.settings(),
-        )),
+pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
+    let mut plant: Plant = match sim {
+        Sim::Native => {
+            let terrain = terrain(task, height_error(disturbance));
+            let robot = lab::robot(disturbance, &ROBOT)?;
+            let native = NativeSimulator::new(robot, SHAPES, terrain, settings(disturbance));
+            Box::new(native.colliding(pairs(task)))
+        }
         Sim::Mujoco => mujoco(task, disturbance)?,
     };
     plant.reset(&task.start, &Tangent::ZERO);
-    Ok(plant)
+    // A box has its own height; a floor that is start and landing has to move.
+    let boxed = task.edge.is_some_and(|edge| edge.drop != 0.0);
+    let moves = if boxed {
+        0.0
+    } else {
+        height_error(disturbance)
+    };
+    Ok(World::new(plant, moves))
 }
 
-/// MuJoCo: feet and knees as the native simulator has them, the trunk as the published box.
+/// Shapes that touch each other: those that do not where the robot stands.
+fn pairs(task: &Task) -> [u64; SHAPES.len()] {
+    contact_sim::self_contacts(&ROBOT, &SHAPES, &task.start)
+}
+
+/// MuJoCo, with the same shapes.
 #[cfg(feature = "mujoco")]
 fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
-    use contact_sim::{Geom, GeomShape, MujocoSimulator};
-    use rbd_core::Frame;
+    use contact_sim::{Geom, MujocoSimulator};
 
-    let balls = spheres();
-    let mut geoms: Vec<Geom> = balls[..super::TRUNK]
-        .iter()
-        .enumerate()
-        .map(|(i, sphere)| Geom::sphere(sphere, i))
-        .collect();
-    geoms.push(Geom {
-        frame: Frame::IDENTITY,
-        shape: GeomShape::Box(super::TRUNK_SIZE.map(|x| 0.5 * x)),
-        contact: super::TRUNK,
-    });
-    let mut settings = disturbance.settings();
+    let geoms = SHAPES.map(Geom::Swept);
+    let mut settings = settings(disturbance);
     settings.substeps = 1;
-    let robot = disturbance.robot(&ROBOT)?;
-    let sim = MujocoSimulator::new(&robot, &geoms, &terrain(task), settings);
+    let robot = lab::robot(disturbance, &ROBOT)?;
+    let terrain = terrain(task, height_error(disturbance));
+    let sim = MujocoSimulator::new(&robot, (&geoms, &pairs(task)), &terrain, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 
@@ -193,26 +98,47 @@ fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
 #[cfg(not(feature = "mujoco"))]
 pub(crate) const NO_MUJOCO: &str = "this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`";
 
-/// The world of a task. The robot starts at height zero: on the floor, with or without a box to jump onto, or on a box with the floor below.
-pub(crate) fn terrain(task: &Task) -> Terrain<f64> {
-    let Some(edge) = task.edge.filter(|edge| edge.drop != 0.0) else {
+/// By how much the landing's ground is higher than known, m.
+fn height_error(disturbance: &Disturbance) -> f64 {
+    disturbance.get(Key::GroundHeight)
+}
+
+/// The world of a task, whose landing is `higher` than known, m. The robot starts at height zero: on the floor, with or without a box
+/// to jump onto, or on a box with the floor below. Without a box start and landing are on one floor, which [`lab::Ground`] moves.
+pub(crate) fn terrain(task: &Task, higher: f64) -> Terrain<f64> {
+    let Some(mut edge) = task.edge.filter(|edge| edge.drop != 0.0) else {
         return Terrain::FLAT;
     };
     let onto = edge.drop < 0.0;
-    let floor = f64::min(-edge.drop, 0.0);
-    // Around where the robot stands, or lands, cut at the edge.
+    edge.drop -= higher;
+    // Around where the robot stands, or lands.
     let middle = if onto { task.goal } else { Vector3::zeros() };
-    let mut lower = [middle.x - AROUND, middle.y - AROUND, floor];
-    let mut upper = [
-        middle.x + AROUND,
-        middle.y + AROUND,
-        f64::max(-edge.drop, 0.0),
-    ];
-    let cut = edge.sign * edge.distance;
-    if onto == (edge.sign > 0.0) {
-        lower[edge.axis] = cut;
+    over_edge(
+        onto,
+        (edge.axis, edge.sign, edge.distance),
+        edge.drop,
+        &middle,
+        AROUND,
+    )
+}
+
+/// A floor, and a block that reaches so far `around` a middle and is cut at an edge: (axis across it, side of the landing, distance from the
+/// origin). The robot stands at height zero and lands `drop` below; `onto` the block, or off it.
+pub(crate) fn over_edge(
+    onto: bool,
+    (axis, side, distance): (usize, f64, f64),
+    drop: f64,
+    middle: &Vector3<f64>,
+    around: f64,
+) -> Terrain<f64> {
+    let floor = f64::min(-drop, 0.0);
+    let mut lower = [middle.x - around, middle.y - around, floor];
+    let mut upper = [middle.x + around, middle.y + around, f64::max(-drop, 0.0)];
+    let cut = side * distance;
+    if onto == (side > 0.0) {
+        lower[axis] = cut;
     } else {
-        upper[edge.axis] = cut;
+        upper[axis] = cut;
     }
     Terrain {
         floor,
@@ -244,7 +170,7 @@ mod tests {
                 task.edge = task.problem.edge;
                 task.goal = Vector3::new(0.1, -0.1, -drop);
                 task.goal[axis] = 0.7 * sign;
-                let terrain = terrain(&task);
+                let terrain = terrain(&task, 0.0);
                 let mut beside = Vector3::zeros();
                 beside[axis] = sign * (distance - 1e-3);
                 let mut beyond = Vector3::zeros();
@@ -262,6 +188,6 @@ mod tests {
             }
         }
         task.edge.as_mut().unwrap().drop = 0.0;
-        assert_eq!(terrain(&task), Terrain::FLAT);
+        assert_eq!(terrain(&task, 0.0), Terrain::FLAT);
     }
 }

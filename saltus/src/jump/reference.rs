@@ -1,14 +1,11 @@
 //! The reference by leg kinematics along the single-rigid-body plan.
 //!
 //! The plan gives the motion of the centre of mass; base and legs follow because the balls of the feet roll on the ground
-//! without slip. Of the plan's turning there are two readings ([`Legs`]). In the paper's baseline (section V-A) legs weigh
-//! nothing: the base has the body's attitude, and torques are those of the planned forces. Legs that stand do not turn with
-//! the base, so the robot has less angular momentum than the body, and once they have left the ground the base has to share
-//! it with them. Otherwise the robot has the body's angular momentum, and torques are inverse dynamics with the plan's foot
+//! without slip. The robot has the body's angular momentum, and torques are inverse dynamics with the plan's foot
 //! forces, changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
-use super::kinematics::{Turn, com, contact_frame, jacobian, poses, rolling_velocity};
+use super::kinematics::{com, contact_frame, jacobian, locked, poses, rolling_velocity};
 use super::planned::Origin;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
@@ -24,15 +21,6 @@ const PULL: f64 = 0.02;
 const POSING_SHARE: f64 = 0.5;
 /// Speed at which planned Coulomb friction fades, rad/s.
 const FRICTION_SMOOTHING: f64 = 0.1;
-
-/// What the legs of the reference are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Legs {
-    /// Their inertia counts.
-    Heavy,
-    /// They only connect the body with its feet.
-    Massless,
-}
 
 /// The reference and its margins.
 pub(crate) struct Reference {
@@ -61,35 +49,28 @@ struct Interval {
     pos: Vector3<f64>,
     vel: Vector3<f64>,
     acc: Vector3<f64>,
-    /// Which of the two readings its turning is given in.
-    legs: Legs,
-    /// Angular momentum or velocity at both ends, world axes.
-    turn: (Vector3<f64>, Vector3<f64>),
+    /// Angular momentum at both ends, world axes.
+    momentum: (Vector3<f64>, Vector3<f64>),
     rotation: nalgebra::Rotation3<f64>,
     contacts: [bool; FOOT_COUNT],
     forces_w: [Vector3<f64>; FOOT_COUNT],
 }
 
 impl Interval {
-    fn at(&self, s: f64) -> (Vector3<f64>, Vector3<f64>, Turn) {
-        let blend = self.turn.0 + (self.turn.1 - self.turn.0) * (s / self.dt);
-        (
+    /// Position and velocity of the centre of mass and angular momentum, a time after the start.
+    fn at(&self, s: f64) -> [Vector3<f64>; 3] {
+        [
             self.pos + (self.vel + self.acc * (0.5 * s)) * s,
             self.vel + self.acc * s,
-            match self.legs {
-                Legs::Heavy => Turn::Momentum(blend),
-                Legs::Massless => Turn::Rate(blend),
-            },
-        )
+            self.momentum.0 + (self.momentum.1 - self.momentum.0) * (s / self.dt),
+        ]
     }
 }
 
-fn intervals(task: &Task, stages: &[SrbStage], legs: Legs) -> Vec<Interval> {
+fn intervals(task: &Task, stages: &[SrbStage]) -> Vec<Interval> {
     let problem = &task.problem;
-    let turn = |state: &srb_opt::State<f64, PHASES>| match legs {
-        Legs::Heavy => state.rot_wb * problem.inertia_b * state.omega_b,
-        Legs::Massless => state.rot_wb * state.omega_b,
-    };
+    let momentum =
+        |state: &srb_opt::State<f64, PHASES>| state.rot_wb * problem.inertia_b * state.omega_b;
     let mut start = 0.0;
     let mut out = Vec::new();
     for (k, pair) in stages.windows(2).enumerate() {
@@ -106,8 +87,7 @@ fn intervals(task: &Task, stages: &[SrbStage], legs: Legs) -> Vec<Interval> {
             pos: state.pos_w,
             vel: state.vel_w,
             acc: total / problem.mass - Vector3::z() * problem.gravity,
-            legs,
-            turn: (turn(state), turn(next)),
+            momentum: (momentum(state), momentum(next)),
             rotation: nalgebra::Rotation3::from_matrix(&state.rot_wb),
             contacts: data.contacts,
             forces_w,
@@ -142,13 +122,6 @@ fn load(q: &State, v: &Velocity, a: &Velocity, interval: &Interval) -> Result<Lo
     let missing = |forces: &[Vector3<f64>; FOOT_COUNT]| {
         Vector6::from((effort.base - push(forces).base).to_array())
     };
-    if interval.legs == Legs::Massless {
-        return Ok(Load {
-            torques: push(&forces_w).joints.map(|x| -x),
-            forces_w,
-            residual: missing(&forces_w).amax(),
-        });
-    }
     // The least change of the forces in contact that balances the base: δ = Gᵀ(G Gᵀ)⁻¹ missing.
     let mut gram = Matrix6::identity() * 1e-9;
     let maps: Vec<nalgebra::Matrix6x3<f64>> = jacobians
@@ -209,8 +182,8 @@ pub(crate) fn standing(task: &Task) -> Result<Node, String> {
 }
 
 /// The whole-body reference of a solved plan.
-pub(crate) fn build(task: &Task, plan: &SrbPlan, legs: Legs) -> Result<Reference, String> {
-    let intervals = intervals(task, &plan.stages, legs);
+pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
+    let intervals = intervals(task, &plan.stages);
     let landing_joints = task.robot.landing_joints(&task.start)?;
     let mut q = task.start;
     let mut swing = [0.0; JOINTS];
@@ -223,9 +196,9 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan, legs: Legs) -> Result<Reference
         .count();
     for interval in &intervals[..stance] {
         let speed = |q: &State, s: f64, swing: &[f64; JOINTS]| {
-            let (pos, vel, turn) = interval.at(s);
+            let [pos, vel, momentum] = interval.at(s);
             let pulled = vel + (pos - com(q)) / PULL;
-            rolling_velocity(q, &interval.contacts, &pulled, turn, swing)
+            rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
         };
         // Legs that have left the ground early fold towards the pre-landing posture.
         for leg in (0..FOOT_COUNT).filter(|leg| !interval.contacts[*leg]) {
@@ -287,7 +260,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan, legs: Legs) -> Result<Reference
         peak_torque,
         peak_friction,
         base_residual,
-        origin: Origin::Kinematics(legs),
+        origin: Origin::Kinematics,
     })
 }
 
@@ -303,7 +276,7 @@ fn fly(
 ) {
     let com_b = takeoff_q.base.rotation.inverse() * (com(takeoff_q) - takeoff_q.base.translation);
     for interval in flight {
-        let (pos, vel, turn) = interval.at(0.0);
+        let [pos, vel, momentum] = interval.at(0.0);
         let rotation = interval.rotation;
         let span = posing - takeoff;
         let u = ((interval.start - takeoff) / span).clamp(0.0, 1.0);
@@ -318,7 +291,7 @@ fn fly(
         nodes.push(Node {
             time: interval.start,
             base,
-            base_velocity: Motion::new(rotation.inverse() * vel, turn.locked(&q)),
+            base_velocity: Motion::new(rotation.inverse() * vel, locked(&q, &momentum)),
             joints,
             joint_velocities,
             torques: swing_torques(&q, &joint_velocities, &rates),
@@ -350,18 +323,17 @@ pub(crate) fn heading_matrix(heading: f64) -> nalgebra::Rotation3<f64> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{Legs, build, com};
+    use super::{build, com};
     use crate::jump::kinematics::{contact_frame, poses};
+    use crate::jump::state;
     use crate::jump::task::Task;
-    use crate::jump::{Node, ROBOT, state};
-    use rbd_core::{Posture, centroidal_state};
 
     /// The reference meets the plan's centre of mass and its feet stay where they roll.
     #[test]
     fn the_lateral_reference_follows_its_plan() {
         let task = Task::load("a1/lateral").unwrap();
         let plan = task.solve().unwrap();
-        let reference = build(&task, &plan, Legs::Heavy).unwrap();
+        let reference = build(&task, &plan).unwrap();
         assert!(
             reference.base_residual < 1e-3,
             "{}",
@@ -386,27 +358,5 @@ mod tests {
             }
         }
         assert!(reference.peak_torque < 33.5);
-    }
-
-    /// Legs that stand do not turn with the base: at its rate the robot has less than the body's angular momentum, and falls short
-    /// of the turn after take-off, when the base shares with them what there is.
-    #[test]
-    fn massless_legs_leave_momentum_behind() {
-        let task = Task::load("a1/spin-90").unwrap();
-        let plan = task.solve().unwrap();
-        let share = |legs: Legs| {
-            let reference = build(&task, &plan, legs).unwrap();
-            let before = |node: &&Node| node.time < reference.takeoff;
-            let last = reference.nodes.iter().rev().find(before).unwrap();
-            let k = reference.nodes.iter().filter(before).count() - 2;
-            let body = &plan.stages[k].state;
-            let wanted = body.rot_wb * task.problem.inertia_b * body.omega_b;
-            let (q, v) = state(last);
-            let robot = centroidal_state(&ROBOT, &Posture::new(&ROBOT, &q), &v).momentum_w;
-            robot.angular.z / wanted.z
-        };
-        let (heavy, massless) = (share(Legs::Heavy), share(Legs::Massless));
-        assert!((heavy - 1.0).abs() < 1e-3, "{heavy}");
-        assert!((0.7..0.9).contains(&massless), "{massless}");
     }
 }

@@ -4,7 +4,7 @@ use super::execute::Run;
 use super::kinematics::poses;
 use super::log::{FEET_NAMES, Sample, joint_names};
 use super::planned::Origin;
-use super::reference::{Legs, Reference};
+use super::reference::Reference;
 use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, State, feet};
 use crate::log::Log;
@@ -20,11 +20,11 @@ pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]
     let title = format!("saltus run {}", task.name);
     let legs = match reference.origin {
         Origin::WholeBody(_) => "a whole-body optimum along a single-rigid-body one",
-        Origin::Kinematics(Legs::Heavy) => {
+        Origin::Kinematics => {
             "a single-rigid-body optimum with leg kinematics and inverse dynamics"
         }
-        Origin::Kinematics(Legs::Massless) => {
-            "a single-rigid-body optimum with leg kinematics and torques of its forces alone"
+        Origin::RigidBody(_) => {
+            "an optimum in joint space with the dynamics of a single rigid body"
         }
         Origin::Stored => "one that was stored before",
     };
@@ -63,9 +63,9 @@ fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
 
 /// The run as MCAP.
 pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
-    let terrain = super::plant::terrain(task);
+    let terrain = super::plant::terrain(task, 0.0);
     let scene = Scene {
-        trunk: super::TRUNK_SIZE,
+        trunk: a1_model::shapes::TRUNK,
         foot_radius: a1_model::FOOT_RADIUS,
         floor: terrain.floor,
         block: terrain.block.map(|block| [block.lower, block.upper]),
@@ -97,12 +97,12 @@ fn frames(samples: &[Sample]) -> Value {
 }
 
 fn scene(task: &Task) -> Value {
-    let terrain = super::plant::terrain(task);
+    let terrain = super::plant::terrain(task, 0.0);
     json!({
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),
         "foot_radius": a1_model::FOOT_RADIUS,
-        "trunk": super::TRUNK_SIZE,
+        "trunk": a1_model::shapes::TRUNK,
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })

@@ -4,8 +4,9 @@ use super::execute::Run;
 use super::kinematics::poses;
 use super::log::Sample;
 use super::task::Task;
-use super::{FOOT_COUNT, State, TRUNK_SIZE, feet};
+use super::{FOOT_COUNT, State, feet};
 use crate::report::COLORS;
+use a1_model::shapes::TRUNK as TRUNK_SIZE;
 use core::fmt::Write;
 use nalgebra::Vector3;
 use rbd_core::Transform;
@@ -30,7 +31,7 @@ pub(crate) fn svg(task: &Task, run: &Run, takeoff: f64) -> String {
         })
         .collect();
     let across = across(task);
-    let floor = super::plant::terrain(task).floor;
+    let floor = super::plant::terrain(task, 0.0).floor;
     let top = shown.iter().map(|s| s.position.z).fold(0.0, f64::max) + 0.35;
     let [width, height] = [POSES as f64 * APART * SCALE, (top - floor + 0.25) * SCALE];
     let mut out = format!(

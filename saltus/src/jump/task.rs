@@ -5,6 +5,7 @@
 
 use super::FOOT_COUNT;
 use super::task_file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
+use super::task_values::{self, AXIS, DURATION, LENGTH, TOTAL, TURN, Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, State};
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Solver, Stage, Status};
@@ -42,6 +43,8 @@ const DURATIONS: [f64; 2] = [0.1, 1.0];
 const LONGEST_FOUR_LEGS: f64 = 0.55;
 /// Longest stance on fewer feet, s: it is unstable open loop.
 const LONGEST_TWO_LEGS: f64 = 0.35;
+/// Largest difference between the goal's height and the ground's, m.
+const HEIGHT_TOLERANCE: f64 = 5e-3;
 /// Width over which the edge of a box is smoothed, m.
 const EDGE_WIDTH: f64 = 0.03;
 /// Most intervals of a phase: beyond, only memory is used.
@@ -64,6 +67,8 @@ pub(crate) struct Task {
     pub(crate) goal: Vector3<f64>,
     /// Wanted heading at the end, rad.
     pub(crate) heading: f64,
+    /// Wanted rotation of the base at the end: the whole turn, of which only the heading is a posture to stand in.
+    pub(crate) rot_goal: nalgebra::Rotation3<f64>,
     /// Height of the box that the robot starts on, m, with its edge.
     pub(crate) edge: Option<Edge<f64>>,
     /// The trunk may touch the ground in the landing.
@@ -82,22 +87,6 @@ pub(crate) struct SrbPlan {
     pub(crate) wall_ms: f64,
     pub(crate) cost: f64,
     pub(crate) max_violation: f64,
-}
-
-/// A value of a task file that cannot be: `(key, what it must be)`.
-type Unusable = (String, String);
-
-/// Fails with the key where a value does not meet its condition.
-fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
-    if ok {
-        Ok(())
-    } else {
-        Err((key.to_owned(), what.to_owned()))
-    }
-}
-
-fn positive(x: f64) -> bool {
-    x > 0.0 && x.is_finite()
 }
 
 impl Task {
@@ -140,13 +129,17 @@ impl Task {
     }
 
     fn of(name: &str, file: &TaskFile, robot: Quadruped) -> Result<Self, Unusable> {
-        check_limits(&file.limits)?;
-        check_weights(&file.weights)?;
+        task_values::limits(&file.limits)?;
+        task_values::weights(&file.weights)?;
         let goal = Vector3::from(file.goal_m);
+        goal.iter().try_for_each(|x| within(*x, LENGTH, "goal_m"))?;
         require(
-            goal.iter().all(|x| x.is_finite()),
-            "goal_m",
-            "must be three finite numbers",
+            file.robot != "a1" || file.lock.is_empty(),
+            "lock",
+            &format!(
+                "{:?}: a1 has no joints but its legs': leave it out, or give a URDF as robot",
+                file.lock
+            ),
         )?;
         let (start, start_w) = standing(&robot).map_err(|what| ("robot".to_owned(), what))?;
         let com_b = start_w - start.base.translation;
@@ -154,11 +147,14 @@ impl Task {
         let (axis, angle) = turn(file)?;
         let edge = edge(file, &robot)?;
         let total = file.total;
+        within(total.min_s, TOTAL, "total.min_s")?;
+        within(total.max_s, TOTAL, "total.max_s")?;
         require(
-            positive(total.min_s) && total.max_s.is_finite() && total.min_s <= total.max_s,
+            total.min_s <= total.max_s,
             "total",
-            "min_s must be positive and not above max_s",
+            "min_s must not be above max_s",
         )?;
+        check_height(&goal, edge)?;
         let (phases, reference) = phases(file, &robot, edge)?;
         let limits = &file.limits;
         let problem = Problem {
@@ -202,6 +198,7 @@ impl Task {
             problem,
             start,
             goal,
+            rot_goal: so3::exp(&(axis * angle)),
             heading: if axis.z.abs() > 0.5 {
                 angle * axis.z
             } else {
@@ -227,9 +224,10 @@ impl Task {
                 durations.len()
             )));
         }
-        if let Some(bad) = durations.iter().find(|t| !positive(**t)) {
-            return Err(refuse(format!("{bad} s is no duration")));
-        }
+        DURATION.check_all(durations).map_err(&refuse)?;
+        TOTAL
+            .check(durations.iter().sum())
+            .map_err(|what| refuse(format!("the sum {what}")))?;
         for (phase, duration) in self.problem.phases.iter_mut().zip(durations) {
             phase.duration_guess = *duration;
             (phase.min_duration, phase.max_duration) = (*duration, *duration);
@@ -331,12 +329,9 @@ fn turn(file: &TaskFile) -> Result<(Vector3<f64>, f64), Unusable> {
     };
     let axis = Vector3::from(turn.axis);
     let length = axis.norm();
-    require(positive(length), "turn.axis", "must be finite and not zero")?;
-    require(
-        turn.angle_deg.is_finite(),
-        "turn.angle_deg",
-        "must be finite",
-    )?;
+    let what = |what| ("turn.axis".to_owned(), format!("its length {what}"));
+    AXIS.check(length).map_err(what)?;
+    within(turn.angle_deg, TURN, "turn.angle_deg")?;
     Ok((axis / length, turn.angle_deg.to_radians()))
 }
 
@@ -344,8 +339,8 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
     let Some(table) = file.r#box else {
         return Ok(None);
     };
-    require(table.drop_m.is_finite(), "box.drop_m", "must be finite")?;
-    require(table.side.abs() == 1, "box.side", "must be 1 or -1")?;
+    within(table.drop_m, LENGTH, "box.drop_m")?;
+    require(matches!(table.side, 1 | -1), "box.side", "must be 1 or -1")?;
     let axis = match table.axis {
         Across::X => 0,
         Across::Y => 1,
@@ -353,16 +348,16 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
     let sign = f64::from(table.side);
     let nearest = robot.hips.iter().map(|hip| sign * hip[axis]);
     let nearest = nearest.fold(f64::NEG_INFINITY, f64::max);
-    let distance = match (table.beyond_feet_m, table.distance_m) {
-        (Some(beyond), None) => nearest + beyond,
-        (None, Some(distance)) => distance,
-        _ => f64::NAN,
+    let (key, given, from) = match (table.beyond_feet_m, table.distance_m) {
+        (Some(beyond), None) => ("box.beyond_feet_m", beyond, nearest),
+        (None, Some(distance)) => ("box.distance_m", distance, 0.0),
+        _ => {
+            let what = "give either this or distance_m".to_owned();
+            return Err(("box.beyond_feet_m".to_owned(), what));
+        }
     };
-    require(
-        distance.is_finite(),
-        "box.beyond_feet_m",
-        "give either this or distance_m, finite",
-    )?;
+    within(given, LENGTH, key)?;
+    let distance = from + given;
     Ok(Some(Edge {
         drop: table.drop_m,
         axis,
@@ -370,6 +365,19 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
         distance,
         width: EDGE_WIDTH,
     }))
+}
+
+/// The ground decides how high the goal is: a goal in the air, or in the ground, is none.
+fn check_height(goal: &Vector3<f64>, edge: Option<Edge<f64>>) -> Result<(), Unusable> {
+    let ground = edge.map_or(0.0, |edge| -edge.drop);
+    require(
+        (goal.z - ground).abs() <= HEIGHT_TOLERANCE,
+        "goal_m",
+        &format!(
+            "its third number must be the landing's ground, {ground} m: -drop_m with a box, 0 without one, not {}",
+            goal.z
+        ),
+    )
 }
 
 type Phases = ([Phase<f64, FOOT_COUNT>; PHASES], Reference);
@@ -434,20 +442,17 @@ fn phase(
     let min = table.min_s.unwrap_or(shortest);
     let max = table.max_s.unwrap_or(longest.max(min));
     let min = table.min_s.unwrap_or(min.min(max));
-    require(positive(min), "min_s", "must be positive")?;
-    require(
-        max.is_finite() && min <= max,
-        "max_s",
-        "must be finite and not below min_s",
-    )?;
-    require(positive(table.guess_s), "guess_s", "must be positive")?;
+    within(min, DURATION, "min_s")?;
+    within(max, DURATION, "max_s")?;
+    require(min <= max, "max_s", "must not be below min_s")?;
+    within(table.guess_s, DURATION, "guess_s")?;
     require(
         (1..=MOST_INTERVALS).contains(&table.intervals),
         "intervals",
-        &format!("must be 1 to {MOST_INTERVALS}"),
+        &format!("must be 1 to {MOST_INTERVALS}, not {}", table.intervals),
     )?;
     let turn = table.turn_deg.unwrap_or(0.0);
-    require(turn.is_finite(), "turn_deg", "must be finite")?;
+    within(turn, TURN, "turn_deg")?;
     Ok(Phase {
         contacts,
         intervals: table.intervals,
@@ -456,43 +461,4 @@ fn phase(
         max_duration: max,
         reference_angle: turn.to_radians(),
     })
-}
-
-fn check_limits(limits: &LimitsTable) -> Result<(), Unusable> {
-    require(
-        limits.friction >= 0.0 && limits.friction.is_finite(),
-        "limits.friction",
-        "must be finite and not negative",
-    )?;
-    for (key, x) in [
-        ("limits.friction_share", limits.friction_share),
-        ("limits.force_weights", limits.force_weights),
-        ("limits.speed_share", limits.speed_share),
-    ] {
-        require(positive(x), key, "must be positive")?;
-    }
-    require(
-        limits.clearance_m.is_finite(),
-        "limits.clearance_m",
-        "must be finite",
-    )?;
-    require(
-        limits.torque_shares.iter().all(|x| positive(*x)),
-        "limits.torque_shares",
-        "must be three positive numbers",
-    )
-}
-
-fn check_weights(weights: &WeightsTable) -> Result<(), Unusable> {
-    for (key, x) in [
-        ("weights.omega", weights.omega),
-        ("weights.force", weights.force),
-        ("weights.rotation", weights.rotation),
-        ("weights.position", weights.position),
-        ("weights.torque", weights.torque),
-        ("weights.goal", weights.goal),
-    ] {
-        require(positive(x), key, "must be positive")?;
-    }
-    Ok(())
 }

@@ -253,7 +253,7 @@ impl TaskFile {
                 known: BUILT_IN.map(|(name, _)| name).join(", "),
             });
         }
-        let text = std::fs::read_to_string(path).map_err(|error| TaskError::File {
+        let text = crate::file::read_text(path).map_err(|error| TaskError::File {
             path: path.to_owned(),
             error,
         })?;

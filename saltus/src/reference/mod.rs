@@ -1,9 +1,11 @@
 //! The reference problems: `a1-jumps.json` read into srb-opt's problem.
 
+mod values;
 pub(crate) mod whole_body;
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::collections::BTreeMap;
 
@@ -13,15 +15,16 @@ pub(crate) const FEET: usize = 4;
 /// The nine problems as shipped.
 pub(crate) const SHIPPED: &str = include_str!("../../data/a1-jumps.json");
 
-/// The file: numbers shared by all tasks, and the tasks.
+/// The file: numbers shared by all tasks, and the tasks. A key that is not known is refused: it may be one that is misspelt.
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct File {
     constants: Constants,
     tasks: BTreeMap<String, Task>,
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
+#[serde(rename_all = "UPPERCASE", deny_unknown_fields)]
 struct Constants {
     m: f64,
     i_b: [[f64; 3]; 3],
@@ -48,9 +51,35 @@ struct Constants {
     edge_w: f64,
     tau_max: f64,
     qd_max: f64,
+    // What the reference checkers read and the problem does not need.
+    #[serde(rename = "TRUNK")]
+    _trunk: Option<IgnoredAny>,
+    #[serde(rename = "L2")]
+    _l2: Option<IgnoredAny>,
+    #[serde(rename = "L3")]
+    _l3: Option<IgnoredAny>,
+    #[serde(rename = "FOOT_Y")]
+    _foot_y: Option<IgnoredAny>,
+    #[serde(rename = "FL")]
+    _fl: Option<IgnoredAny>,
+    #[serde(rename = "FR")]
+    _fr: Option<IgnoredAny>,
+    #[serde(rename = "RL")]
+    _rl: Option<IgnoredAny>,
+    #[serde(rename = "RR")]
+    _rr: Option<IgnoredAny>,
+    #[serde(rename = "ALL")]
+    _all: Option<IgnoredAny>,
+    #[serde(rename = "REAR")]
+    _rear: Option<IgnoredAny>,
+    #[serde(rename = "RIGHT")]
+    _right: Option<IgnoredAny>,
+    #[serde(rename = "AIR")]
+    _air: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Task {
     phases: Vec<Vec<usize>>,
     #[serde(rename = "N")]
@@ -83,7 +112,14 @@ const ALIASES: [(&str, &str); 9] = [
 impl File {
     /// Parses the JSON description.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
-        serde_json::from_str(text).map_err(|error| format!("problem file: {error}"))
+        let file: Self =
+            serde_json::from_str(text).map_err(|error| format!("problem file: {error}"))?;
+        file.constants.check()?;
+        for (name, task) in &file.tasks {
+            task.check()
+                .map_err(|error| format!("task {name}: {error}"))?;
+        }
+        Ok(file)
     }
 
     /// The task's name in this file: the one asked for, or the only one there is.
@@ -130,13 +166,10 @@ impl File {
             .get(name)
             .ok_or_else(|| format!("no task `{name}`"))?;
         let count = t.n.len();
-        if t.phases.len() != count || t.t0.len() != count || count > PHASES {
+        if count > PHASES {
             return Err(format!(
-                "task {name}: phases, N and T0 must have equal lengths <= {PHASES}"
+                "task {name}: N: at most {PHASES} phases, not {count}"
             ));
-        }
-        if t.bp.as_ref().is_some_and(|bp| bp.len() != count) {
-            return Err(format!("task {name}: bp needs one angle per phase"));
         }
         let empty = Phase {
             contacts: [false; FEET],
@@ -148,12 +181,7 @@ impl File {
         };
         let mut phases = [empty; PHASES];
         for (i, phase) in phases.iter_mut().enumerate().take(count) {
-            for foot in &t.phases[i] {
-                *phase
-                    .contacts
-                    .get_mut(*foot)
-                    .ok_or_else(|| format!("task {name}: there is no foot {foot}"))? = true;
-            }
+            phase.contacts = core::array::from_fn(|foot| t.phases[i].contains(&foot));
             phase.intervals = t.n[i];
             phase.duration_guess = t.t0[i];
             phase.reference_angle = t.bp.as_ref().map_or(0.0, |bp| bp[i]);

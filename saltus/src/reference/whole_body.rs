@@ -18,6 +18,8 @@ pub(crate) const DT: f64 = 0.01;
 const LANDING: [f64; 3] = [0.0, 0.8957, -1.7914];
 /// Intervals before touchdown over which the joints rest.
 const LANDING_INTERVALS: usize = 5;
+/// How far R of a solution, which is stored in decimals, may be from a rotation.
+const ROTATION: f64 = 1e-3;
 const KNEE_CLEARANCE: f64 = 0.02;
 const SWING_HEIGHT: f64 = -0.01;
 const DRIFT: f64 = 0.01;
@@ -85,12 +87,18 @@ impl SrbMotion {
                 total + 1
             ));
         }
+        let turned = |r: &[f64; 9]| {
+            let rotation = Matrix3::from_column_slice(r);
+            (rotation.transpose() * rotation - Matrix3::identity()).amax() < ROTATION
+        };
+        if !sol.rotations.iter().all(turned) {
+            return Err("R of the SRB solution: must be rotations".into());
+        }
         let mut times = vec![0.0];
         let mut begin = 0.0;
         for (n, duration) in intervals.iter().zip(&sol.durations) {
-            if !(*duration > 0.0 && duration.is_finite()) {
-                return Err("durations of the SRB solution must be positive".into());
-            }
+            let named = super::values::DURATION.check(*duration);
+            named.map_err(|what| format!("T of the SRB solution: {what}"))?;
             times.extend((1..=*n).map(|i| begin + duration / *n as f64 * i as f64));
             begin += duration;
         }

@@ -2,9 +2,10 @@
 
 use super::{Row, write_report};
 use crate::humanoid::execute::{self, Run};
-use crate::humanoid::judge::Verdict;
-use crate::humanoid::{GRAVITY, Task, report};
-use crate::jump::plant::{Disturbance, Sim};
+use crate::humanoid::judge::Judged;
+use crate::humanoid::{GRAVITY, Landing, Task, report};
+use crate::jump::plant::Sim;
+use crate::lab::Disturbance;
 use core::ops::ControlFlow;
 use jump_control::takeoff_speed;
 use std::path::Path;
@@ -51,16 +52,23 @@ pub(crate) fn rows(
             match (run(&task, sim), run(&free, sim)) {
                 (Ok(held), Ok(free)) => {
                     rows.extend(jump(row, &task, &held, &free, sim, [com, soles]));
-                    let verdict = Verdict::of(&held);
-                    let table = verdict.table(&task, &held, sim.name());
+                    let judged = Judged::of(&task, &held);
+                    let nominal = Disturbance::NOMINAL;
+                    let table = judged.table(&task, &held, sim.name(), &nominal);
                     let html = report::html(&task, &held, Some(&free), &table);
                     let name = format!("{}-{}", name.replace('/', "-"), sim.name());
                     if let Err(error) = html.and_then(|html| write_report(folder, &name, &html)) {
-                        eprintln!("saltus: {error}");
+                        tell!("saltus: {error}");
                     }
                 }
                 (Err(error), _) | (_, Err(error)) => rows.push(row.failed(error)),
             }
+        }
+    }
+    for &sim in sims {
+        for name in ["icub/velocity", "icub/torque"] {
+            tell("paper B's own landing")?;
+            rows.extend(own_landing(name, sim));
         }
     }
     rows.push(
@@ -75,6 +83,36 @@ pub(crate) fn rows(
         ),
     );
     ControlFlow::Continue(())
+}
+
+/// III-F: minimum jerk in the air and stiff servos on the ground, as the paper lands.
+fn own_landing(name: &str, sim: Sim) -> Option<Row> {
+    let task = Task {
+        landing: Landing::Stiff,
+        ..Task::named(name)?
+    };
+    let row = Row::new(
+        'B',
+        format!("III-F, {name}: landing of the paper, minimum jerk and a stiff hold"),
+        "lands",
+    )
+    .simulated(sim);
+    Some(match run(&task, sim) {
+        Ok(run) => {
+            let verdict = Judged::of(&task, &run).verdict;
+            let found = format!(
+                "{}, asks for {:.1} of a torque limit",
+                verdict.first(),
+                run.landing_demand
+            );
+            row.ours(
+                found,
+                verdict.on_target(),
+                "holds when the jump is on target",
+            )
+        }
+        Err(error) => row.failed(error),
+    })
 }
 
 /// II-D and III-A: figures without a simulator.
@@ -98,7 +136,7 @@ fn takeoff() -> Vec<Row> {
 
 /// The rows of one controller: height, take-off speed, rotation.
 fn jump(row: Row, task: &Task, held: &Run, free: &Run, sim: Sim, theirs: [f64; 2]) -> Vec<Row> {
-    let (ours, loose) = (Verdict::of(held), Verdict::of(free));
+    let (ours, loose) = (Judged::of(task, held), Judged::of(task, free));
     let [com, soles] = theirs;
     let level = task.name();
     let ballistic = takeoff_speed(ours.com_gain, GRAVITY);
@@ -109,14 +147,10 @@ fn jump(row: Row, task: &Task, held: &Run, free: &Run, sim: Sim, theirs: [f64; 2
                 "{:.2} cm, soles {:.2} cm, {}",
                 ours.com_gain * 100.0,
                 ours.sole_clearance * 100.0,
-                if ours.landed && ours.upright {
-                    "upright 2 s later"
-                } else {
-                    "fell"
-                }
+                ours.verdict.first()
             ),
-            ours.com_gain >= com && ours.sole_clearance >= soles && ours.landed && ours.upright,
-            "holds when the jump is at least as high as the paper's and ends upright",
+            ours.com_gain >= com && ours.sole_clearance >= soles && ours.verdict.on_target(),
+            "holds when the jump is at least as high as the paper's and on target",
         ),
         Row::new(
             'B',

@@ -6,6 +6,7 @@ pub(crate) mod humanoid;
 pub(crate) mod page;
 pub(crate) mod quadruped;
 
+use crate::cmd::expected::Found;
 use crate::jump::plant::Sim;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -90,14 +91,29 @@ impl Row {
         })
     }
 
+    /// As the file of expected verdicts has it: `A: Table II, ...`, and `unjudged` where this program cannot judge.
+    pub(crate) fn found(&self) -> Found {
+        let outcome = match self.holds {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None => "unjudged",
+        };
+        Found {
+            name: format!("{}: {}", self.paper, self.item),
+            sim: self.sim.map_or("any", Sim::name).to_owned(),
+            outcome: outcome.to_owned(),
+            words: format!("{outcome}: {} ({})", self.ours, self.reason),
+        }
+    }
+
     /// For a terminal.
     pub(crate) fn print(&self) {
         let sim = self.sim.map_or("", Sim::name);
-        println!("{:3} {} {} [{sim}]", self.mark(), self.paper, self.item);
-        println!("      paper: {}", self.theirs);
-        println!("      here:  {}", self.ours);
+        say!("{:3} {} {} [{sim}]", self.mark(), self.paper, self.item);
+        say!("      paper: {}", self.theirs);
+        say!("      here:  {}", self.ours);
         if !self.reason.is_empty() {
-            println!("      {}", self.reason);
+            say!("      {}", self.reason);
         }
     }
 }

@@ -3,11 +3,14 @@
 mod posture;
 mod urdf;
 
-use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
+use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, SHAPES, a1};
 use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
-use rbd_core::{BaseBody, BaseKind, Body, Frame, JointLimits, Model, Motor, TableModel, Tree};
+use rbd_core::{
+    BaseBody, BaseKind, Body, Frame, Inertia, JointLimits, MassMatrix, Model, Motor, Posture,
+    Shape, TableModel, Tree, crba,
+};
 
 pub(crate) use posture::State;
 pub(crate) use urdf::RobotError;
@@ -16,6 +19,9 @@ pub(crate) use urdf::RobotError;
 pub(crate) const JOINTS: usize = 12;
 /// Legs, one foot each.
 pub(crate) const LEGS: usize = 4;
+
+/// A torque that no leg reaches, N m.
+const UNLIMITED: f64 = 1e3;
 
 /// Places of the legs, in the order of [`Data::legs`] and of task files.
 pub(crate) const PLACES: [&str; LEGS] = ["FL", "FR", "RL", "RR"];
@@ -45,9 +51,14 @@ pub(crate) struct Data {
     pub(crate) leg_length: f64,
     /// Corners of the trunk, base axes, m.
     pub(crate) corners: [Vector3<f64>; 8],
+    /// Collision shapes of all links, where they are known.
+    pub(crate) shapes: Option<&'static Shapes>,
     /// Joints near a standing posture.
     seed: [f64; JOINTS],
 }
+
+/// Collision shapes of a robot.
+pub(crate) type Shapes = [Shape<f64>; SHAPES.len()];
 
 impl Quadruped {
     /// A1 as published, with rotors: what `saltus run` simulates.
@@ -77,7 +88,43 @@ impl Quadruped {
             hips: core::array::from_fn(|i| Vector3::new(0.1805 * end(i), 0.1308 * side(i), 0.0)),
             leg_length: 0.4,
             corners: core::array::from_fn(corner),
+            shapes: Some(&SHAPES),
             seed: core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]),
+        }))
+    }
+
+    /// The same robot with all its mass in the trunk: the single rigid body with its legs where they are at the `start`, on legs that weigh
+    /// nothing and whose torques have no limit.
+    pub(crate) fn on_massless_legs(&self, start: &State) -> Result<Self, RobotError> {
+        let mut mass = MassMatrix::ZERO;
+        crba(self, &Posture::new(self, start), &mut mass);
+        let Inertia {
+            mass,
+            first,
+            second: i,
+        } = mass.base;
+        let base = BaseBody {
+            mass,
+            first: first.into(),
+            second: [i.xx, i.yy, i.zz, i.xy, i.xz, i.yz],
+        };
+        let bodies = self.table.bodies().map(|body| Body {
+            mass: 0.0,
+            first: [0.0; 3],
+            second: [0.0; 6],
+            rotor_inertia: 0.0,
+            ..body
+        });
+        Ok(Self::leak(Data {
+            table: TableModel::with_any_inertia(BaseKind::Floating, base, &bodies)?,
+            limits: self.limits.map(|limit| JointLimits {
+                effort: UNLIMITED,
+                damping: 0.0,
+                friction: 0.0,
+                ..limit
+            }),
+            motors: None,
+            ..self.0.clone()
         }))
     }
 

@@ -6,7 +6,7 @@
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
 use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State};
-use model_import::{ImportError, InertiaPolicy, Options, Robot, parse_lock};
+use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
 use rbd_core::{BaseKind, Frame, JointLimits, Kinematics, Link, TableError, TableModel, Transform};
 use roxmltree::{Document, Node};
@@ -54,6 +54,26 @@ pub(crate) enum RobotError {
         "no leg stands at {0}: legs must be in four quadrants around the base, x forwards and y to the left"
     )]
     Quadrant(&'static str),
+    /// A joint without a limit that a plan can keep to.
+    #[error("joint {joint}: its {what} limit {value}: a quadruped's joints have limits above 0")]
+    Limit {
+        /// The joint.
+        joint: String,
+        /// Which limit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A joint that has no place to be.
+    #[error("joint {joint}: its range is {lower} to {upper}: the first must be below the second")]
+    Range {
+        /// The joint.
+        joint: String,
+        /// Its lower limit.
+        lower: f64,
+        /// Its upper limit.
+        upper: f64,
+    },
     /// No posture stands.
     #[error("no standing posture: leg {0} cannot reach below its hip within its joint limits")]
     Posture(&'static str),
@@ -62,7 +82,7 @@ pub(crate) enum RobotError {
 impl Quadruped {
     /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
     pub(crate) fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
-        let text = std::fs::read_to_string(path)?;
+        let text = crate::file::read_text(path)?;
         let locks = locks.iter().map(|lock| parse_lock(lock));
         let mut options = Options {
             base: BaseKind::Floating,
@@ -97,6 +117,7 @@ impl Quadruped {
                 return Err(RobotError::NotALeg(robot.joints[i].name.clone()));
             }
         }
+        robot.joints.iter().try_for_each(check_limits)?;
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
         let mut feet = [Frame::IDENTITY; LEGS];
@@ -138,11 +159,35 @@ impl Quadruped {
             hips,
             leg_length,
             corners: trunk(&document, robot, leg_length),
+            shapes: None,
             seed: [0.0; JOINTS],
         };
         data.seed = seed(&data)?;
         Ok(Self::leak(data))
     }
+}
+
+/// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.
+fn check_limits(joint: &JointInfo) -> Result<(), RobotError> {
+    let limits = &joint.limits;
+    for (what, value) in [("effort", limits.effort), ("velocity", limits.speed)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(RobotError::Limit {
+                joint: joint.name.clone(),
+                what,
+                value,
+            });
+        }
+    }
+    let (lower, upper) = (limits.lower, limits.upper);
+    if lower < upper {
+        return Ok(());
+    }
+    Err(RobotError::Range {
+        joint: joint.name.clone(),
+        lower,
+        upper,
+    })
 }
 
 /// Names of a robot live as long as the robot, which lives as long as the program.

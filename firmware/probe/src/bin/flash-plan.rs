@@ -3,11 +3,6 @@
 use a1_model::A1Geared;
 use jump_control::Node;
 use jump_control::container::{Container, model_hash};
-use nalgebra::Vector3;
-use rbd_core::{Configuration, Posture, center_of_mass};
-
-/// How far the task's goal is from where the robot stands, m.
-const GOAL: [f64; 3] = [-0.7, 0.0, -2.0];
 
 fn main() -> Result<(), Box<dyn core::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -19,15 +14,9 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let header = plan.header();
     let step = header.ground.ok_or("the plan has no box to jump from")?;
     let nodes: Vec<Node<f64, 12, 4>> = plan.nodes().map(|node| node.node()).collect();
-    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
+    let Some(last) = nodes.last() else {
         return Err("the plan has no nodes".into());
     };
-    let stands = Configuration {
-        base: first.base,
-        joints: first.joints,
-    };
-    let com = center_of_mass(&A1Geared, &Posture::new(&A1Geared, &stands)).position_w;
-    let goal = com + Vector3::from(GOAL);
     let head = [
         header.takeoff,
         header.posing,
@@ -35,7 +24,6 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
         header.margins.weight,
     ];
     let mut out: Vec<f64> = head.map(f64::from).to_vec();
-    out.extend(goal.iter());
     // The robot waits for the ground in this posture, and the plan ends in it.
     out.extend(last.joints);
     out.extend([step.drop, step.distance].map(f64::from));

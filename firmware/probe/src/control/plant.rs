@@ -1,6 +1,6 @@
 //! Our own contact simulator with A1 standing on its feet.
 
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use rbd_core::Tree;
 
 use super::Robot;
@@ -10,13 +10,14 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12> + Copy>(
     on: &mut Subject<'_, T, R>,
     robot: &Robot<T, M, 12, 4>,
 ) {
-    let spheres = robot.feet.map(|foot| ContactSphere {
-        link: foot.link,
-        offset: foot.offset,
-        radius: T::of(0.02),
+    let mut owner = 0;
+    let feet = robot.feet.map(|foot| {
+        owner += 1;
+        Shape::ball(foot.link, foot.offset, T::of(0.02), owner - 1)
     });
     let settings = Settings::new(&robot.limits, &robot.motors);
-    let mut plant = NativeSimulator::new(robot.model, spheres, Terrain::FLAT, settings);
+    let mut plant =
+        NativeSimulator::<T, M, 12, 4, 4>::new(robot.model, feet, Terrain::FLAT, settings);
     plant.reset(&robot.q, &robot.v);
     for torque in [3.0, -2.0, 1.0] {
         let input = (&mut plant, [T::of(torque); 12]);

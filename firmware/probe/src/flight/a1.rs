@@ -1,7 +1,7 @@
 //! A1 jumps: joint PD at 10 kHz, Cartesian PD and landing at 1 kHz, from a plan in flash.
 
 use a1_model::A1Geared;
-use contact_sim::{Block, ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
 use jump_control::{Measurement, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
@@ -40,7 +40,7 @@ pub struct Flight<T: Planned>
 where
     A1Geared: Model<T, 12>,
 {
-    plant: NativeSimulator<T, A1Geared, 12, BALLS>,
+    plant: NativeSimulator<T, A1Geared, 12, BALLS, BALLS>,
     felt: [T; 12],
     steps: usize,
     broken: bool,
@@ -180,7 +180,6 @@ pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     Some(Jump {
         plan: Plan::new(T::nodes(), takeoff, posing, touchdown, Torques::Hold).ok()?,
         weight: T::of(plan::WEIGHT),
-        goal_w: Vector3::from(plan::GOAL.map(T::of)),
         rot_goal: Rotation3::identity(),
         landing_joints: plan::LANDING.map(T::of),
     })
@@ -306,18 +305,13 @@ fn behind_the_box<T: Real>() -> Terrain<T> {
 }
 
 /// Feet, and the calf joints as knees.
-fn balls<T: Real>(feet: &[Frame<T>; 4]) -> [ContactSphere<T>; BALLS] {
+fn balls<T: Real>(feet: &[Frame<T>; 4]) -> [Shape<T>; BALLS] {
     core::array::from_fn(|i| match feet.get(i) {
-        Some(foot) => ContactSphere {
-            link: foot.link,
-            offset: foot.offset,
-            radius: T::of(a1_model::FOOT_RADIUS),
-        },
-        None => ContactSphere {
-            link: Link::Joint(3 * (i - feet.len()) + 2),
-            offset: [T::ZERO; 3],
-            radius: T::of(0.02),
-        },
+        Some(foot) => Shape::ball(foot.link, foot.offset, T::of(a1_model::FOOT_RADIUS), i),
+        None => {
+            let knee = Link::Joint(3 * (i - feet.len()) + 2);
+            Shape::ball(knee, [T::ZERO; 3], T::of(0.02), i)
+        }
     })
 }
 

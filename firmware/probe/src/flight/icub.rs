@@ -1,6 +1,6 @@
 //! iCub pushes off by the torque program, paper B eqs. (6a) to (6f), in double precision, as `saltus run icub/torque`.
 
-use contact_sim::{ContactSphere, NativeSimulator, Settings, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use icub_model::gazebo::joint;
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use jump_control::{ComProfile, Curve, JointCommand, takeoff_speed};
@@ -79,18 +79,17 @@ fn standing() -> Configuration<f64, N> {
 }
 
 /// Corners of the soles.
-fn balls() -> [ContactSphere<f64>; 8] {
-    let corners = SOLES
-        .each_ref()
-        .map(|sole| ContactSphere::corners(sole, 0.005));
+fn balls() -> [Shape<f64>; 8] {
+    let [left, right] = SOLES.each_ref();
+    let corners = [
+        Shape::corners(left, 0.005, 0),
+        Shape::corners(right, 0.005, 4),
+    ];
     core::array::from_fn(|i| {
         let sole = corners.get(i / 4).and_then(|corners| corners.as_ref());
         let ball = sole.and_then(|balls| balls.get(i % 4));
-        ball.copied().unwrap_or(ContactSphere {
-            link: rbd_core::Link::Base,
-            offset: [0.0; 3],
-            radius: 0.0,
-        })
+        let none = Shape::ball(rbd_core::Link::Base, [0.0; 3], 0.0, i);
+        ball.copied().unwrap_or(none)
     })
 }
 
@@ -124,7 +123,7 @@ fn guarded() -> [JointLimits<f64>; N] {
 /// A simulated iCub in the place of the robot: in a squat on both soles, at rest.
 #[derive(Clone, Debug)]
 pub struct IcubFlight {
-    plant: NativeSimulator<f64, Icub23, N, 8>,
+    plant: NativeSimulator<f64, Icub23, N, 8, 8>,
     steps: usize,
     broken: bool,
 }

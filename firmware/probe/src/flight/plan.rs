@@ -1,7 +1,7 @@
 //! The plan of `a1/double-backflip` in flash, in both scalars: a `static`, so it takes no memory of the controller.
 //!
 //! `plans/a1-double-backflip.bin` holds little-endian single-precision numbers: times of take-off, posing and touchdown;
-//! weight; goal of the centre of mass; landing posture; height and near edge of the box behind which the robot lands; then
+//! weight; landing posture; height and near edge of the box behind which the robot lands; then
 //! per node its time, rotation of the base by rows, its position, its velocity (linear, angular), positions, velocities and torques
 //! of the joints, and the forces of the feet. They are those of `saltus run a1/double-backflip`.
 
@@ -17,7 +17,7 @@ use rbd_core::{Motion, Transform};
 use crate::Real;
 
 static BYTES: &[u8] = include_bytes!("../../plans/a1-double-backflip.bin");
-const HEAD: usize = 21;
+const HEAD: usize = 18;
 const NODE: usize = 67;
 /// Nodes of the plan.
 const COUNT: usize = (BYTES.len() / 4 - HEAD) / NODE;
@@ -46,12 +46,10 @@ const fn numbers<const K: usize>(first: usize) -> [f64; K] {
 pub(super) const TIMES: [f64; 3] = numbers(0);
 /// Weight that was planned with, N.
 pub(super) const WEIGHT: f64 = number(3) as f64;
-/// Where the centre of mass is to come to rest, m.
-pub(super) const GOAL: [f64; 3] = numbers(4);
 /// Joint positions before touchdown, rad.
-pub(super) const LANDING: [f64; 12] = numbers(7);
+pub(super) const LANDING: [f64; 12] = numbers(4);
 /// Height of the box, and how far behind its middle it ends, m.
-pub(super) const BOX: [f64; 2] = numbers(19);
+pub(super) const BOX: [f64; 2] = numbers(16);
 
 /// A scalar in which the plan stands in flash.
 pub trait Planned: Real {

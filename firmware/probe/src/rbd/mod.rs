@@ -6,6 +6,7 @@ mod derivatives;
 mod dynamics;
 mod factors;
 mod kinematics;
+mod reduction;
 mod state;
 
 use rbd_core::joint::Kind;
@@ -113,6 +114,7 @@ fn algorithms<T: Real, R: Recorder, M: Tree<T, N>, const N: usize, const V: usiz
         derivatives::run::<T, R, M, N, V>(on, model, &posture, &state, &place);
         centroidal::run::<T, R, M, N, V>(on, model, &posture, &state);
         contact::run(on, &factors, &free, &state, &place);
+        reduction::run(on, model, &mass, &state);
         state::run(on, &state);
     }
 }

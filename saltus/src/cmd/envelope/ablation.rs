@@ -1,9 +1,10 @@
 //! A study beside the same study without each measure: what each is worth.
 
 use super::study::{Study, refuse_strangers};
+use crate::cmd::failure::Failure;
 use crate::cmd::folder::write;
 use crate::cmd::interrupt;
-use crate::jump::envelope::{CAUSES, Counts, wilson};
+use crate::jump::envelope::{Counts, wilson};
 use crate::jump::measure::Measure;
 use core::fmt::Write;
 use indicatif::ProgressBar;
@@ -19,7 +20,7 @@ pub(super) struct Row {
 }
 
 /// Runs the study with all measures and without each, in folders of their own, until Ctrl-C.
-pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, String> {
+pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Failure> {
     let parts = core::iter::once(None).chain(Measure::ALL.map(Some));
     let parts = parts.map(|off| {
         let name = off.map_or(NONE, Measure::name);
@@ -59,31 +60,25 @@ pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Stri
 
 /// The rows as a file.
 fn csv(rows: &[Row]) -> String {
-    let mut out = format!(
-        "without,samples,on_target,rate,low95,high95,within_20_cm,{},no_plan\n",
-        CAUSES.join(",")
-    );
+    let mut out =
+        String::from("without,samples,on_target,rate,low95,high95,failed_first,no_plan\n");
     for Row { without, result } in rows {
         let _ = match result {
             Ok(counts) => {
                 let Counts {
-                    samples,
-                    on_target,
-                    near,
-                    failed,
+                    samples, on_target, ..
                 } = counts;
                 let rate = *on_target as f64 / (*samples).max(1) as f64;
                 let [low, high] = wilson(*on_target, *samples);
-                let failed = failed.map(|n| n.to_string()).join(",");
+                let failed = counts.failures();
                 writeln!(
                     out,
-                    "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},{near},{failed},"
+                    "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},\"{failed}\","
                 )
             }
             Err(error) => {
                 let error = error.replace('"', "'").replace('\n', " ");
-                let empty = ",".repeat(CAUSES.len());
-                writeln!(out, "{without},0,0,,,,0{empty},\"{error}\"")
+                writeln!(out, "{without},0,0,,,,,\"{error}\"")
             }
         };
     }
@@ -93,8 +88,8 @@ fn csv(rows: &[Row]) -> String {
 /// The rows for people.
 pub(super) fn text(rows: &[Row]) -> String {
     let mut out = format!(
-        "{:10} {:>9} {:>15} {:>13}  failures\n",
-        "without", "on target", "95 %", "within 0.20 m"
+        "{:10} {:>9} {:>15}  failed first\n",
+        "without", "on target", "95 %"
     );
     for Row { without, result } in rows {
         let _ = match result {
@@ -102,12 +97,11 @@ pub(super) fn text(rows: &[Row]) -> String {
                 let [low, high] = wilson(counts.on_target, counts.samples);
                 writeln!(
                     out,
-                    "{without:10} {:>3} of {:<3} {:>4.0} to {:>3.0} % {:>13}  {}",
+                    "{without:10} {:>3} of {:<3} {:>4.0} to {:>3.0} %  {}",
                     counts.on_target,
                     counts.samples,
                     100.0 * low,
                     100.0 * high,
-                    counts.near,
                     counts.failures()
                 )
             }
@@ -130,17 +124,12 @@ pub(super) fn json(rows: &[Row]) -> Value {
     rows.collect()
 }
 
-/// Counts as JSON, failures by cause.
+/// Counts as JSON, failures by what failed first.
 pub(super) fn counts_json(counts: &Counts) -> Map<String, Value> {
-    let failed: Map<String, Value> = counts
-        .causes()
-        .map(|(cause, count)| (cause.to_owned(), json!(count)))
-        .collect();
     [
         ("done", json!(counts.samples)),
         ("on_target", json!(counts.on_target)),
-        ("within_20_cm", json!(counts.near)),
-        ("failed", Value::Object(failed)),
+        ("failed_first", json!(counts.failed)),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into_iter()

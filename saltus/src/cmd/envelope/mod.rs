@@ -3,6 +3,8 @@
 mod ablation;
 mod study;
 
+use super::failure::Failure;
+use super::folder::check_new;
 use super::interrupt;
 use super::output::Output;
 use crate::jump::envelope::{Counts, table};
@@ -10,10 +12,14 @@ use crate::jump::measure::Measure;
 use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
 use crate::jump::task::Task;
+use crate::lab::{Interface, PlantArgument};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use study::{Shard, Study, names, shard};
+
+/// Most runs of a study: beyond, only memory and a lifetime are used.
+const MOST_SAMPLES: u64 = 10_000_000;
 
 /// Options of `saltus envelope`.
 #[derive(clap::Args)]
@@ -21,7 +27,7 @@ pub(crate) struct Args {
     /// Task, such as a1/lateral.
     task: String,
     /// Number of runs over all shards.
-    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
     samples: u64,
     /// Seed of the whole study.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
@@ -32,6 +38,12 @@ pub(crate) struct Args {
     /// How the legs are planned along the single rigid body's motion.
     #[arg(long, default_value = "whole-body")]
     planner: Planner,
+    /// What differs from the plan in every run, instead of the lab of the run's seed; as in `saltus run`.
+    #[arg(long)]
+    plant: Option<PlantArgument>,
+    /// How the motors are commanded; as in `saltus run`.
+    #[arg(long, default_value = "torque")]
+    interface: Interface,
     /// Measures against disturbances to do without, separated by commas.
     #[arg(long, value_name = "MEASURE", value_delimiter = ',')]
     without: Vec<Measure>,
@@ -58,6 +70,13 @@ impl Args {
             name += "-";
             name += self.planner.name();
         }
+        if let Some(plant) = &self.plant {
+            name += "-";
+            name += &plant.to_string().replace([',', '=', '@'], "-");
+        }
+        if self.interface != Interface::Torque {
+            name += &format!("-{}", self.interface);
+        }
         if !without.is_empty() {
             name += "-without-";
             name += &names(without).replace(',', "-");
@@ -67,7 +86,7 @@ impl Args {
 }
 
 /// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let task = Task::load(&args.task)?;
     let mut without = args.without.clone();
     without.sort_unstable();
@@ -78,6 +97,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         sim: args.sim,
         samples: args.samples,
         seed: args.seed,
+        plant: args.plant,
+        interface: args.interface,
         shard: args.shard,
         folder: match &args.out {
             Some(folder) => folder.clone(),
@@ -85,6 +106,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         },
         without,
     };
+    if !study.folder.exists() {
+        check_new(Some(&study.folder))?;
+    }
     interrupt::listen()?;
     let bar = args
         .output
@@ -122,9 +146,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
         if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
             report.extend(result);
         }
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}\nfolder: {}", text.trim_end(), study.folder.display());
+        say!("{}\nfolder: {}", text.trim_end(), study.folder.display());
     }
     Ok(if complete {
         ExitCode::SUCCESS

@@ -3,16 +3,18 @@
 //! Sample i of seed S is the same run on every machine, whatever the shard. Every finished sample is one line in the shard's
 //! file, so a run that was stopped goes on where it was, and the files of all shards in one folder make one table.
 
+use crate::cmd::failure::Failure;
 use crate::cmd::folder::{describe, write};
 use crate::cmd::interrupt;
 use crate::jump::envelope::{Sample, picture, table};
 use crate::jump::execute::{self, Trial};
-use crate::jump::judge::Verdict;
+use crate::jump::judge::Judged;
 use crate::jump::measure::Measure;
 use crate::jump::planned::Planner;
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
 use crate::jump::reference::Reference;
 use crate::jump::task::Task;
+use crate::lab::{Interface, Lab, PlantArgument};
 use indicatif::ProgressBar;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::HashSet;
@@ -48,6 +50,9 @@ pub(super) struct Study<'a> {
     /// Runs over all shards.
     pub(super) samples: u64,
     pub(super) seed: u64,
+    /// What differs from the plan in every run; the lab of the run's seed where nothing is said.
+    pub(super) plant: Option<PlantArgument>,
+    pub(super) interface: Interface,
     pub(super) shard: Shard,
     /// Measures that planner and controller do without.
     pub(super) without: Vec<Measure>,
@@ -67,6 +72,12 @@ impl Study<'_> {
         if self.planner != Planner::WholeBody {
             title += " planner ";
             title += self.planner.name();
+        }
+        if let Some(plant) = &self.plant {
+            title += &format!(" plant {plant}");
+        }
+        if self.interface != Interface::Torque {
+            title += &format!(" interface {}", self.interface);
         }
         if !self.without.is_empty() {
             title += " without ";
@@ -91,15 +102,16 @@ impl Study<'_> {
         &self,
         reference: &Reference,
         bar: &ProgressBar,
-    ) -> Result<Vec<Sample>, String> {
-        fs::create_dir_all(&self.folder).map_err(|e| describe(&self.folder, &e))?;
+    ) -> Result<Vec<Sample>, Failure> {
+        let outside = |path: &Path, e: &std::io::Error| Failure::Outside(describe(path, e));
+        fs::create_dir_all(&self.folder).map_err(|e| outside(&self.folder, &e))?;
         let Shard { part, of } = self.shard;
         let path = self.folder.join(format!("shard-{part}-of-{of}.csv"));
         let done: HashSet<u64> = self.read(&path)?.iter().map(|s| s.index).collect();
         let todo: Vec<u64> = (0..self.samples)
             .filter(|i| i % of == part - 1 && !done.contains(i))
             .collect();
-        let file = Mutex::new(self.open(&path).map_err(|e| describe(&path, &e))?);
+        let file = Mutex::new(self.open(&path).map_err(|e| outside(&path, &e))?);
         bar.set_length(todo.len() as u64);
         bar.set_position(0);
         todo.par_iter().try_for_each(|index| {
@@ -111,9 +123,9 @@ impl Study<'_> {
             let line = format!("{}\n", sample.line());
             let mut file = file.lock().map_err(|e| e.to_string())?;
             file.write_all(line.as_bytes())
-                .map_err(|e| describe(&path, &e))?;
+                .map_err(|e| outside(&path, &e))?;
             bar.inc(1);
-            Ok::<_, String>(())
+            Ok::<_, Failure>(())
         })?;
         let samples = self.merge()?;
         write(&self.folder, "table.csv", table(&samples).as_bytes())?;
@@ -127,20 +139,24 @@ impl Study<'_> {
         let seed = crate::noise::mix(self.seed, index).max(1);
         let trial = Trial {
             sim: self.sim,
+            disturbance: PlantArgument::plant(self.plant.as_ref(), Lab::A1, seed),
             seed,
+            interface: self.interface,
             without: &self.without,
         };
         let run = execute::run_watched(self.task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
-        let verdict = Verdict::of(self.task, &run);
-        let disturbance = Disturbance::draw(seed);
-        Ok(Sample::new(index, seed, &disturbance, &run, &verdict))
+        Ok(Sample::new(
+            index,
+            &trial,
+            &Judged::of(self.task, reference, &run),
+        ))
     }
 
     /// The shard's file, at its end.
     fn open(&self, path: &Path) -> std::io::Result<File> {
         let mut file = OpenOptions::new().create(true).append(true).open(path)?;
         if file.metadata()?.len() == 0 {
-            writeln!(file, "{}\n{}", self.title(), Sample::HEADER)?;
+            writeln!(file, "{}\n{}", self.title(), Sample::header())?;
         }
         // A line that was cut by a stop must not swallow the next.
         if fs::read(path)?.last().is_some_and(|b| *b != b'\n') {

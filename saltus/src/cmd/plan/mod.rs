@@ -5,14 +5,16 @@ mod srb;
 mod task;
 mod whole_body;
 
-use super::folder::describe;
+use super::failure::Failure;
+use super::folder::{check_file, describe, write_file};
 use super::output::Output;
+use crate::range::Range;
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
 use ocp_solver::{Barrier, Progress, Solution};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -54,7 +56,7 @@ pub(crate) struct Args {
     #[arg(long)]
     problem: Option<PathBuf>,
     /// Stage of the reference problem to solve.
-    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"])]
+    #[arg(long, default_value = "srb", value_parser = ["srb", "whole-body"], conflicts_with = "task")]
     stage: String,
     /// SRB solution that the whole-body stage follows; default: the shipped one of the reference task, or,
     /// for tasks of a problem file, one that is solved first.
@@ -65,21 +67,26 @@ pub(crate) struct Args {
     solution: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) output: Output,
-    /// Standard deviation of the noise added to the initial guess.
-    #[arg(long, default_value_t = 0.0)]
+    /// Reference problems: standard deviation of the noise added to the initial guess.
+    #[arg(long, default_value_t = 0.0, conflicts_with = "task", value_parser = noise)]
     guess_noise: f64,
-    /// Seed of the guess noise.
-    #[arg(long, default_value_t = 1)]
+    /// Reference problems: seed of the guess noise.
+    #[arg(long, default_value_t = 1, conflicts_with = "task")]
     seed: u64,
-    /// Solve this many times, each from the cold guess, and report the median time.
-    #[arg(long, default_value_t = 1)]
+    /// Reference problems: solve this many times, each from the cold guess, and report the median time.
+    #[arg(long, default_value_t = 1, conflicts_with = "task")]
     repeat: usize,
     /// Print every iteration to standard error.
     #[arg(long)]
     trace: bool,
-    /// Barrier rule.
-    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"])]
+    /// Reference problems: barrier rule.
+    #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"], conflicts_with = "task")]
     barrier: String,
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Range::From(0.0, 10.0).check(number).map(|()| number)
 }
 
 /// What a stage hands back.
@@ -101,9 +108,13 @@ impl Planned {
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.solution.as_deref().map_or(Ok(()), check_file)?;
     if let Some(name) = &args.task {
         return Ok(task::run(args, name));
+    }
+    if args.srb.is_some() && args.stage != "whole-body" {
+        return Err("--srb is for --stage whole-body, which follows that solution".into());
     }
     let text = match &args.problem {
         Some(path) => read(path)?,
@@ -135,18 +146,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
     } else {
         ("srb", srb::solve(args, &file, name)?)
     };
-    if let Some(path) = &args.solution {
-        std::fs::write(path, planned.solution.to_string())
-            .map_err(|error| describe(path, &error))?;
+    let solved = planned.status == "Solved";
+    // What is not solved must not lie there like a solution.
+    if let Some(path) = args.solution.as_deref().filter(|_| solved) {
+        write_file(path, planned.solution.to_string().as_bytes())?;
     }
     if args.output.json {
         let phase = |t: &f64| json!({ "duration_s": t });
         report["status"] = json!(planned.status);
         report["phases"] = planned.durations.iter().map(phase).collect();
         report[key] = planned.report;
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!(
+        say!(
             "{name}: {} in {:.2} ms, {} iterations, cost {:.6}, violation {:.1e}, durations {:.3?} s",
             planned.status,
             planned.number("wall_ms"),
@@ -156,15 +168,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
             planned.durations,
         );
     }
-    Ok(if planned.status == "Solved" {
+    Ok(if solved {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(2)
     })
 }
 
-fn read(path: &PathBuf) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| describe(path, &error))
+fn read(path: &Path) -> Result<String, String> {
+    crate::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {
@@ -189,7 +201,7 @@ impl Args {
     fn observe(&self, progress: &Progress<f64>) -> ControlFlow<()> {
         if self.trace {
             let r = &progress.residual;
-            eprintln!(
+            tell!(
                 "{:3} cost {:12.6} primal {:.1e} dual {:.1e} compl {:.1e} mu {:.1e} step {:.3} {:.3} shift {:.0e}",
                 progress.iteration,
                 progress.cost,

@@ -1,11 +1,12 @@
 //! A task, planned for execution: bounds, single rigid body, whole body, container, audit.
 //!
-//! Exit code 0 for a plan that passed its audit, 2 for everything else.
+//! Exit code 0 for a plan that passed its audit, 2 for a task that is refused or has no such plan, 1 for a plan that cannot be written.
 
 use super::Args;
 use super::layout::layout;
 use crate::audit::Audit;
-use crate::cmd::folder::{describe, must_be_new, publish};
+use crate::cmd::failure::{Failure, brief};
+use crate::cmd::folder::{check_new, publish, write_file};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::task::{SrbPlan, Task};
@@ -34,23 +35,23 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
     bar.finish_and_clear();
     let result = result.and_then(|()| write(args, &report));
     if args.output.json {
-        println!("{}", report.json(name, result.as_ref().err()));
+        let error = result.as_ref().err().map(Failure::message);
+        say!("{}", report.json(&brief(name), error.as_ref()));
     } else if result.is_ok() && !args.output.quiet {
         report.print(name);
     }
     match result {
         Ok(()) if report.answer.is_none() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::from(2),
-        Err(message) => {
-            eprintln!("saltus: {message}");
-            ExitCode::from(2)
-        }
+        Err(failure) => failure.tell(false),
     }
 }
 
 /// Plans, and leaves in the report how far that came.
-fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Result<(), String> {
-    must_be_new(args.out.as_deref())?;
+fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Result<(), Failure> {
+    args.out
+        .as_deref()
+        .map_or(Ok(()), |out| check_new(Some(out)))?;
     let mut task = Task::load_for(name, args.robot.as_deref(), &args.lock)?;
     if let Some(timing) = &args.timing {
         task.fix_timing(timing)?;
@@ -102,15 +103,18 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
 }
 
 /// Writes what was asked for.
-fn write(args: &Args, report: &Report) -> Result<(), String> {
+fn write(args: &Args, report: &Report) -> Result<(), Failure> {
     let (Some(task), Some((plan, _))) = (&report.task, &report.whole_body) else {
         return Ok(());
     };
-    if let Some(path) = &args.solution {
-        std::fs::write(path, layout(&task.name, plan).to_string())
-            .map_err(|e| describe(path, &e))?;
+    // What is no plan must not lie there like one.
+    if report.answer.is_some() {
+        return Ok(());
     }
-    let (Some(folder), None) = (&args.out, &report.answer) else {
+    if let Some(path) = &args.solution {
+        write_file(path, layout(&task.name, plan).to_string().as_bytes())?;
+    }
+    let Some(folder) = &args.out else {
         return Ok(());
     };
     let mut json = report.json(&task.name, None);
@@ -185,21 +189,24 @@ impl Report {
 
     /// The report for people.
     fn print(&self, name: &str) {
-        println!("{name}: {}", self.status());
+        say!("{name}: {}", self.status());
         let phases: Vec<String> = (self.phases().iter())
             .map(|(name, t)| format!("{name} {t:.3} s"))
             .collect();
         if !phases.is_empty() {
-            println!("  phases      {}", phases.join(", "));
+            say!("  phases      {}", phases.join(", "));
         }
         if let Some(plan) = &self.srb {
-            println!(
+            say!(
                 "  body        {:.1} ms, {} iterations, cost {:.4}, violation {:.1e}",
-                plan.wall_ms, plan.iterations, plan.cost, plan.max_violation
+                plan.wall_ms,
+                plan.iterations,
+                plan.cost,
+                plan.max_violation
             );
         }
         if let Some((plan, wall_ms)) = &self.whole_body {
-            println!(
+            say!(
                 "  whole body  {wall_ms:.0} ms, {} iterations, cost {:.4}, violation {:.1e}, peak torque {:.1} N m",
                 plan.outcome.iterations,
                 plan.judged.cost,
@@ -208,10 +215,10 @@ impl Report {
             );
         }
         if let Some(audit) = &self.audit {
-            println!("  audit       {}", audit.summary());
+            say!("  audit       {}", audit.summary());
         }
         if let Some(answer) = &self.answer {
-            println!("{}", answer.text());
+            say!("{}", answer.text());
         }
     }
 }

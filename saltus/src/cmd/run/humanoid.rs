@@ -1,21 +1,22 @@
 //! A jump of paper B.
 
 use super::{Args, Files, code};
-use crate::cmd::folder::must_be_new;
-use crate::humanoid::{Task, execute, judge::Verdict, log, report};
-use crate::jump::plant::Disturbance;
+use crate::cmd::failure::Failure;
+use crate::cmd::folder::check_new;
+use crate::humanoid::{Task, execute, judge::Judged, log, report};
+use crate::lab::Lab;
 use std::process::ExitCode;
 
 /// Runs the jump.
-pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
-    must_be_new(args.out.as_deref())?;
+pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
+    check_new(args.out.as_deref())?;
     let bar = args.output.spinner();
     bar.set_message("simulating");
-    let disturbance = args.plant.unwrap_or_else(|| Disturbance::draw(args.seed));
+    let disturbance = args.disturbance(Lab::Icub);
     let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
     let run = jump(task)?;
-    let verdict = Verdict::of(&run);
-    let result = verdict.json(task, &run, args.seed, args.sim.name());
+    let judged = Judged::of(task, &run);
+    let result = judged.json(task, &run, (args.sim.name(), args.seed), &disturbance);
     // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
     let free = if task.momentum {
         bar.set_message("simulating without control of the angular momentum");
@@ -27,21 +28,21 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, String> {
         None
     };
     bar.finish_and_clear();
-    let table = verdict.table(task, &run, args.sim.name());
+    let table = judged.table(task, &run, args.sim.name(), &disturbance);
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:26} {value}");
+            say!("{name:26} {value}");
         }
     }
     let log = log::table(&run.samples);
     let files = Files {
         task: task.name(),
-        mcap: report::mcap(task, &run, &log)?,
+        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
         result: &result,
         report: report::html(task, &run, free.as_ref(), &table)?,
         strip: None,
     };
     files.publish(args)?;
-    Ok(code(verdict.on_target(task)))
+    Ok(code(judged.verdict.on_target()))
 }

@@ -3,11 +3,13 @@
 mod humanoid;
 mod quadruped;
 
+use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
 use crate::humanoid as icub;
 use crate::jump::planned::Planner;
-use crate::jump::plant::{Disturbance, Sim};
+use crate::jump::plant::Sim;
+use crate::lab::{Disturbance, Interface, Lab, PlantArgument};
 use crate::log::Log;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -25,27 +27,31 @@ pub(crate) struct Args {
     /// Simulator.
     #[arg(long, default_value = "native")]
     sim: Sim,
-    /// Seed of the disturbances: 0 is the nominal run, others draw masses, friction, rotor inertia, latency and noise.
+    /// Seed of the lab: 0 is the nominal run, others draw what differs from the plan, and the noise.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
-    /// How the legs are planned along the single rigid body's motion.
-    #[arg(long, default_value = "whole-body")]
-    planner: Planner,
-    /// Humanoid tasks: height to gain in flight, m.
-    #[arg(long, default_value_t = 0.04, allow_negative_numbers = true, value_parser = height)]
-    height: f64,
+    /// Quadruped tasks: how the legs are planned along the single rigid body's motion [default: whole-body].
+    #[arg(long)]
+    planner: Option<Planner>,
+    /// Humanoid tasks: height to gain in flight, m [default: 0.04].
+    #[arg(long, allow_negative_numbers = true, value_parser = height)]
+    height: Option<f64>,
     /// Humanoid tasks: leave the angular momentum alone.
     #[arg(long)]
     no_momentum: bool,
-    /// Humanoid tasks: share of the joints' torque limits that there is.
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_parser = share)]
-    torque_share: f64,
-    /// Humanoid tasks: what holds the robot in flight and landing.
-    #[arg(long, default_value = "qp")]
-    landing: icub::Landing,
-    /// How the plant differs, instead of a seed's draw: mass=1.1,friction=0.4,latency=2,noise.
+    /// Humanoid tasks: share of the joints' torque limits that there is [default: 1].
+    #[arg(long, allow_negative_numbers = true, value_parser = share)]
+    torque_share: Option<f64>,
+    /// Humanoid tasks: what holds the robot in flight and landing [default: qp].
     #[arg(long)]
-    plant: Option<Disturbance>,
+    landing: Option<icub::Landing>,
+    /// What differs from the plan, instead of a seed's draw: lab, noise or KEY=VALUE, separated by commas, such as
+    /// payload=2@0,0,0.05,ground=soft; `saltus verdicts --ranges` lists the keys.
+    #[arg(long)]
+    plant: Option<PlantArgument>,
+    /// How the motors are commanded: torque (10 kHz), joint-pd (1 kHz over a link) or joint-pd@500.
+    #[arg(long, default_value = "torque")]
+    interface: Interface,
     #[command(flatten)]
     pub(crate) output: Output,
     /// File for the landing's quadratic programs, as numbers for other solvers.
@@ -73,18 +79,57 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Runs the command. Exit code 0 when the jump is on target, 2 when it is not or cannot be.
-pub(crate) fn run(args: &Args) -> Result<ExitCode, String> {
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let Some(task) = icub::Task::named(&args.what) else {
+        args.refuse_humanoid_options()?;
         return quadruped::run(args);
     };
+    args.refuse_quadruped_options()?;
     let task = icub::Task {
-        height: args.height,
+        height: args.height.unwrap_or(task.height),
         momentum: !args.no_momentum,
-        torque_share: args.torque_share,
-        landing: args.landing,
+        torque_share: args.torque_share.unwrap_or(task.torque_share),
+        landing: args.landing.unwrap_or(task.landing),
         ..task
     };
     humanoid::run(args, &task)
+}
+
+/// Names the first option that is given and means nothing here.
+fn refuse_given(options: &[(&str, bool)], why: &str) -> Result<(), Failure> {
+    match options.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(format!("{option} {why}").into()),
+        None => Ok(()),
+    }
+}
+
+impl Args {
+    fn refuse_humanoid_options(&self) -> Result<(), Failure> {
+        let options = [
+            ("--height", self.height.is_some()),
+            ("--no-momentum", self.no_momentum),
+            ("--torque-share", self.torque_share.is_some()),
+            ("--landing", self.landing.is_some()),
+        ];
+        let why = "is for humanoid tasks, icub/velocity and icub/torque; for a quadruped goal_m, turn and limits stand in a task file";
+        refuse_given(&options, why)
+    }
+
+    fn refuse_quadruped_options(&self) -> Result<(), Failure> {
+        let options = [
+            ("--planner", self.planner.is_some()),
+            ("--task", self.task.is_some()),
+            ("--programs", self.programs.is_some()),
+            ("--interface", self.interface != Interface::Torque),
+        ];
+        let why = "is for quadruped tasks; a humanoid task takes --height, --no-momentum, --torque-share and --landing, and its joints take torques";
+        refuse_given(&options, why)
+    }
+
+    /// What differs from the plan in the lab of this robot.
+    fn disturbance(&self, lab: Lab) -> Disturbance {
+        PlantArgument::plant(self.plant.as_ref(), lab, self.seed)
+    }
 }
 
 /// What a run leaves behind.
@@ -101,7 +146,7 @@ struct Files<'a> {
 
 impl Files<'_> {
     /// Writes a new folder and tells where it is.
-    fn publish(&self, args: &Args) -> Result<(), String> {
+    fn publish(&self, args: &Args) -> Result<(), Failure> {
         let result = format!("{:#}\n", self.result);
         let csv = self.log.csv();
         let mut files = vec![
@@ -114,9 +159,9 @@ impl Files<'_> {
         files.extend(strip.map(|svg| ("strip.svg", svg.as_bytes())));
         let folder = publish(args.out.as_deref(), self.task, &files)?;
         if args.output.json {
-            println!("{}", self.result);
+            say!("{}", self.result);
         } else if !args.output.quiet {
-            println!("report: {}", folder.join("report.html").display());
+            say!("report: {}", folder.join("report.html").display());
         }
         Ok(())
     }

@@ -1,17 +1,19 @@
 //! A jump of paper A: planned, or read from a container, and executed.
 
 use super::{Args, Files, code};
-use crate::cmd::folder::{describe, must_be_new};
+use crate::audit::check_values;
+use crate::cmd::failure::Failure;
+use crate::cmd::folder::{check_file, check_new, describe, write_file};
 use crate::jump::answer::Answer;
 use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
-use crate::jump::judge::Verdict;
-use crate::jump::planned::Origin;
-use crate::jump::plant::Sim;
+use crate::jump::judge::Judged;
+use crate::jump::planned::{Origin, Planner};
 use crate::jump::programs::Programs;
-use crate::jump::reference::{Legs, Reference};
+use crate::jump::reference::Reference;
 use crate::jump::task::{SrbPlan, Task};
 use crate::jump::{execute, log, report, stored, strip};
+use crate::lab::Lab;
 use crate::report::Line;
 use crate::robot::Quadruped;
 use indicatif::ProgressBar;
@@ -28,14 +30,15 @@ struct Made {
 }
 
 /// Runs the jump.
-pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
-    if args.plant.is_some() {
-        return Err("--plant is for humanoid tasks: use --seed for this one".into());
-    }
-    must_be_new(args.out.as_deref())?;
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    check_new(args.out.as_deref())?;
+    args.programs.as_deref().map_or(Ok(()), check_file)?;
     let bar = args.output.bar(1000, "{msg:28} [{bar:40}] {elapsed}")?;
     let path = Path::new(&args.what);
     let made = if !args.what.ends_with(".toml") && path.is_file() {
+        if args.planner.is_some() {
+            return Err("--planner is for tasks: a stored plan is executed as it is".into());
+        }
         read(path, args.task.as_deref())?
     } else if args.task.is_some() {
         return Err("--task is for stored plans: give the task alone".into());
@@ -54,49 +57,44 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, String> {
         bar.set_message(format!("simulating: {phase:?}"));
         bar.set_position(100 + (900.0 * (t + execute::HOLD) / end) as u64);
     };
-    let run = match args.programs.as_deref() {
-        None => execute::run(task, reference, args.sim, args.seed, progress)?,
-        Some(path) => {
-            let mut programs = Programs::default();
-            let watch = |memory: &_| programs.add(memory);
-            let trial = Trial {
-                sim: args.sim,
-                seed: args.seed,
-                without: &[],
-            };
-            let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
-            std::fs::write(path, programs.bytes()).map_err(|error| describe(path, &error))?;
-            run
+    let trial = Trial {
+        sim: args.sim,
+        disturbance: args.disturbance(Lab::A1),
+        seed: args.seed,
+        interface: args.interface,
+        without: &[],
+    };
+    let mut programs = Programs::default();
+    let watch = |memory: &_| {
+        if args.programs.is_some() {
+            programs.add(memory);
         }
     };
+    let run = execute::run_watched(task, reference, trial, |_, _| {}, progress, watch)?;
+    if let Some(path) = args.programs.as_deref() {
+        write_file(path, &programs.bytes())?;
+    }
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    let verdict = Verdict::of(task, &run);
-    let result = verdict.json(
-        task,
-        made.srb.as_ref(),
-        reference,
-        &run,
-        args.sim,
-        args.seed,
-    );
-    let table = table(&made, &run, &verdict, args.sim, wall);
+    let judged = Judged::of(task, reference, &run);
+    let result = judged.json(task, made.srb.as_ref(), reference, &run, &trial);
+    let table = table(&made, &run, &judged, &trial, wall);
     if args.output.is_text() {
         for (name, value, _) in &table {
-            println!("{name:18} {value}");
+            say!("{name:18} {value}");
         }
     }
     let log = log::table(&run.samples);
     let files = Files {
         task: &task.name,
-        mcap: report::mcap(task, &run, &log)?,
+        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
         result: &result,
         report: report::html(task, reference, &run, &table),
         strip: Some(strip::svg(task, &run, reference.takeoff)),
     };
     files.publish(args)?;
-    Ok(code(verdict.on_target()))
+    Ok(code(judged.verdict.on_target()))
 }
 
 /// Plans the task.
@@ -105,7 +103,10 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
     let srb = task.solve()?;
     bar.set_message("planning the legs");
     bar.set_position(50);
-    let reference = args.planner.plan(&task, &srb)?;
+    let reference = args
+        .planner
+        .unwrap_or(Planner::WholeBody)
+        .plan(&task, &srb)?;
     Ok(Made {
         task,
         srb: Some(srb),
@@ -115,10 +116,11 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
 
 /// Reads a stored plan, and the task by which its run is judged.
 fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
-    let bytes = std::fs::read(path).map_err(|error| describe(path, &error))?;
+    let bytes = crate::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let plan = stored::open(&bytes, &Quadruped::a1().map_err(|error| show(&error))?)
-        .map_err(|error| show(&error))?;
+    let robot = Quadruped::a1().map_err(|error| show(&error))?;
+    let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
+    check_values(&robot, &plan).map_err(|error| show(&error))?;
     let name = task.unwrap_or(plan.header().task);
     let task = Task::load(name).map_err(|error| {
         show(&format!(
@@ -137,99 +139,48 @@ fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
 fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
     if args.output.json {
         let report = json!({ "task": task.name, "status": answer.status, "answer": answer.json() });
-        println!("{report}");
+        say!("{report}");
     } else if !args.output.quiet {
-        println!("{}: {}\n{}", task.name, answer.status, answer.text());
+        say!("{}: {}\n{}", task.name, answer.status, answer.text());
     }
     code(false)
 }
 
 /// The result for people.
-fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64) -> Vec<Line> {
-    let Made {
-        task,
-        srb,
-        reference,
-    } = made;
-    let yes = |b: bool| if b { "yes" } else { "NO" }.to_owned();
+fn table(
+    made: &Made,
+    run: &execute::Run,
+    judged: &Judged,
+    trial: &Trial<'_>,
+    wall: f64,
+) -> Vec<Line> {
+    let plain = |name, value| (name, value, None);
     let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
     let span = run.samples.len() as f64 * 1e-3;
-    let plain = |name, value| (name, value, None);
-    let limit = a1_model::MOTORS[0].torque;
-    vec![
-        plain("task", task.name.clone()),
-        plain(
-            "body plan",
-            srb.as_ref().map_or_else(
-                || format!("stored, phases {:.3?} s", reference.durations),
-                |plan| {
-                    format!(
-                        "solved in {:.0} ms, {} iterations, phases {:.3?} s",
-                        plan.wall_ms, plan.iterations, reference.durations
-                    )
-                },
-            ),
-        ),
-        (
-            "leg plan",
-            format!(
-                "{}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
-                match reference.origin {
-                    Origin::Kinematics(Legs::Heavy) =>
-                        "leg kinematics, not a whole-body optimum".to_owned(),
-                    Origin::Kinematics(Legs::Massless) =>
-                        "legs without mass under a rigid body".to_owned(),
-                    Origin::WholeBody(solved) => format!(
-                        "whole body solved in {:.0} ms, {} iterations",
-                        solved.wall_ms, solved.iterations
-                    ),
-                    Origin::Stored => "stored".to_owned(),
-                },
-                reference.peak_torque,
-                reference.peak_friction
-            ),
-            Some(reference.peak_torque <= limit && reference.peak_friction <= 0.60),
-        ),
+    let mut lines = vec![plain("task", made.task.name.clone())];
+    lines.extend(judged.verdict.lines());
+    lines.extend(plan_lines(made));
+    lines.extend([
         plain(
             "simulated",
             format!(
-                "{span:.1} s in {wall:.1} s, {} simulator, 10 kHz",
-                sim.name()
+                "{span:.1} s in {wall:.1} s, {} simulator, interface {}",
+                trial.sim.name(),
+                trial.interface
             ),
         ),
-        ("landed", yes(verdict.landed), Some(verdict.landed)),
-        (
-            "upright after 2 s",
-            yes(verdict.upright),
-            Some(verdict.upright),
+        plain(
+            "plant",
+            format!(
+                "{}{}",
+                trial.disturbance,
+                if trial.is_nominal() { "nominal" } else { "" }
+            ),
         ),
         plain("first contact", seconds(run.first_contact)),
-        (
-            "position error",
-            format!("{:.3} m", verdict.position_error),
-            Some(verdict.position_error <= 0.10),
-        ),
-        (
-            "orientation error",
-            format!("{:.1} deg", verdict.orientation_error),
-            Some(verdict.orientation_error <= 10.0),
-        ),
-        plain("apex of the CoM", format!("{:.3} m", verdict.apex)),
+        plain("apex of the CoM", format!("{:.3} m", judged.apex)),
         plain("peak torque", format!("{:.1} N m", run.peak_torque)),
-        plain(
-            "torque saturation",
-            format!(
-                "{:.1} ms in the push-off, {:.1} ms in the landing",
-                run.push_off_saturation * 1e3,
-                run.landing_saturation * 1e3
-            ),
-        ),
         plain("peak foot force", format!("{:.0} N", run.peak_foot_force)),
-        (
-            "trunk touched",
-            if run.trunk_contact { "YES" } else { "no" }.to_owned(),
-            Some(verdict.trunk_is_right),
-        ),
         plain(
             "landing QP",
             format!(
@@ -237,5 +188,39 @@ fn table(made: &Made, run: &execute::Run, verdict: &Verdict, sim: Sim, wall: f64
                 run.qp_solves, run.qp_failures, run.qp_max_iterations
             ),
         ),
-    ]
+    ]);
+    lines
+}
+
+/// What was planned, for people.
+fn plan_lines(made: &Made) -> [Line; 2] {
+    let Made { srb, reference, .. } = made;
+    let limit = a1_model::MOTORS[0].torque;
+    let body = srb.as_ref().map_or_else(
+        || format!("stored, phases {:.3?} s", reference.durations),
+        |plan| {
+            format!(
+                "solved in {:.0} ms, {} iterations, phases {:.3?} s",
+                plan.wall_ms, plan.iterations, reference.durations
+            )
+        },
+    );
+    let legs = match reference.origin {
+        Origin::Kinematics => "leg kinematics, not a whole-body optimum".to_owned(),
+        Origin::RigidBody(solved) => format!(
+            "legs without mass under a rigid body solved in {:.0} ms, {} iterations",
+            solved.wall_ms, solved.iterations
+        ),
+        Origin::WholeBody(solved) => format!(
+            "whole body solved in {:.0} ms, {} iterations",
+            solved.wall_ms, solved.iterations
+        ),
+        Origin::Stored => "stored".to_owned(),
+    };
+    let peaks = format!(
+        "{legs}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
+        reference.peak_torque, reference.peak_friction
+    );
+    let good = reference.peak_torque <= limit && reference.peak_friction <= 0.60;
+    [("body plan", body, None), ("leg plan", peaks, Some(good))]
 }

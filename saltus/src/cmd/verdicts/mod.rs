@@ -1,0 +1,152 @@
+//! `saltus verdicts`: many tasks in both simulators, judged, as one table; and the gate that compares them with what is expected.
+
+mod agreement;
+mod conditions;
+mod measures;
+mod subject;
+
+use super::expected::{Expected, Found};
+use super::failure::Failure;
+use super::interrupt;
+use super::output::Output;
+use crate::jump::plant::Sim;
+use crate::lab::{Interface, PlantArgument, keys};
+
+use indicatif::ProgressBar;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use serde_json::json;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use subject::{Cell, Condition, Subject};
+
+/// Options of `saltus verdicts`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Tasks, by name or file; by default the nine of A1.
+    tasks: Vec<String>,
+    /// Simulators; by default all that this build has.
+    #[arg(long)]
+    sim: Vec<Sim>,
+    /// What differs from the plan; as in `saltus run`.
+    #[arg(long)]
+    plant: Option<PlantArgument>,
+    /// Seed of the lab; as in `saltus run`.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// How the motors are commanded; as in `saltus run`.
+    #[arg(long, default_value = "torque")]
+    interface: Interface,
+    /// One column per condition instead of the measures: nominal, firm and soft ground, joint friction, payload, centre of mass, and
+    /// both interfaces to the motors.
+    #[arg(long, conflicts_with_all = ["plant", "seed", "interface"])]
+    conditions: bool,
+    /// With --conditions: one column more, so many seeds of the lab.
+    #[arg(long, default_value_t = 0, requires = "conditions")]
+    lab: u64,
+    /// How far both simulators are apart at take-off, in flight and at touchdown, on hard and firm ground.
+    #[arg(long, conflicts_with_all = ["plant", "seed", "interface", "conditions"])]
+    agreement: bool,
+    /// A file of expected verdicts, which replaces the tasks: exit code 2 where one differs, and its name.
+    #[arg(long, conflicts_with_all = ["tasks", "conditions"])]
+    expect: Option<PathBuf>,
+    /// Print what may differ from the plan and the lab's ranges, and nothing else.
+    #[arg(long)]
+    ranges: bool,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+impl Args {
+    fn sims(&self) -> Vec<Sim> {
+        match (self.sim.as_slice(), cfg!(feature = "mujoco")) {
+            ([], true) => vec![Sim::Native, Sim::Mujoco],
+            ([], false) => vec![Sim::Native],
+            (given, _) => given.to_vec(),
+        }
+    }
+
+    fn condition(&self) -> Condition {
+        Condition {
+            plant: self.plant,
+            seed: self.seed,
+            interface: self.interface,
+        }
+    }
+}
+
+/// Runs the command. Exit code 0 when every verdict is on target, or as expected; 2 when one is not.
+pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    if args.ranges {
+        put!("{}", keys::markdown());
+        return Ok(ExitCode::SUCCESS);
+    }
+    interrupt::listen()?;
+    let expected = args.expect.as_deref().map(Expected::read).transpose()?;
+    let names = match &expected {
+        Some(expected) => expected.tasks(),
+        None if args.tasks.is_empty() => subject::A1.map(str::to_owned).to_vec(),
+        None => args.tasks.clone(),
+    };
+    let bar = args.output.bar(
+        names.len() as u64,
+        "{msg:9} [{bar:40}] {pos}/{len} {elapsed}",
+    )?;
+    bar.set_message("planning");
+    let subjects = names.par_iter().map(|name| {
+        let subject = Subject::load(name);
+        bar.inc(1);
+        subject
+    });
+    let subjects: Vec<Subject> = subjects.collect::<Result<_, String>>()?;
+    if args.interface != Interface::Torque && subjects.iter().any(Subject::is_humanoid) {
+        return Err("--interface is for quadruped tasks: iCub's joints take torques".into());
+    }
+    if args.agreement {
+        bar.finish_and_clear();
+        return agreement::run(args, &subjects);
+    }
+    let sims = args.sims();
+    if args.conditions {
+        return conditions::run(args, &subjects, &sims, &bar);
+    }
+    let cells = judge(&subjects, &sims, &args.condition(), &bar);
+    bar.finish_and_clear();
+    if args.output.json {
+        say!(
+            "{}",
+            json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() })
+        );
+    } else if !args.output.quiet {
+        put!("{}", measures::table(&cells));
+    }
+    match expected {
+        Some(expected) => {
+            let found: Vec<Found> = cells.iter().map(Cell::found).collect();
+            Ok(expected.compare_verdicts(&found))
+        }
+        None if cells.iter().all(Cell::on_target) => Ok(ExitCode::SUCCESS),
+        None => Ok(ExitCode::from(2)),
+    }
+}
+
+/// Every subject in every simulator under one condition.
+fn judge(
+    subjects: &[Subject],
+    sims: &[Sim],
+    condition: &Condition,
+    bar: &ProgressBar,
+) -> Vec<Cell> {
+    let pairs: Vec<(&Subject, Sim)> = subjects
+        .iter()
+        .flat_map(|subject| sims.iter().map(move |sim| (subject, *sim)))
+        .collect();
+    bar.set_message("running");
+    bar.set_length(pairs.len() as u64);
+    bar.set_position(0);
+    let cells = pairs.par_iter().map(|(subject, sim)| {
+        let cell = subject.judge(*sim, condition);
+        bar.inc(1);
+        cell
+    });
+    cells.collect()
+}

@@ -1,0 +1,205 @@
+//! What is judged: a task with its plan, run under a condition.
+
+use crate::cmd::expected::Found;
+use crate::humanoid;
+use crate::jump::answer::Answer;
+use crate::jump::bounds::impossible;
+use crate::jump::execute::{self, Trial};
+use crate::jump::judge::Judged;
+use crate::jump::planned::Planner;
+use crate::jump::plant::Sim;
+use crate::jump::reference::Reference;
+use crate::jump::task::Task;
+use crate::lab::{Interface, Lab, PlantArgument};
+use crate::verdict::{TARGET, Verdict};
+use rbd_core::Transform;
+use serde_json::{Value, json};
+
+/// The nine tasks of A1, as the tables list them.
+pub(super) const A1: [&str; 9] = [
+    "a1/lateral",
+    "a1/lateral-down",
+    "a1/spin-90",
+    "a1/diagonal",
+    "a1/forward-60",
+    "a1/barrel-roll",
+    "a1/barrel-roll-box",
+    "a1/double-barrel-roll",
+    "a1/double-backflip",
+];
+
+/// How a run differs from the plan.
+#[derive(Clone, Copy)]
+pub(super) struct Condition {
+    pub(super) plant: Option<PlantArgument>,
+    pub(super) seed: u64,
+    pub(super) interface: Interface,
+}
+
+impl Condition {
+    pub(super) const NOMINAL: Self = Self {
+        plant: None,
+        seed: 0,
+        interface: Interface::Torque,
+    };
+}
+
+/// A task that was planned, or why not.
+pub(super) struct Subject {
+    pub(super) name: String,
+    kind: Kind,
+}
+
+enum Kind {
+    Quadruped(Box<Task>, Box<Reference>),
+    Humanoid(humanoid::Task),
+    NoPlan(String),
+}
+
+impl Subject {
+    /// Reads a task and plans it; a task that has no plan is a subject too. Humanoid tasks may have variants:
+    /// `icub/velocity+stiff`.
+    pub(super) fn load(name: &str) -> Result<Self, String> {
+        let kind = match humanoid::Task::variant(name) {
+            Some(task) => Kind::Humanoid(task),
+            None => quadruped(Task::load(name)?),
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            kind,
+        })
+    }
+
+    pub(super) fn is_humanoid(&self) -> bool {
+        matches!(self.kind, Kind::Humanoid(_))
+    }
+
+    /// Runs it.
+    pub(super) fn judge(&self, sim: Sim, condition: &Condition) -> Cell {
+        let verdict = match &self.kind {
+            Kind::NoPlan(why) => Err(why.clone()),
+            Kind::Quadruped(task, reference) => fly(task, reference, sim, condition),
+            Kind::Humanoid(task) => rise(task, sim, condition),
+        };
+        Cell {
+            task: self.name.clone(),
+            sim,
+            verdict,
+        }
+    }
+}
+
+impl Subject {
+    /// Poses of a quadruped's base at the take-off, in the middle of the flight and at the planned touchdown.
+    pub(super) fn poses(
+        &self,
+        sim: Sim,
+        plant: PlantArgument,
+    ) -> Result<[Transform<f64>; 3], String> {
+        let Kind::Quadruped(task, reference) = &self.kind else {
+            return Err(format!(
+                "{}: only jumps of a quadruped that were planned are compared",
+                self.name
+            ));
+        };
+        let trial = Trial {
+            disturbance: PlantArgument::plant(Some(&plant), Lab::A1, 0),
+            ..Trial::nominal(sim)
+        };
+        let run = execute::run_watched(task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
+        let (takeoff, touchdown) = (reference.takeoff, reference.touchdown);
+        let pose = |time: f64| {
+            let sample = run.samples.iter().find(|s| s.time >= time);
+            let sample = sample.ok_or_else(|| format!("{}: the run ended early", self.name))?;
+            Ok::<_, String>(Transform::new(
+                sample.orientation.to_rotation_matrix(),
+                sample.position,
+            ))
+        };
+        let [a, b, c] = [takeoff, 0.5 * (takeoff + touchdown), touchdown].map(pose);
+        Ok([a?, b?, c?])
+    }
+}
+
+fn quadruped(task: Task) -> Kind {
+    if let Some(proof) = impossible(&task) {
+        return Kind::NoPlan(Answer::proven(proof).text());
+    }
+    let planned = task
+        .solve()
+        .and_then(|srb| Planner::WholeBody.plan(&task, &srb));
+    match planned {
+        Ok(reference) => Kind::Quadruped(Box::new(task), Box::new(reference)),
+        Err(why) => Kind::NoPlan(why),
+    }
+}
+
+fn fly(
+    task: &Task,
+    reference: &Reference,
+    sim: Sim,
+    condition: &Condition,
+) -> Result<Verdict, String> {
+    let trial = Trial {
+        disturbance: PlantArgument::plant(condition.plant.as_ref(), Lab::A1, condition.seed),
+        seed: condition.seed,
+        interface: condition.interface,
+        ..Trial::nominal(sim)
+    };
+    let run = execute::run_watched(task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
+    Ok(Judged::of(task, reference, &run).verdict)
+}
+
+fn rise(task: &humanoid::Task, sim: Sim, condition: &Condition) -> Result<Verdict, String> {
+    if condition.interface != Interface::Torque {
+        return Err("iCub's joints take torques".to_owned());
+    }
+    let plant = PlantArgument::plant(condition.plant.as_ref(), Lab::Icub, condition.seed);
+    let run = humanoid::execute::run(task, sim, &plant, condition.seed, |_, _| {})?;
+    Ok(humanoid::judge::Judged::of(task, &run).verdict)
+}
+
+/// One verdict of the table; an error where there was nothing to judge.
+pub(super) struct Cell {
+    pub(super) task: String,
+    pub(super) sim: Sim,
+    pub(super) verdict: Result<Verdict, String>,
+}
+
+impl Cell {
+    pub(super) fn on_target(&self) -> bool {
+        self.outcome() == TARGET
+    }
+
+    /// What failed first, in a word.
+    pub(super) fn outcome(&self) -> &str {
+        self.verdict.as_ref().map_or("no_run", Verdict::outcome)
+    }
+
+    /// The same for people.
+    pub(super) fn words(&self) -> String {
+        match &self.verdict {
+            Ok(verdict) => verdict.first(),
+            Err(why) => format!("NO: {}", why.replace('\n', " ")),
+        }
+    }
+
+    pub(super) fn found(&self) -> Found {
+        Found {
+            name: self.task.clone(),
+            sim: self.sim.name().to_owned(),
+            outcome: self.outcome().to_owned(),
+            words: self.words(),
+        }
+    }
+
+    pub(super) fn json(&self) -> Value {
+        json!({
+            "task": self.task,
+            "sim": self.sim.name(),
+            "outcome": self.outcome(),
+            "verdict": self.verdict.as_ref().ok().map(Verdict::json),
+            "error": self.verdict.as_ref().err(),
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! Stored plans whose checksum was mended after a word was changed: values are looked at, not only bytes.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const PREFIX: usize = 24;
+/// Bytes of a node of A1, and of its gains, after a header that takes the rest.
+const NODE: usize = 345;
+const GAINS: usize = 1728;
+
+fn saltus(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    let output = command
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    (output.status.code(), said)
+}
+
+/// CRC-32 (ISO-HDLC) of everything but the checksum.
+fn mend(bytes: &mut [u8]) {
+    let mut sum = u32::MAX;
+    for (i, byte) in bytes.iter().enumerate() {
+        if (20..PREFIX).contains(&i) {
+            continue;
+        }
+        sum ^= u32::from(*byte);
+        for _ in 0..8 {
+            sum = (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 };
+        }
+    }
+    bytes[20..PREFIX].copy_from_slice(&(!sum).to_le_bytes());
+}
+
+struct Plan {
+    folder: PathBuf,
+    bytes: Vec<u8>,
+    nodes: usize,
+}
+
+impl Plan {
+    fn new() -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("damage");
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let (code, said) = saltus(&folder, &["plan", "a1/lateral", "--out", "plan"]);
+        assert_eq!(code, Some(0), "{said}");
+        let bytes = fs::read(folder.join("plan/plan.bin")).unwrap();
+        let nodes = (bytes.len() - PREFIX) / (NODE + GAINS);
+        Self {
+            folder,
+            bytes,
+            nodes,
+        }
+    }
+
+    /// Where word `word` of the nodes' part stands; the phase, one byte, stands before.
+    fn node_word(&self, node: usize, word: usize) -> usize {
+        self.bytes.len() - self.nodes * (NODE + GAINS) + node * NODE + 1 + 4 * word
+    }
+
+    fn gain_word(&self, node: usize, word: usize) -> usize {
+        self.bytes.len() - self.nodes * GAINS + node * GAINS + 4 * word
+    }
+
+    /// The plan with one word changed.
+    fn write(&self, at: usize, change: impl FnOnce(f32) -> f32) {
+        let mut bytes = self.bytes.clone();
+        let word: [u8; 4] = bytes[at..at + 4].try_into().unwrap();
+        let changed = change(f32::from_le_bytes(word));
+        bytes[at..at + 4].copy_from_slice(&changed.to_le_bytes());
+        mend(&mut bytes);
+        fs::write(self.folder.join("damaged.bin"), bytes).unwrap();
+    }
+
+    fn refuses(&self, command: &str, what: &str) {
+        let (code, said) = saltus(&self.folder, &[command, "damaged.bin"]);
+        assert_eq!(code, Some(2), "{command}, {what}: {said}");
+        assert!(
+            !said.contains("checksum does not fit"),
+            "{what}: the test does not mend"
+        );
+    }
+}
+
+/// By how much a word of a node is changed: what it means decides what is much.
+fn much(word: usize) -> f32 {
+    match word {
+        // Time, place, rotation; velocities of the base; joints; their velocities.
+        0..8 => 0.05,
+        8..14 => 1.5,
+        14..26 => 0.05,
+        26..38 => 1.5,
+        // Torques, forces; feet; their velocities.
+        38..50 => 6.0,
+        50..62 => 20.0,
+        62..74 => 0.01,
+        _ => 0.1,
+    }
+}
+
+#[test]
+fn damage_under_a_mended_checksum_is_refused() {
+    let plan = Plan::new();
+    // As it is, it passes, so that what follows is the change's doing.
+    plan.write(plan.node_word(5, 0), |x| x);
+    assert_eq!(saltus(&plan.folder, &["verify", "damaged.bin"]).0, Some(0));
+    for i in 0..50 {
+        let (node, word) = (3 + i * (plan.nodes - 8) / 50, i * 37 % 86);
+        let at = plan.node_word(node, word);
+        for (name, bad) in [("NaN", f32::NAN), ("1e30", 1e30), ("more", much(word))] {
+            plan.write(at, |x| if name == "more" { x + bad } else { bad });
+            plan.refuses("verify", &format!("{name} in word {word} of node {node}"));
+        }
+    }
+    for i in 0..25 {
+        let (node, word) = (3 + i * (plan.nodes - 8) / 25, i * 179 % 432);
+        let at = plan.gain_word(node, word);
+        for (name, bad) in [("NaN", f32::NAN), ("inf", f32::NEG_INFINITY), ("1e9", 1e9)] {
+            plan.write(at, |_| bad);
+            plan.refuses("verify", &format!("{name} in gain {word} of node {node}"));
+        }
+    }
+    // What is refused is not executed either.
+    plan.write(plan.node_word(20, 40), |_| 1e6);
+    plan.refuses("run", "a torque of a million");
+    assert!(!plan.folder.join("out/a1-lateral").exists());
+}

@@ -1,0 +1,461 @@
+//! Values that cannot be: named with their key, what they are and what is allowed, before anything is computed; nothing is left behind.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use core::time::Duration;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::Instant;
+
+/// A new folder of a test's own.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("values-{name}"));
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn saltus(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+/// Runs what must be refused, at once and by name; what it said.
+fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
+    let clock = Instant::now();
+    let output = saltus(folder, arguments);
+    let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+    for word in words {
+        assert!(
+            said.contains(word),
+            "{arguments:?} does not say `{word}`: {said}"
+        );
+    }
+    assert!(clock.elapsed() < Duration::from_secs(60), "{arguments:?}");
+    said
+}
+
+/// The shipped problem file with one value changed.
+fn problem(path: &Path, change: impl FnOnce(&mut Value)) {
+    let mut file: Value = serde_json::from_str(include_str!("../data/a1-jumps.json")).unwrap();
+    change(&mut file);
+    fs::write(path, file.to_string()).unwrap();
+}
+
+#[test]
+fn a_problem_file_is_looked_at_before_it_is_solved() {
+    let folder = folder("problem");
+    let path = folder.join("p.json");
+    let big = 1_000_000_000;
+    let task = |pointer: &str, value: Value, words: &[&str]| {
+        problem(&path, |file| *file.pointer_mut(pointer).unwrap() = value);
+        for stage in ["srb", "whole-body"] {
+            let arguments = [
+                "plan",
+                "--problem",
+                "p.json",
+                "--reference",
+                "spin",
+                "--stage",
+                stage,
+                "--solution",
+                "s.json",
+            ];
+            refused(&folder, &arguments, words);
+            assert!(!folder.join("s.json").exists(), "{pointer}");
+        }
+    };
+    task(
+        "/tasks/spin/N",
+        json!([big, 30]),
+        &["spin", "N", "2000", "1000000000"],
+    );
+    task(
+        "/tasks/spin/N",
+        json!([usize::MAX, usize::MAX]),
+        &["N", "2000"],
+    );
+    task(
+        "/tasks/spin/N",
+        json!(vec![50; 100]),
+        &["N", "12 phases", "100"],
+    );
+    task(
+        "/tasks/spin/phases",
+        json!([[0, 1, 2, 2], []]),
+        &["phases", "foot 2", "twice"],
+    );
+    task(
+        "/tasks/spin/phases",
+        json!([[0, 1, 2, 7], []]),
+        &["phases", "no foot 7"],
+    );
+    task(
+        "/tasks/lateral_down/edge",
+        json!([1, 0, 0.18]),
+        &["lateral_down", "edge", "sign", "1 or -1", "0"],
+    );
+    task(
+        "/tasks/lateral_down/edge",
+        json!([2, 1, 0.18]),
+        &["edge", "axis"],
+    );
+    task("/tasks/lateral_down/edge", json!(null), &["edge"]);
+    task(
+        "/tasks/spin/angle",
+        json!(1e8),
+        &["angle", "63", "100000000"],
+    );
+    task(
+        "/tasks/spin/goal",
+        json!([0.0, 1e300, 0.0]),
+        &["goal", "100", "1e300"],
+    );
+    task("/tasks/spin/T0", json!([1e9, 0.3]), &["T0", "10"]);
+    task(
+        "/tasks/spin/axis",
+        json!([0.0, 0.0, 0.0]),
+        &["axis", "unit"],
+    );
+    task(
+        "/constants/I_B/0/1",
+        json!(0.01),
+        &["I_B", "symmetric", "0.01"],
+    );
+    task(
+        "/constants/I_B/0/0",
+        json!(-1.0),
+        &["I_B", "positive definite"],
+    );
+    task("/constants/M", json!(0.0), &["M", "above 0"]);
+    task("/constants/SIDE/0", json!(3.0), &["SIDE", "1 or -1"]);
+    for (pointer, key) in [
+        ("", "tsaks"),
+        ("/constants", "MASS"),
+        ("/tasks/spin", "nodes"),
+    ] {
+        problem(&path, |file| {
+            file.pointer_mut(pointer).unwrap()[key] = json!(big)
+        });
+        refused(
+            &folder,
+            &["plan", "--problem", "p.json", "--reference", "spin"],
+            &["unknown field", key],
+        );
+    }
+}
+
+/// A solution that the whole-body stage is told to follow, for a thousand years or in no direction.
+#[test]
+fn a_solution_to_follow_is_looked_at() {
+    let folder = folder("solution");
+    let shipped: Value = serde_json::from_str(include_str!("../data/srb/spin.json")).unwrap();
+    for (pointer, value, word) in [
+        ("/sol/T/0", json!(3e10), "T of"),
+        ("/sol/R/3/0", json!(2.0), "R of"),
+    ] {
+        let mut file = shipped.clone();
+        *file.pointer_mut(pointer).unwrap() = value;
+        fs::write(folder.join("srb.json"), file.to_string()).unwrap();
+        let arguments = [
+            "plan",
+            "--reference",
+            "spin",
+            "--stage",
+            "whole-body",
+            "--srb",
+            "srb.json",
+        ];
+        refused(&folder, &arguments, &[word]);
+    }
+}
+
+/// What was not solved leaves nothing that looks as if it were.
+#[test]
+fn a_problem_without_solution_leaves_none() {
+    let folder = folder("unsolved");
+    // Ten metres up in 0.9 s.
+    problem(&folder.join("p.json"), |file| {
+        file["tasks"]["spin"]["goal"] = json!([0.0, 0.0, 10.0])
+    });
+    let arguments = [
+        "plan",
+        "--problem",
+        "p.json",
+        "--reference",
+        "spin",
+        "--solution",
+        "s.json",
+    ];
+    assert_eq!(saltus(&folder, &arguments).status.code(), Some(2));
+    let far = include_str!("../tasks/a1/lateral.toml").replace("0.3, 0.0]", "50.0, 0.0]");
+    fs::write(folder.join("far.toml"), far).unwrap();
+    let arguments = ["plan", "far.toml", "--solution", "s.json", "--out", "far"];
+    assert_eq!(saltus(&folder, &arguments).status.code(), Some(2));
+    let mut left: Vec<_> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|x| x.unwrap().file_name())
+        .collect();
+    left.sort();
+    assert_eq!(left, ["far.toml", "p.json"]);
+}
+
+#[test]
+fn a_task_file_names_key_value_and_what_is_allowed() {
+    let folder = folder("task");
+    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let turn =
+        |angle: &str| format!("{lateral}\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = {angle}\n");
+    let limit = |line: &str| format!("{lateral}\n[limits]\n{line}\n");
+    let first = |line: &str| format!("{line}\n{lateral}");
+    let edge = "[box]\naxis = \"y\"\ndrop_m = 0.0\n";
+    for (text, words) in [
+        (
+            turn("1e8"),
+            &["turn.angle_deg", "100000000", "-3600 to 3600"][..],
+        ),
+        (turn("inf"), &["turn.angle_deg", "finite"]),
+        (
+            limit("friction_share = 2.0"),
+            &["limits.friction_share", "2", "up to 1"],
+        ),
+        (
+            limit("speed_share = 1.5"),
+            &["limits.speed_share", "1.5", "up to 1"],
+        ),
+        (
+            limit("torque_shares = [0.5, 0.6, 7.0]"),
+            &["limits.torque_shares", "7", "up to 1"],
+        ),
+        (
+            limit("friction = -0.1"),
+            &["limits.friction", "-0.1", "0 to 10"],
+        ),
+        (
+            first("lock = [\"FL_hip_joint=0.3\"]"),
+            &["lock", "FL_hip_joint=0.3", "a1"],
+        ),
+        (
+            lateral.replace("max_s = 0.8", "max_s = 1e12"),
+            &["total.max_s", "up to 10"],
+        ),
+        (
+            lateral.replace("guess_s = 0.5", "guess_s = 1e12"),
+            &["guess_s", "up to 5"],
+        ),
+        (
+            lateral.replace("intervals = 50", "intervals = 1000000000"),
+            &["intervals", "1 to 1000"],
+        ),
+        (
+            format!("{lateral}\n{edge}side = -128\ndistance_m = 1.0\n"),
+            &["box.side", "1 or -1"],
+        ),
+        (
+            format!("{lateral}\n{edge}side = 1\ndistance_m = 1e9\n"),
+            &["box.distance_m", "-100 to 100"],
+        ),
+        (
+            format!("{lateral}\n{edge}side = 1\n"),
+            &["box.beyond_feet_m", "distance_m"],
+        ),
+        (
+            format!("{lateral}\n[weights]\ngoal = 1e300\n"),
+            &["weights.goal", "1e300"],
+        ),
+    ] {
+        assert_ne!(text, lateral);
+        fs::write(folder.join("task.toml"), text).unwrap();
+        for command in ["plan", "run", "envelope", "verdicts"] {
+            refused(&folder, &[command, "task.toml"], words);
+        }
+    }
+    refused(
+        &folder,
+        &["plan", "a1/lateral", "--timing", "1e9,0.3"],
+        &["--timing", "up to 5"],
+    );
+    refused(
+        &folder,
+        &[
+            "envelope",
+            "a1/lateral",
+            "--samples",
+            "18446744073709551615",
+        ],
+        &["--samples", "10000000"],
+    );
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+}
+
+#[test]
+fn a_robot_with_limits_of_no_motor_is_refused() {
+    let folder = folder("urdf");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/a1.urdf");
+    let urdf = fs::read_to_string(path).unwrap();
+    let line = urdf.lines().find(|line| line.contains("effort=")).unwrap();
+    let value = |key: &str| {
+        let from = line.find(key).unwrap() + key.len();
+        let rest = line.get(from..).unwrap();
+        format!(
+            "{key}{}",
+            rest.split_inclusive('"').take(1).collect::<String>()
+        )
+    };
+    for (key, word) in [("effort=\"", "effort"), ("velocity=\"", "velocity")] {
+        for bad in ["-1", "0"] {
+            fs::write(
+                folder.join("bad.urdf"),
+                urdf.replacen(&value(key), &format!("{key}{bad}\""), 1),
+            )
+            .unwrap();
+            let arguments = ["plan", "a1/lateral", "--robot", "bad.urdf"];
+            refused(
+                &folder,
+                &arguments,
+                &["bad.urdf", "joint ", word, bad, "above 0"],
+            );
+        }
+    }
+}
+
+/// Ten megabytes of anything are told in a few lines.
+#[test]
+fn long_values_are_cut_in_what_is_told() {
+    let folder = folder("long");
+    let long = "x".repeat(10_000_000);
+    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let files = [
+        (
+            "value.toml",
+            lateral.replace("guess_s = 0.5", &format!("guess_s = \"{long}\"")),
+        ),
+        (
+            "key.toml",
+            lateral.replace("guess_s = 0.5", &format!("{long} = 0.5")),
+        ),
+        (
+            "robot.toml",
+            lateral.replace("\"a1\"", &format!("\"{long}\"")),
+        ),
+        ("lock.toml", format!("lock = [\"{long}\"]\n{lateral}")),
+        (
+            "foot.toml",
+            lateral.replacen("\"FL\"", &format!("\"{long}\""), 1),
+        ),
+        ("p.json", format!("{{\"constants\": \"{long}\"}}")),
+        ("key.json", format!("{{\"{long}\": 1}}")),
+        (
+            "r.urdf",
+            format!("<robot name='r'><link name='{long}'/><link name='{long}'/></robot>"),
+        ),
+        (
+            "w.urdf",
+            format!(
+                "<robot name='r'><link name='a'><inertial><mass value='{long}'/></inertial></link></robot>"
+            ),
+        ),
+    ];
+    for (name, text) in &files {
+        fs::write(folder.join(name), text).unwrap();
+        let arguments = match name.rsplit_once('.').unwrap().1 {
+            "toml" => vec!["plan", name],
+            "json" => vec!["plan", "--problem", name],
+            _ => vec!["import", name],
+        };
+        for more in [None, Some("--json")] {
+            let arguments: Vec<&str> = arguments.iter().copied().chain(more).collect();
+            let said = refused(&folder, &arguments, &["…"]);
+            assert!(said.len() < 8000, "{name}: {} bytes", said.len());
+        }
+    }
+    // An argument, as long as the system lets it be.
+    let word = "y".repeat(100_000);
+    for arguments in [
+        vec!["run", &word],
+        vec!["run", "a1/lateral", "--plant", &word],
+        vec!["run", "a1/lateral", "--seed", &word],
+        vec![&word],
+        vec!["plan", &word, "--json"],
+        vec!["plan", "--reference", &word],
+    ] {
+        let said = refused(&folder, &arguments, &["…"]);
+        assert!(said.len() < 8000, "{} bytes", said.len());
+    }
+}
+
+#[test]
+fn options_that_do_not_apply_are_refused_with_what_does() {
+    let folder = folder("options");
+    for (arguments, words) in [
+        (
+            &["run", "a1/lateral", "--height", "0.1"][..],
+            &["--height", "icub/velocity", "goal_m"][..],
+        ),
+        (
+            &["run", "a1/lateral", "--no-momentum"],
+            &["--no-momentum", "humanoid"],
+        ),
+        (
+            &["run", "a1/lateral", "--torque-share", "1"],
+            &["--torque-share", "humanoid"],
+        ),
+        (
+            &["run", "a1/lateral", "--landing", "qp"],
+            &["--landing", "humanoid"],
+        ),
+        (
+            &["run", "icub/velocity", "--planner", "whole-body"],
+            &["--planner", "quadruped", "--height"],
+        ),
+        (
+            &["run", "icub/velocity", "--task", "a1/lateral"],
+            &["--task", "quadruped"],
+        ),
+        (
+            &["run", "icub/torque", "--interface", "joint-pd"],
+            &["--interface", "torques"],
+        ),
+        (
+            &["verdicts", "icub/velocity", "--interface", "joint-pd"],
+            &["--interface", "torques"],
+        ),
+        (
+            &["plan", "a1/lateral", "--stage", "srb"],
+            &["--stage", "cannot be used with"],
+        ),
+        (
+            &["plan", "a1/lateral", "--barrier", "monotone"],
+            &["--barrier", "cannot be used with"],
+        ),
+        (
+            &["plan", "a1/lateral", "--guess-noise", "0.1"],
+            &["--guess-noise", "cannot be used with"],
+        ),
+        (
+            &["plan", "a1/lateral", "--seed", "2"],
+            &["--seed", "cannot be used with"],
+        ),
+        (
+            &["plan", "a1/lateral", "--repeat", "2"],
+            &["--repeat", "cannot be used with"],
+        ),
+        (
+            &["plan", "--reference", "spin", "--srb", "s.json"],
+            &["--srb", "--stage whole-body"],
+        ),
+        (
+            &["plan", "--reference", "spin", "--guess-noise", "nan"],
+            &["--guess-noise", "0 to 10"],
+        ),
+    ] {
+        refused(&folder, arguments, words);
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+}
