@@ -178,9 +178,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         } else {
             self.evaluate_gradient();
         }
-        self.seed(seeds);
-        let known = self.drop_unfit();
-        self.outer(known)
+        self.outer(false, seeds)
     }
 
     /// [`Search::run`] without the equalities, the factor and the active set: they are there.
@@ -199,7 +197,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         self.w.lambda.fill(T::ZERO);
         self.evaluate_gradient();
         let known = self.drop_unfit();
-        self.outer(known)
+        self.outer(known, 0)
     }
 
     /// Whether the search has taken all the time that it may.
@@ -207,30 +205,9 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         self.iterations >= self.s.max_iterations || self.steps >= self.most
     }
 
-    /// Re-enters the remembered active set, without multipliers yet.
-    fn seed(&mut self, seeds: usize) {
-        for k in 0..seeds {
-            if self.steps >= self.most {
-                return;
-            }
-            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-            let (l, u) = self.p.limits(id);
-            let limit = if side > 0 { u } else { l };
-            if self.w.state(id) != 0 || !(is_range(l, u) && limit.is_finite_number()) {
-                continue;
-            }
-            self.steps += 1;
-            self.prepare(id, side);
-            if self.w.candidate.free > T::ZERO {
-                self.turn();
-                self.enter(id, side, T::ZERO);
-            }
-        }
-    }
-
     /// Newton corrections of (x, λ) for the active rows, each followed by the search; with a
     /// proximal factor these are the proximal steps.
-    fn outer(&mut self, mut known: bool) -> Result<Status, Error> {
+    fn outer(&mut self, mut known: bool, mut seeds: usize) -> Result<Status, Error> {
         // Merit when it last fell to half, cost when it last fell by more than round-off, and passes since either.
         let (mut mark, mut cost) = (T::INFINITY, T::INFINITY);
         let mut stalls = 0;
@@ -248,7 +225,8 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             if self.steps >= self.most && multipliers.any(|l| *l < T::ZERO) {
                 return Ok(Status::Limit);
             }
-            match self.search() {
+            // Only the first point is free of active rows.
+            match self.search(core::mem::take(&mut seeds)) {
                 Pass::Feasible => {}
                 // A contradiction that the data do not confirm comes from round-off in x: correct
                 // x and look again.

@@ -2,7 +2,8 @@
 
 use so3::{Scalar, math};
 
-use super::{Search, scale_inverse, signed};
+use super::violated::Look;
+use super::{Search, is_range, scale_inverse, signed};
 use crate::Status;
 use crate::kernels::{at, head, head_mut, max_abs, put};
 use crate::settings::row_tolerance;
@@ -14,61 +15,121 @@ pub(super) enum Pass {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// Enters violated rows until none is left.
-    pub(super) fn search(&mut self) -> Pass {
+    /// Enters violated rows until none is left, of the `seeds` remembered ones first.
+    pub(super) fn search(&mut self, seeds: usize) -> Pass {
         self.w.pool_len = 0;
-        loop {
-            let (id, side) = match self.next() {
-                Ok(Some(found)) => found,
-                Ok(None) => return Pass::Feasible,
-                Err(status) => return Pass::Stop(status),
-            };
-            self.prepare(id, side);
-            let mut lambda = T::ZERO;
-            loop {
-                if self.is_at_cap() {
-                    return Pass::Stop(Status::Limit);
-                }
-                self.iterations += 1;
-                self.steps += 1;
-                self.answer();
-                self.turn();
-                // The first multiplier to reach zero.
-                let mut blocking = None;
-                let mut t = T::INFINITY;
-                let w = &*self.w;
-                let largest = max_abs(crate::kernels::head(&w.vec_b, w.basis.len));
-                let noise = T::of(8.0) * T::EPSILON * largest;
-                for (k, (l, r)) in w.lambda.iter().zip(&w.vec_b).take(w.basis.len).enumerate() {
-                    if *r > noise {
-                        let ratio = math::max(*l, T::ZERO) / *r;
-                        if ratio < t {
-                            (t, blocking) = (ratio, Some(k));
-                        }
-                    }
-                }
-                let d = w.candidate.free;
-                let full = if d > T::ZERO {
-                    self.excess(id, side) / d
-                } else {
-                    T::INFINITY
-                };
-                if full <= t {
-                    if !full.is_finite_number() {
-                        return Pass::Stop(self.conflict(id, side));
-                    }
-                    self.advance(full);
-                    self.enter(id, side, lambda + full);
-                    break;
-                }
-                let Some(k) = blocking else {
-                    return Pass::Stop(Status::Numerical);
-                };
-                self.advance(t);
-                lambda += t;
-                self.leave(k);
+        if seeds > 0 {
+            if let Look::Unsound = self.look() {
+                return Pass::Stop(Status::Numerical);
+            }
+            if self.is_remembered(seeds)
+                && let Some(status) = self.recall(seeds)
+            {
+                return Pass::Stop(status);
             }
         }
+        loop {
+            match self.next() {
+                Ok(Some((id, side))) => {
+                    if let Some(status) = self.admit(id, side, 1) {
+                        return Pass::Stop(status);
+                    }
+                }
+                Ok(None) => return Pass::Feasible,
+                Err(status) => return Pass::Stop(status),
+            }
+        }
+    }
+
+    /// Whether the row that the last look found most violated is one of the last active set. If it is not, rows have moved, as in a
+    /// receding horizon, and what is remembered would only have to leave again.
+    fn is_remembered(&self, seeds: usize) -> bool {
+        let worst = at(&self.w.pool, 0);
+        let known = self.w.id.iter().zip(&self.w.side).take(seeds);
+        self.w.pool_len > 0 && known.map(|(id, side)| (*id, *side)).any(|row| row == worst)
+    }
+
+    /// Enters rows of the last active set, `seeds` of them, before any other: always the most violated one, and none that is not, so
+    /// that a wrong guess costs a look at its row. Those not yet read stand behind the place of the next active row, since at most
+    /// one enters per row read.
+    fn recall(&mut self, seeds: usize) -> Option<Status> {
+        for first in 0..seeds {
+            let (mut worst, mut found) = (self.s.feasibility, None);
+            for k in first..seeds {
+                let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+                let (l, u) = self.p.limits(id);
+                let limit = if side > 0 { u } else { l };
+                if self.w.state(id) == 0 && is_range(l, u) && limit.is_finite_number() {
+                    if let Some(scaled) = self.excess_above(worst, id, side) {
+                        (worst, found) = (scaled, Some(k));
+                    }
+                }
+            }
+            let k = found?;
+            self.w.id.swap(first, k);
+            self.w.side.swap(first, k);
+            let (id, side) = (at(&self.w.id, first), at(&self.w.side, first));
+            if let Some(status) = self.admit(id, side, 0) {
+                return Some(status);
+            }
+        }
+        None
+    }
+
+    /// Moves toward the violated row until it is met and enters; rows whose multipliers reach zero on the way leave. `price` is what the
+    /// last step counts in iterations: a remembered row costs a step only. Returns why the search ends, if it does.
+    fn admit(&mut self, id: usize, side: i8, price: u32) -> Option<Status> {
+        self.prepare(id, side);
+        let mut lambda = T::ZERO;
+        loop {
+            if self.is_at_cap() {
+                return Some(Status::Limit);
+            }
+            self.steps += 1;
+            self.answer();
+            self.turn();
+            let (t, blocking) = self.first_zero();
+            let d = self.w.candidate.free;
+            let full = if d > T::ZERO {
+                self.excess(id, side) / d
+            } else {
+                T::INFINITY
+            };
+            if full <= t {
+                self.iterations += price;
+                if !full.is_finite_number() {
+                    return Some(self.conflict(id, side));
+                }
+                self.advance(full);
+                self.enter(id, side, lambda + full);
+                return None;
+            }
+            self.iterations += 1;
+            let Some(k) = blocking else {
+                return Some(Status::Numerical);
+            };
+            self.advance(t);
+            lambda += t;
+            self.leave(k);
+        }
+    }
+
+    /// How far the entering multiplier may grow until the first of the others reaches zero, and which; from r in `vec_b`.
+    fn first_zero(&self) -> (T, Option<usize>) {
+        let w = &*self.w;
+        let largest = max_abs(head(&w.vec_b, w.basis.len));
+        let noise = T::of(8.0) * T::EPSILON * largest;
+        let mut blocking = None;
+        let mut t = T::INFINITY;
+        for (k, (l, r)) in w.lambda.iter().zip(&w.vec_b).take(w.basis.len).enumerate() {
+            if *r > noise {
+                let ratio = math::max(*l, T::ZERO) / *r;
+                if ratio < t {
+                    (t, blocking) = (ratio, Some(k));
+                }
+            }
+        }
+        (t, blocking)
     }
 
     /// Coordinates of a row in the basis.

@@ -9,7 +9,7 @@ use crate::workspace::POOL;
 use crate::{Status, Workspace};
 
 /// What a look at all rows found.
-enum Look {
+pub(super) enum Look {
     Feasible,
     Violated,
     Unsound,
@@ -18,7 +18,7 @@ enum Look {
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// Looks at every inactive row and bound and collects the most violated ones, relative to their
     /// scale, in the pool.
-    fn look(&mut self) -> Look {
+    pub(super) fn look(&mut self) -> Look {
         let mut length = T::ZERO;
         for v in &self.w.x {
             length += math::abs(*v);
@@ -84,6 +84,19 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         true
     }
 
+    /// How far x is outside a row on one side, relative to the row's scale, if that is more than `least` and than round-off.
+    #[inline]
+    pub(super) fn excess_above(&mut self, least: T, id: usize, side: i8) -> Option<T> {
+        let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
+        let scaled = self.excess(id, side) * inverse;
+        if scaled > least {
+            let (l, u) = self.p.limits(id);
+            let limit = if side > 0 { u } else { l };
+            return (scaled > self.row_noise(id, limit, inverse)).then_some(scaled);
+        }
+        None
+    }
+
     /// How far x is from the limits of the active rows and the equalities, relative to their scale;
     /// NaN if a number is bad. Completes `primal`, and sets `toll`.
     pub(super) fn drift(&mut self) -> T {
@@ -119,15 +132,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 if self.w.state(id) != 0 {
                     continue;
                 }
-                let e = self.excess(id, side);
-                let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
-                let scaled = e * inverse;
-                if scaled > worst {
-                    let (l, u) = self.p.limits(id);
-                    let limit = if side > 0 { u } else { l };
-                    if scaled > self.row_noise(id, limit, inverse) {
-                        (worst, found) = (scaled, Some((id, side)));
-                    }
+                if let Some(scaled) = self.excess_above(worst, id, side) {
+                    (worst, found) = (scaled, Some((id, side)));
                 }
             }
             if found.is_some() || refilled {
