@@ -178,7 +178,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         } else {
             self.evaluate_gradient();
         }
-        self.outer(false, seeds)
+        self.outer(false, Some(seeds))
     }
 
     /// [`Search::run`] without the equalities, the factor and the active set: they are there.
@@ -197,7 +197,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         self.w.lambda.fill(T::ZERO);
         self.evaluate_gradient();
         let known = self.drop_unfit();
-        self.outer(known, 0)
+        self.outer(known, None)
     }
 
     /// Whether the search has taken all the time that it may.
@@ -207,7 +207,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
 
     /// Newton corrections of (x, λ) for the active rows, each followed by the search; with a
     /// proximal factor these are the proximal steps.
-    fn outer(&mut self, mut known: bool, mut seeds: usize) -> Result<Status, Error> {
+    fn outer(&mut self, mut known: bool, mut seeds: Option<usize>) -> Result<Status, Error> {
         // Merit when it last fell to half, cost when it last fell by more than round-off, and passes since either.
         let (mut mark, mut cost) = (T::INFINITY, T::INFINITY);
         let mut stalls = 0;
@@ -225,8 +225,14 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             if self.steps >= self.most && multipliers.any(|l| *l < T::ZERO) {
                 return Ok(Status::Limit);
             }
-            // Only the first point is free of active rows.
-            match self.search(core::mem::take(&mut seeds)) {
+            let pass = match core::mem::take(&mut seeds) {
+                Some(seeds) => self.start(seeds),
+                None => {
+                    self.w.pool_len = 0;
+                    self.search()
+                }
+            };
+            match pass {
                 Pass::Feasible => {}
                 // A contradiction that the data do not confirm comes from round-off in x: correct
                 // x and look again.

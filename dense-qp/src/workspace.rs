@@ -33,6 +33,8 @@ pub struct Workspace<T, const N: usize, const M: usize> {
     /// Rows that the last look at all of them found most violated, worst first.
     pub(crate) pool: [(usize, i8); POOL],
     pub(crate) pool_len: usize,
+    /// The most violated row at the point without active rows, of this solve and, until then, of the last.
+    pub(crate) first: (usize, i8),
     pub(crate) gradient: [T; N],
     pub(crate) step: [T; N],
     pub(crate) vec_a: [T; N],
@@ -62,6 +64,7 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             row_scale_inverse: [T::ZERO; M],
             pool: [(0, 0); POOL],
             pool_len: 0,
+            first: (0, 0),
             gradient: [T::ZERO; N],
             step: [T::ZERO; N],
             vec_a: [T::ZERO; N],

@@ -15,23 +15,41 @@ pub(super) enum Pass {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// Enters violated rows until none is left, of the `seeds` remembered ones first.
-    pub(super) fn search(&mut self, seeds: usize) -> Pass {
-        self.w.pool_len = 0;
-        if seeds > 0 {
-            if let Look::Unsound = self.look() {
-                return Pass::Stop(Status::Numerical);
-            }
-            if self.is_remembered(seeds)
-                && let Some(status) = self.recall(seeds)
-            {
-                return Pass::Stop(status);
-            }
+    /// [`Search::search`] from the point without active rows, with what the last solve left, its `seeds` active rows and the row that was
+    /// most violated at its first point. Where that row is the same, the old active set enters at once; where it is only an active
+    /// one, or proximal steps have yet to bring rows into reach, rows of the set are tried first. Otherwise rows have moved, as in a receding horizon, and those of old would only have to
+    /// leave again.
+    pub(super) fn start(&mut self, seeds: usize) -> Pass {
+        match self.look() {
+            Look::Unsound => return Pass::Stop(Status::Numerical),
+            Look::Feasible => return Pass::Feasible,
+            Look::Violated => {}
         }
+        let worst = at(&self.w.pool, 0);
+        let mut known = self.w.id.iter().zip(&self.w.side).take(seeds);
+        if seeds > 0 && worst == self.w.first && !self.w.factor.proximal {
+            self.seed(seeds);
+            self.evaluate_gradient();
+            let known = self.drop_unfit();
+            self.iterations += 1;
+            self.steps += 1;
+            self.correct(known);
+            self.w.pool_len = 0;
+        } else if (worst == self.w.first || known.any(|(id, side)| (*id, *side) == worst))
+            && let Some(status) = self.recall(seeds)
+        {
+            return Pass::Stop(status);
+        }
+        self.w.first = worst;
+        self.search()
+    }
+
+    /// Enters violated rows until none is left.
+    pub(super) fn search(&mut self) -> Pass {
         loop {
             match self.next() {
                 Ok(Some((id, side))) => {
-                    if let Some(status) = self.admit(id, side, 1) {
+                    if let Some(status) = self.admit(id, side) {
                         return Pass::Stop(status);
                     }
                 }
@@ -41,12 +59,23 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
     }
 
-    /// Whether the row that the last look found most violated is one of the last active set. If it is not, rows have moved, as in a
-    /// receding horizon, and what is remembered would only have to leave again.
-    fn is_remembered(&self, seeds: usize) -> bool {
-        let worst = at(&self.w.pool, 0);
-        let known = self.w.id.iter().zip(&self.w.side).take(seeds);
-        self.w.pool_len > 0 && known.map(|(id, side)| (*id, *side)).any(|row| row == worst)
+    /// Enters the remembered active set, without multipliers yet.
+    fn seed(&mut self, seeds: usize) {
+        for k in 0..seeds {
+            if self.steps >= self.most {
+                return;
+            }
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            if !self.is_seed(id, side) {
+                continue;
+            }
+            self.steps += 1;
+            self.prepare(id, side);
+            if self.w.candidate.free > T::ZERO {
+                self.turn();
+                self.enter(id, side, T::ZERO);
+            }
+        }
     }
 
     /// Enters rows of the last active set, `seeds` of them, before any other: always the most violated one, and none that is not, so
@@ -57,34 +86,40 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (mut worst, mut found) = (self.s.feasibility, None);
             for k in first..seeds {
                 let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-                let (l, u) = self.p.limits(id);
-                let limit = if side > 0 { u } else { l };
-                if self.w.state(id) == 0 && is_range(l, u) && limit.is_finite_number() {
-                    if let Some(scaled) = self.excess_above(worst, id, side) {
-                        (worst, found) = (scaled, Some(k));
-                    }
+                if self.is_seed(id, side)
+                    && let Some(scaled) = self.excess_above(worst, id, side)
+                {
+                    (worst, found) = (scaled, Some(k));
                 }
             }
             let k = found?;
             self.w.id.swap(first, k);
             self.w.side.swap(first, k);
             let (id, side) = (at(&self.w.id, first), at(&self.w.side, first));
-            if let Some(status) = self.admit(id, side, 0) {
+            if let Some(status) = self.admit(id, side) {
                 return Some(status);
             }
         }
         None
     }
 
-    /// Moves toward the violated row until it is met and enters; rows whose multipliers reach zero on the way leave. `price` is what the
-    /// last step counts in iterations: a remembered row costs a step only. Returns why the search ends, if it does.
-    fn admit(&mut self, id: usize, side: i8, price: u32) -> Option<Status> {
+    /// Whether a remembered row is not active yet and still has its limit.
+    fn is_seed(&self, id: usize, side: i8) -> bool {
+        let (l, u) = self.p.limits(id);
+        let limit = if side > 0 { u } else { l };
+        self.w.state(id) == 0 && is_range(l, u) && limit.is_finite_number()
+    }
+
+    /// Moves toward the violated row until it is met and enters; rows whose multipliers reach zero on the way leave. Returns why the
+    /// search ends, if it does.
+    fn admit(&mut self, id: usize, side: i8) -> Option<Status> {
         self.prepare(id, side);
         let mut lambda = T::ZERO;
         loop {
             if self.is_at_cap() {
                 return Some(Status::Limit);
             }
+            self.iterations += 1;
             self.steps += 1;
             self.answer();
             self.turn();
@@ -96,7 +131,6 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 T::INFINITY
             };
             if full <= t {
-                self.iterations += price;
                 if !full.is_finite_number() {
                     return Some(self.conflict(id, side));
                 }
@@ -104,7 +138,6 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 self.enter(id, side, lambda + full);
                 return None;
             }
-            self.iterations += 1;
             let Some(k) = blocking else {
                 return Some(Status::Numerical);
             };

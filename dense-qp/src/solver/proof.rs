@@ -3,10 +3,11 @@
 use so3::{Scalar, math};
 
 use super::outcome::set_multiplier;
-use super::{EQUALITY, Search, signed};
+use super::{EQUALITY, Search, scale_inverse, signed};
 use crate::Status;
 use crate::kernels::{at, dot, dot_sizes, max_abs, put, sub_scaled};
 use crate::residual::{infeasibility, worse};
+use crate::settings::{proximal_weight, row_tolerance};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// The entering row depends on the active ones and nothing blocks: y = 1 on it, −r on them.
@@ -137,37 +138,33 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         if !(length > T::ZERO && length.is_finite_number()) {
             return Ray::Stays;
         }
-        for s in &mut w.previous {
-            *s /= length;
-        }
-        let course = self.course();
-        if course.slope >= -course.slope_noise {
+        scale_direction(&mut w.previous, length);
+        let (mut course, mut far) = (self.course(), self.first_limit());
+        if course.is_ascent() {
             return Ray::Stays;
         }
-        let is_flat = course.curvature <= course.curvature_noise;
-        let best = if is_flat {
-            T::INFINITY
-        } else {
-            -course.slope / course.curvature
-        };
-        // The next proximal step gets there as well.
-        if best <= length {
-            return Ray::Stays;
+        if far == T::INFINITY && course.is_nearly_straight() && self.is_descent() {
+            // Each round takes all but a share of what is left of curvature in the direction, the proximal weight's.
+            for _ in 0..ROUNDS {
+                self.purify();
+                if self.is_ray() {
+                    return Ray::Endless;
+                }
+                course = self.course();
+                if course.minimum() < T::INFINITY {
+                    break;
+                }
+            }
+            far = self.first_limit();
         }
-        let far = self.first_limit();
-        if far == T::INFINITY && is_flat {
-            self.purify();
-            return if self.is_ray() {
-                Ray::Endless
-            } else {
-                Ray::Stays
-            };
-        }
-        if far == T::ZERO {
+        let best = course.minimum();
+        // The next proximal step gets there as well, or nobody does.
+        let reach = math::min(best, far);
+        if course.is_ascent() || best <= length || !(reach > T::ZERO && reach < T::INFINITY) {
             return Ray::Stays;
         }
         let w = &mut *self.w;
-        sub_scaled(&mut w.x, -math::min(best, far), &w.previous);
+        sub_scaled(&mut w.x, -reach, &w.previous);
         self.evaluate_gradient();
         Ray::Moved
     }
@@ -194,17 +191,22 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         course
     }
 
-    /// How far x can go along `previous`.
-    fn first_limit(&self) -> T {
+    /// How far x can go along `previous`. An active row stops it only by more than the round-off that holding the row leaves.
+    fn first_limit(&mut self) -> T {
         let mut far = T::INFINITY;
         for i in 0..M + N {
-            if self.w.state(i) == EQUALITY {
+            let state = self.w.state(i);
+            if state == EQUALITY {
                 continue;
             }
             let (l, u) = self.p.limits(i);
             let rate = self.p.value(i, &self.w.previous);
             let limit = if rate > T::ZERO { u } else { l };
-            let least = T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.previous);
+            let least = if state == 0 {
+                T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.previous)
+            } else {
+                row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, self.w, i)
+            };
             if limit.is_finite_number() && math::abs(rate) > least {
                 let room = (limit - self.p.value(i, &self.w.x)) / rate;
                 far = math::min(far, math::max(room, T::ZERO));
@@ -235,9 +237,13 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         w.elimination.complete(&mut w.step, &mut w.vec_a);
         sub_scaled(&mut w.previous, T::ONE, &w.step);
         let length = max_abs(&w.previous);
-        for d in &mut w.previous {
-            *d /= length;
-        }
+        scale_direction(&mut w.previous, length);
+    }
+
+    /// Whether the gradient alone falls along `previous`, by a share of its terms that round-off leaves no doubt about.
+    fn is_descent(&self) -> bool {
+        let (g, d) = (self.p.gradient, &self.w.previous);
+        dot(g, d) < -(T::of(1024.0) * T::EPSILON * dot_sizes(g, d))
     }
 
     /// Whether the caller's own numbers confirm the direction in `previous` as one along which the cost falls without end: no
@@ -251,13 +257,24 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (rate, least) = (self.p.value(i, d), noise * self.p.size_at(i, d));
             (rate <= least || u == T::INFINITY) && (rate >= -least || l == -T::INFINITY)
         };
-        // The slope is told from round-off by a share that its own terms leave no doubt about.
-        let (slope, terms) = (dot(self.p.gradient, d), dot_sizes(self.p.gradient, d));
-        slope < -(T::of(16.0) * noise * terms)
+        self.is_descent()
             && self.p.hessian.iter().all(straight)
             && (0..M + N).all(clear)
     }
 }
+
+/// d ← d/length, without entries that are only what round-off leaves where bounds and rows hold x: each would look like a rate.
+fn scale_direction<T: Scalar>(d: &mut [T], length: T) {
+    for d in d {
+        *d /= length;
+        if math::abs(*d) <= T::of(16.0) * T::EPSILON {
+            *d = T::ZERO;
+        }
+    }
+}
+
+/// Most corrections of a direction that may be a ray.
+const ROUNDS: u32 = 4;
 
 /// What came of following a proximal step.
 #[derive(PartialEq)]
@@ -273,4 +290,26 @@ struct Course<T> {
     slope_noise: T,
     curvature: T,
     curvature_noise: T,
+}
+
+impl<T: Scalar> Course<T> {
+    /// Whether the cost does not fall by more than round-off.
+    fn is_ascent(&self) -> bool {
+        self.slope >= -self.slope_noise
+    }
+
+    /// Whether the curvature may be what proximal steps have left of a direction without any.
+    fn is_nearly_straight(&self) -> bool {
+        let terms = self.curvature_noise / (T::of(32.0) * T::EPSILON);
+        self.curvature <= T::of(0.01) * proximal_weight::<T>() * terms
+    }
+
+    /// How far away the cost is least.
+    fn minimum(&self) -> T {
+        if self.curvature <= self.curvature_noise {
+            T::INFINITY
+        } else {
+            -self.slope / self.curvature
+        }
+    }
 }
