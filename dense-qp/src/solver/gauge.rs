@@ -152,10 +152,10 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         if !entries.all(|(r, terms)| math::abs(*r) <= noise * *terms) {
             return false;
         }
-        // Where x has run away, terms hide a gradient that is none of round-off.
+        // Where x has run away so far that limits drown in round-off, terms hide a gradient that is none.
         let largest = noise * max_abs(head(&w.vec_a, w.factor.dim));
         largest <= self.s.optimality * T::of(1000.0) * max_abs(self.p.gradient)
-            || max_abs(&self.w.x) <= T::of(1000.0) * self.reach()
+            || max_abs(&self.w.x) * T::EPSILON <= T::of(1e-4) * self.reach()
     }
 
     /// The largest distance of a limit from the origin.

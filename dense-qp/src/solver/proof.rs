@@ -139,10 +139,12 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             return Ray::Stays;
         }
         scale_direction(&mut w.previous, length);
-        let (mut course, mut far) = (self.course(), self.first_limit());
-        if course.is_ascent() {
+        let mut course = self.course();
+        // The next proximal step gets there as well.
+        if course.is_ascent() || course.minimum() <= length {
             return Ray::Stays;
         }
+        let mut far = self.first_limit();
         if far == T::INFINITY && course.is_nearly_straight() && self.is_descent() {
             // Each round takes all but a share of what is left of curvature in the direction, the proximal weight's.
             for _ in 0..ROUNDS {
@@ -157,10 +159,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
             far = self.first_limit();
         }
-        let best = course.minimum();
-        // The next proximal step gets there as well, or nobody does.
-        let reach = math::min(best, far);
-        if course.is_ascent() || best <= length || !(reach > T::ZERO && reach < T::INFINITY) {
+        let reach = math::min(course.minimum(), far);
+        if course.is_ascent() || !(reach > T::ZERO && reach < T::INFINITY) {
             return Ray::Stays;
         }
         let w = &mut *self.w;
