@@ -220,9 +220,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             self.steps += 1;
             self.correct(known);
             known = false;
-            // A row that pulls was not let go any more.
-            let mut multipliers = self.w.lambda.iter().take(self.w.basis.len);
-            if self.steps >= self.most && multipliers.any(|l| *l < T::ZERO) {
+            if self.has_pulling() {
                 return Ok(Status::Limit);
             }
             let pass = match core::mem::take(&mut seeds) {

@@ -15,10 +15,9 @@ pub(super) enum Pass {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// [`Search::search`] from the point without active rows, with what the last solve left, its `seeds` active rows and the row that was
-    /// most violated at its first point. Where that row is the same, the old active set enters at once; where it is only an active
-    /// one, or proximal steps have yet to bring rows into reach, rows of the set are tried first. Otherwise rows have moved, as in a receding horizon, and those of old would only have to
-    /// leave again.
+    /// [`Search::search`] from the point without active rows, with what the last solve left: its `seeds` active rows, and the row that was
+    /// most violated at its first point. Where neither it nor one of them is so now, rows have moved, as in a receding horizon, and
+    /// those of old would only have to leave again.
     pub(super) fn start(&mut self, seeds: usize) -> Pass {
         match self.look() {
             Look::Unsound => return Pass::Stop(Status::Numerical),
@@ -27,18 +26,13 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
         let worst = at(&self.w.pool, 0);
         let mut known = self.w.id.iter().zip(&self.w.side).take(seeds);
-        if seeds > 0 && worst == self.w.first && !self.w.factor.proximal {
-            self.seed(seeds);
-            self.evaluate_gradient();
-            let known = self.drop_unfit();
-            self.iterations += 1;
-            self.steps += 1;
-            self.correct(known);
-            self.w.pool_len = 0;
-        } else if (worst == self.w.first || known.any(|(id, side)| (*id, *side) == worst))
-            && let Some(status) = self.recall(seeds)
-        {
-            return Pass::Stop(status);
+        let is_same = seeds > 0 && worst == self.w.first;
+        if is_same || known.any(|(id, side)| (*id, *side) == worst) {
+            self.recall(seeds);
+            self.drop_negative();
+            if self.has_pulling() {
+                return Pass::Stop(Status::Limit);
+            }
         }
         self.w.first = worst;
         self.search()
@@ -59,29 +53,10 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
     }
 
-    /// Enters the remembered active set, without multipliers yet.
-    fn seed(&mut self, seeds: usize) {
-        for k in 0..seeds {
-            if self.steps >= self.most {
-                return;
-            }
-            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-            if !self.is_seed(id, side) {
-                continue;
-            }
-            self.steps += 1;
-            self.prepare(id, side);
-            if self.w.candidate.free > T::ZERO {
-                self.turn();
-                self.enter(id, side, T::ZERO);
-            }
-        }
-    }
-
-    /// Enters rows of the last active set, `seeds` of them, before any other: always the most violated one, and none that is not, so
-    /// that a wrong guess costs a look at its row. Those not yet read stand behind the place of the next active row, since at most
-    /// one enters per row read.
-    fn recall(&mut self, seeds: usize) -> Option<Status> {
+    /// Enters rows of the last active set, `seeds` of them: always the most violated one, and none that is not, so that a wrong guess costs
+    /// a look at its row. Multipliers may fall below zero on the way: most rise again with the rows that follow. Those not yet read
+    /// stand behind the place of the next active row, since at most one enters per row read.
+    fn recall(&mut self, seeds: usize) {
         for first in 0..seeds {
             let (mut worst, mut found) = (self.s.feasibility, None);
             for k in first..seeds {
@@ -92,15 +67,23 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                     (worst, found) = (scaled, Some(k));
                 }
             }
-            let k = found?;
+            let Some(k) = found else { return };
+            if self.is_at_cap() {
+                return;
+            }
             self.w.id.swap(first, k);
             self.w.side.swap(first, k);
             let (id, side) = (at(&self.w.id, first), at(&self.w.side, first));
-            if let Some(status) = self.admit(id, side) {
-                return Some(status);
+            self.steps += 1;
+            self.prepare(id, side);
+            let t = self.excess(id, side) / self.w.candidate.free;
+            if self.w.candidate.free > T::ZERO && t.is_finite_number() {
+                self.answer();
+                self.turn();
+                self.advance(t);
+                self.enter(id, side, t);
             }
         }
-        None
     }
 
     /// Whether a remembered row is not active yet and still has its limit.

@@ -91,7 +91,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         crate::kernels::sub_scaled(&mut w.x, T::ONE, &w.step);
     }
 
-    fn drop_negative(&mut self) {
+    /// Whether a row pulls that there was no time to let go.
+    pub(super) fn has_pulling(&self) -> bool {
+        let mut multipliers = self.w.lambda.iter().take(self.w.basis.len);
+        self.steps >= self.most && multipliers.any(|l| *l < T::ZERO)
+    }
+
+    /// Lets rows go until none pulls.
+    pub(super) fn drop_negative(&mut self) {
         for _ in 0..N {
             if self.steps >= self.most {
                 return;
