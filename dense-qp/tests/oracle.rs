@@ -8,7 +8,8 @@
 
 mod common;
 use clarabel::solver::SolverStatus;
-use common::{Qp, Rng, clarabel};
+use common::oracle::clarabel;
+use common::{Draw, Qp, each};
 use dense_qp::{Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +22,8 @@ enum Kind {
     Infeasible,
 }
 
-fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Rng) -> Box<Qp<N, M>> {
-    let mut q = Qp::<N, M>::zero();
+fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Draw) -> Box<Qp<f64, N, M>> {
+    let mut q = Qp::<f64, N, M>::zero();
     let few = r.below(N.min(M) / 2 + 1);
     match kind {
         Kind::Regular => {
@@ -67,15 +68,14 @@ fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Rng) -> Box<Qp<N
 }
 
 fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
-    let mut w = Box::new(Workspace::<f64, N, M>::new());
-    let settings = Settings::default();
-    for k in 0..count {
-        let mut r = Rng(seed.wrapping_mul(1_000_003).wrapping_add(k));
+    each::<N, M>(count as u32, seed, |mut r| {
+        let mut w = Box::new(Workspace::<f64, N, M>::new());
+        let settings = Settings::default();
         let q = generate::<N, M>(kind, &mut r);
         let p = q.problem();
         let s = solve(&p, &settings, &mut w).unwrap();
         let truth = clarabel(&p);
-        let label = format!("{kind:?} N={N} M={M} seed={seed} k={k}: {:?}", s.status);
+        let label = format!("{kind:?} N={N} M={M} : {:?}", s.status);
         match truth.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {
                 assert_eq!(
@@ -152,12 +152,12 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
                 _ => panic!("{label}: the oracle says {other:?}"),
             },
         }
-    }
+    });
 }
 
 /// x is feasible, and the ray is a direction of recession without curvature that lowers the cost.
 fn assert_unbounded<const N: usize, const M: usize>(
-    q: &Qp<N, M>,
+    q: &Qp<f64, N, M>,
     s: &Solution<'_, f64, N, M>,
     label: &str,
 ) {

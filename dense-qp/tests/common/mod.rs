@@ -1,88 +1,159 @@
-//! Random problems and the Clarabel oracle.
+//! Random programs from proptest's numbers, and the Clarabel oracle.
 #![allow(dead_code, unreachable_pub, reason = "each test file uses a part")]
-#![allow(clippy::expect_used, clippy::needless_range_loop, reason = "tests")]
+#![allow(
+    clippy::expect_used,
+    clippy::needless_range_loop,
+    clippy::panic,
+    reason = "tests"
+)]
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
-};
+pub mod oracle;
+
+use core::cell::RefCell;
 use dense_qp::Problem;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed, TestRunner};
+use so3::Scalar;
 
-/// SplitMix64: the same problems on every machine.
-pub struct Rng(pub u64);
+pub const INF: f64 = f64::INFINITY;
 
-impl Rng {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
+/// Numbers in [0, 1) that proptest drew, used one after the other and then again.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    numbers: Vec<f64>,
+    at: usize,
+}
+
+impl Draw {
     /// In [0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        let x = self.numbers[self.at % self.numbers.len()];
+        self.at += 1;
+        x
     }
     /// In [−1, 1).
     pub fn sym(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
     pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
+        ((self.unit() * n as f64) as usize).min(n.saturating_sub(1))
     }
     pub fn chance(&mut self, p: f64) -> bool {
         self.unit() < p
     }
 }
 
-#[derive(Clone)]
-pub struct Qp<const N: usize, const M: usize> {
-    pub h: [[f64; N]; N],
-    pub g: [f64; N],
-    pub a: [[f64; N]; M],
-    pub l: [f64; M],
-    pub u: [f64; M],
-    pub lb: [f64; N],
-    pub ub: [f64; N],
+/// As many numbers as a program of this size takes, at most.
+pub fn draw<const N: usize, const M: usize>() -> impl Strategy<Value = Draw> {
+    let len = N * N + M * (2 * N + 12) + 8 * N + 16;
+    prop::collection::vec(0.0..1.0_f64, len).prop_map(|numbers| Draw { numbers, at: 0 })
 }
 
-const INF: f64 = f64::INFINITY;
+/// Runs a property on `cases` draws: the same ones on every machine unless `PROPTEST_RNG_SEED` says otherwise.
+pub fn each<const N: usize, const M: usize>(cases: u32, seed: u64, body: impl Fn(Draw)) {
+    let mut config = Config::with_cases(cases);
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(seed);
+    }
+    config.failure_persistence = None;
+    let outcome = TestRunner::new(config).run(&draw::<N, M>(), |draw| {
+        body(draw);
+        Ok(())
+    });
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+}
 
-impl<const N: usize, const M: usize> Qp<N, M> {
+/// Counts of outcomes over the cases of [`each`].
+#[derive(Default)]
+pub struct Tally(RefCell<std::collections::BTreeMap<&'static str, u32>>);
+
+impl Tally {
+    pub fn add(&self, what: &'static str) {
+        *self.0.borrow_mut().entry(what).or_default() += 1;
+    }
+    pub fn of(&self, what: &str) -> u32 {
+        self.0.borrow().get(what).copied().unwrap_or_default()
+    }
+}
+
+/// A program that owns its numbers.
+#[derive(Clone, Debug)]
+pub struct Qp<T, const N: usize, const M: usize> {
+    pub h: [[T; N]; N],
+    pub g: [T; N],
+    pub a: [[T; N]; M],
+    pub l: [T; M],
+    pub u: [T; M],
+    pub lb: [T; N],
+    pub ub: [T; N],
+}
+
+impl<T: Scalar, const N: usize, const M: usize> Qp<T, N, M> {
+    /// No cost, rows of zeros and no limits.
     pub fn zero() -> Box<Self> {
         Box::new(Self {
-            h: [[0.0; N]; N],
-            g: [0.0; N],
-            a: [[0.0; N]; M],
-            l: [-INF; M],
-            u: [INF; M],
-            lb: [-INF; N],
-            ub: [INF; N],
+            h: [[T::ZERO; N]; N],
+            g: [T::ZERO; N],
+            a: [[T::ZERO; N]; M],
+            l: [-T::INFINITY; M],
+            u: [T::INFINITY; M],
+            lb: [-T::INFINITY; N],
+            ub: [T::INFINITY; N],
         })
     }
 
-    pub fn problem(&self) -> Problem<'_, f64, N, M> {
+    pub fn problem(&self) -> Problem<'_, T, N, M> {
         Problem::new(&self.h, &self.g, &self.a, &self.l, &self.u).with_bounds(&self.lb, &self.ub)
+    }
+}
+
+impl<const N: usize, const M: usize> Qp<f64, N, M> {
+    /// The same numbers in single precision.
+    pub fn single(&self) -> Box<Qp<f32, N, M>> {
+        let f = |x: f64| x as f32;
+        Box::new(Qp {
+            h: self.h.map(|h| h.map(f)),
+            g: self.g.map(f),
+            a: self.a.map(|a| a.map(f)),
+            l: self.l.map(f),
+            u: self.u.map(f),
+            lb: self.lb.map(f),
+            ub: self.ub.map(f),
+        })
     }
 
     /// H = Σ of `rank` outer products + `shift`·I.
-    pub fn set_hessian(&mut self, r: &mut Rng, rank: usize, shift: f64) {
+    pub fn set_hessian(&mut self, r: &mut Draw, rank: usize, shift: f64) {
         self.h = [[0.0; N]; N];
         for _ in 0..rank {
             let v: [f64; N] = core::array::from_fn(|_| r.sym());
-            for i in 0..N {
-                for j in 0..N {
-                    self.h[i][j] += v[i] * v[j];
-                }
-            }
+            self.add_outer(&v, 1.0);
         }
         for i in 0..N {
             self.h[i][i] += shift;
         }
     }
 
+    /// H ← H + w v vᵀ.
+    pub fn add_outer(&mut self, v: &[f64; N], w: f64) {
+        for i in 0..N {
+            for j in 0..N {
+                self.h[i][j] += w * (v[i] * v[j]);
+            }
+        }
+    }
+
+    /// g ← −H x, so that x is a minimum where nothing limits it.
+    pub fn aim(&mut self, x: &[f64; N]) {
+        for (g, h) in self.g.iter_mut().zip(&self.h) {
+            *g = -dot(h, x);
+        }
+    }
+
     /// Rows around a feasible point, a share of them equalities, duplicated or tight at the point.
-    pub fn set_rows(&mut self, r: &mut Rng, equalities: usize, degenerate: bool) {
+    pub fn set_rows(&mut self, r: &mut Draw, equalities: usize, degenerate: bool) {
         let x0: [f64; N] = core::array::from_fn(|_| 2.0 * r.sym());
         for i in 0..M {
             let sparse = r.chance(0.3);
@@ -105,8 +176,8 @@ impl<const N: usize, const M: usize> Qp<N, M> {
                     self.a[i][j] = f * self.a[p][j] + g * self.a[q][j];
                 }
             }
-            let v: f64 = (0..N).map(|j| self.a[i][j] * x0[j]).sum();
-            let gap = |r: &mut Rng| {
+            let v = dot(&self.a[i], &x0);
+            let gap = |r: &mut Draw| {
                 if degenerate && r.chance(0.5) {
                     0.0
                 } else {
@@ -137,77 +208,18 @@ impl<const N: usize, const M: usize> Qp<N, M> {
     }
 }
 
-pub struct Oracle {
-    pub status: SolverStatus,
-    pub x: Vec<f64>,
-    pub cost: f64,
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Clarabel's answer at tight tolerances.
-pub fn clarabel<const N: usize, const M: usize>(p: &Problem<'_, f64, N, M>) -> Oracle {
-    let (mut eq, mut ineq) = (Vec::new(), Vec::new());
-    let inf = [INF; N];
-    let ninf = [-INF; N];
-    let (lb, ub) = (p.lower.unwrap_or(&ninf), p.upper.unwrap_or(&inf));
-    let unit = |j: usize| core::array::from_fn(|k| if k == j { 1.0 } else { 0.0 });
-    let rows = (0..M).map(|i| (p.rows[i], p.row_lower[i], p.row_upper[i]));
-    let bounds = (0..N).map(|j| (unit(j), lb[j], ub[j]));
-    for (a, l, u) in rows.chain(bounds) {
-        if l == u {
-            eq.push((a, u));
-        } else {
-            if u < INF {
-                ineq.push((a, u));
-            }
-            if l > -INF {
-                ineq.push((a.map(|v| -v), -l));
-            }
-        }
-    }
-    let (ne, ni) = (eq.len(), ineq.len());
-    let all: Vec<([f64; N], f64)> = eq.into_iter().chain(ineq).collect();
-    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
-    for j in 0..N {
-        for (i, (a, _)) in all.iter().enumerate() {
-            if a[j] != 0.0 {
-                rowval.push(i);
-                nzval.push(a[j]);
-            }
-        }
-        colptr.push(rowval.len());
-    }
-    let a = CscMatrix::new(all.len(), N, colptr, rowval, nzval);
-    let (mut colptr, mut rowval, mut nzval) = (vec![0], vec![], vec![]);
-    for j in 0..N {
-        for i in 0..=j {
-            rowval.push(i);
-            nzval.push(p.hessian[i][j]);
-        }
-        colptr.push(rowval.len());
-    }
-    let h = CscMatrix::new(N, N, colptr, rowval, nzval);
-    let b: Vec<f64> = all.iter().map(|(_, b)| *b).collect();
-    let mut cones = Vec::new();
-    if ne > 0 {
-        cones.push(SupportedConeT::ZeroConeT(ne));
-    }
-    if ni > 0 {
-        cones.push(SupportedConeT::NonnegativeConeT(ni));
-    }
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .tol_gap_abs(1e-9)
-        .tol_gap_rel(1e-9)
-        .tol_feas(1e-9)
-        .presolve_enable(false)
-        .build()
-        .expect("settings");
-    let mut solver =
-        DefaultSolver::new(&h, p.gradient.as_slice(), &a, &b, &cones, settings).expect("setup");
-    solver.solve();
-    Oracle {
-        status: solver.solution.status,
-        x: solver.solution.x.clone(),
-        cost: solver.solution.obj_val,
-    }
+/// A definite program: H of full rank, `equalities` rows met by a common point.
+pub fn definite<const N: usize, const M: usize>(
+    equalities: usize,
+) -> impl Strategy<Value = Box<Qp<f64, N, M>>> {
+    draw::<N, M>().prop_map(move |mut r| {
+        let mut q = Qp::zero();
+        q.set_hessian(&mut r, N, 0.1);
+        q.set_rows(&mut r, equalities, false);
+        q
+    })
 }
