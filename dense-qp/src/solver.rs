@@ -19,6 +19,7 @@ use so3::{Scalar, math};
 use crate::kernels::{at, max_abs};
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use exchange::Pass;
+use gauge::{NOISE, SETTLED};
 use proof::Ray;
 
 /// Solves from scratch.
@@ -264,7 +265,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 (mark, stalls) = (merit, 0);
             } else {
                 stalls += 1;
-                if self.is_within(&rest) {
+                if self.is_within(&rest, NOISE) {
                     return Ok(Status::Solved);
                 }
             }
@@ -275,7 +276,14 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 }
             }
             if stalls > patience {
-                return Ok(Status::Numerical);
+                // The last look at the reduced gradient has overwritten it.
+                self.reduce_gradient();
+                let is_settled = self.is_within(&rest, SETTLED);
+                return Ok(if is_settled {
+                    Status::Solved
+                } else {
+                    Status::Numerical
+                });
             }
             self.w.previous = self.w.x;
         }

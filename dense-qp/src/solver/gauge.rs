@@ -6,6 +6,12 @@ use super::{EQUALITY, Search, scale_inverse, signed};
 use crate::kernels::{at, dot, dot_sizes, head, max_abs};
 use crate::residual::{norm, worse};
 
+/// Round-off of evaluating a gradient, in ε of its terms.
+pub(super) const NOISE: f64 = 32.0;
+/// What corrections that no longer help may leave of a gradient, in ε of its terms: with no gradient at the optimum there is nothing else
+/// to measure it by. Below the default tolerances.
+pub(super) const SETTLED: f64 = 1024.0;
+
 /// What is left at a point that meets all rows.
 pub(super) struct Rest<T> {
     /// Largest reduced entry of Hx + g + Aᵀλ, and of its terms.
@@ -79,8 +85,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         gain + self.toll <= least * self.worth
     }
 
-    /// Inside the tolerances, or as near as round-off lets a point come. `vec_a` as [`Search::measure`] left it.
-    pub(super) fn is_within(&mut self, rest: &Rest<T>) -> bool {
+    /// Inside the tolerances, or as near as round-off lets a point come, up to `noise`·ε of its terms. `vec_a` as [`Search::measure`]
+    /// left it.
+    pub(super) fn is_within(&mut self, rest: &Rest<T>, noise: f64) -> bool {
         if rest.drift > self.s.feasibility && !self.is_drift_round_off() {
             return false;
         }
@@ -96,7 +103,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 return true;
             }
         }
-        self.is_gradient_round_off(&reduced)
+        self.is_gradient_round_off(&reduced, T::of(noise) * T::EPSILON)
     }
 
     /// Round-off of evaluating row `i` at the present x, as a distance; `inverse` is the row's scale, `limit` its limit. What it hides
@@ -129,8 +136,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         true
     }
 
-    /// Whether every entry of the reduced gradient is round-off of its own terms. Leaves these in `step` and `vec_a`.
-    fn is_gradient_round_off(&mut self, reduced: &[T; N]) -> bool {
+    /// Whether every entry of the reduced gradient is at most a share `noise` of its own terms. Leaves these in `step` and `vec_a`.
+    fn is_gradient_round_off(&mut self, reduced: &[T; N], noise: T) -> bool {
         let w = &mut *self.w;
         let rows = self.p.hessian.iter().zip(self.p.gradient);
         for (out, (h, g)) in w.step.iter_mut().zip(rows) {
@@ -147,7 +154,6 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
         }
         w.elimination.reduce_sizes(&w.step, &mut w.vec_a);
-        let noise = T::of(32.0) * T::EPSILON;
         let mut entries = reduced.iter().zip(&w.vec_a).take(w.factor.dim);
         if !entries.all(|(r, terms)| math::abs(*r) <= noise * *terms) {
             return false;
