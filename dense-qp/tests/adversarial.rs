@@ -7,7 +7,7 @@
 )]
 
 mod common;
-use common::{Qp, Rng};
+use common::{Draw, Qp, Tally, each};
 use dense_qp::{
     Constraint, Error, Problem, Settings, Side, Status, Workspace, infeasibility, kkt_residual,
     resume, solve, solve_warm,
@@ -19,10 +19,13 @@ const INF: f64 = f64::INFINITY;
 /// honest status, never a hang, and the workspace works afterwards.
 #[test]
 fn bad_numbers_are_named() {
+    each::<6, 7>(1, 5, name_bad_numbers);
+}
+
+fn name_bad_numbers(mut r: Draw) {
     const N: usize = 6;
     const M: usize = 7;
-    let mut r = Rng(5);
-    let mut q = Qp::<N, M>::zero();
+    let mut q = Qp::<f64, N, M>::zero();
     q.set_hessian(&mut r, N, 0.5);
     q.set_rows(&mut r, 2, false);
     for i in 0..N {
@@ -116,12 +119,12 @@ fn inverted_limits_and_concave_costs_are_errors() {
 fn scaling() {
     const N: usize = 10;
     const M: usize = 16;
-    let mut w = Box::new(Workspace::<f64, N, M>::new());
-    for seed in 0..60 {
-        let mut r = Rng(seed);
-        let mut q = Qp::<N, M>::zero();
+    each::<N, M>(60, 6, |mut r| {
+        let mut w = Box::new(Workspace::<f64, N, M>::new());
+        let mut q = Qp::<f64, N, M>::zero();
         q.set_hessian(&mut r, N, 0.2);
-        q.set_rows(&mut r, 3, seed % 2 == 0);
+        let degenerate = r.chance(0.5);
+        q.set_rows(&mut r, 3, degenerate);
         let s = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
         assert_eq!(s.status, Status::Solved);
         let x = *s.x;
@@ -142,16 +145,11 @@ fn scaling() {
             q.u[i] = if equal { q.l[i] } else { q.u[i] * f };
         }
         let s = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
-        assert_eq!(s.status, Status::Solved, "seed {seed}");
+        assert_eq!(s.status, Status::Solved);
         for i in 0..N {
-            assert!(
-                (s.x[i] - x[i]).abs() < 1e-7,
-                "seed {seed}: {} {}",
-                s.x[i],
-                x[i]
-            );
+            assert!((s.x[i] - x[i]).abs() < 1e-7, "{} {}", s.x[i], x[i]);
         }
-    }
+    });
 }
 
 /// Two rows that miss each other by a margin: infeasible above the tolerance, solved below it.
@@ -188,13 +186,13 @@ fn margins() {
 /// Nearly parallel rows meet far away; whatever the status, it is true.
 #[test]
 fn nearly_dependent_rows() {
-    let mut w = Workspace::<f64, 4, 6>::new();
-    let (mut solved, mut proved, mut gave_up) = (0, 0, 0);
-    for seed in 0..400 {
-        let mut r = Rng(seed);
-        let mut q = Qp::<4, 6>::zero();
+    let tally = Tally::default();
+    each::<4, 6>(400, 7, |mut r| {
+        let mut w = Workspace::<f64, 4, 6>::new();
+        let mut q = Qp::<f64, 4, 6>::zero();
         q.set_hessian(&mut r, 4, 0.1);
-        q.set_rows(&mut r, (seed % 3) as usize, false);
+        let equalities = r.below(3);
+        q.set_rows(&mut r, equalities, false);
         for i in 1..6 {
             if r.chance(0.6) {
                 let angle = 10f64.powf(-4.0 - 10.0 * r.unit());
@@ -212,34 +210,26 @@ fn nearly_dependent_rows() {
         let again = kkt_residual(&p, s.x, s.row_multipliers, s.bound_multipliers);
         match s.status {
             Status::Solved => {
-                solved += 1;
+                tally.add("solved");
                 let length: f64 = s.x.iter().map(|v| v.abs()).sum();
                 let largest = s
                     .row_multipliers
                     .iter()
                     .fold(1.0, |m: f64, v| m.max(v.abs()));
-                assert!(
-                    again.primal <= 1e-9 + 1e-14 * length,
-                    "seed {seed}: {again:?}"
-                );
-                assert!(
-                    again.stationarity <= 1e-8 * largest,
-                    "seed {seed}: {again:?}"
-                );
+                assert!(again.primal <= 1e-9 + 1e-14 * length, "{again:?}");
+                assert!(again.stationarity <= 1e-8 * largest, "{again:?}");
             }
             Status::Infeasible => {
-                proved += 1;
+                tally.add("proved");
                 let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
-                assert!(proof.support < 0.0, "seed {seed}: {proof:?}");
-                assert!(
-                    proof.combination * 10.0 <= -proof.support,
-                    "seed {seed}: {proof:?}"
-                );
+                assert!(proof.support < 0.0, "{proof:?}");
+                assert!(proof.combination * 10.0 <= -proof.support, "{proof:?}");
             }
-            Status::Numerical | Status::Limit => gave_up += 1,
-            Status::Unbounded => unreachable!("seed {seed}: H is definite"),
+            Status::Numerical | Status::Limit => tally.add("gave up"),
+            Status::Unbounded => unreachable!("H is definite"),
         }
-    }
+    });
+    let [solved, proved, gave_up] = ["solved", "proved", "gave up"].map(|what| tally.of(what));
     assert!(
         solved > 100 && proved > 100 && gave_up < 20,
         "solved {solved}, proved {proved}, gave up {gave_up}"
@@ -300,35 +290,35 @@ fn overdetermined() {
 /// The cap is kept, and the status says so.
 #[test]
 fn cap() {
-    let mut r = Rng(9);
-    let mut q = Qp::<20, 40>::zero();
-    q.set_hessian(&mut r, 20, 0.1);
-    q.set_rows(&mut r, 4, false);
-    let mut w = Box::new(Workspace::<f64, 20, 40>::new());
-    let free = solve(&q.problem(), &Settings::default(), &mut w)
-        .unwrap()
-        .iterations;
-    assert!(free > 6);
-    for max_iterations in 0..free {
-        let settings = Settings {
-            max_iterations,
-            ..Settings::default()
-        };
-        let s = solve(&q.problem(), &settings, &mut w).unwrap();
-        assert!(s.iterations <= max_iterations);
-        assert!(s.status == Status::Limit || s.residual.max() < 1e-8);
-        assert!(s.x.iter().all(|v| v.is_finite()));
-    }
+    each::<20, 40>(1, 9, |mut r| {
+        let mut q = Qp::<f64, 20, 40>::zero();
+        q.set_hessian(&mut r, 20, 0.1);
+        q.set_rows(&mut r, 4, false);
+        let mut w = Box::new(Workspace::<f64, 20, 40>::new());
+        let free = solve(&q.problem(), &Settings::default(), &mut w)
+            .unwrap()
+            .iterations;
+        assert!(free > 6);
+        for max_iterations in 0..free {
+            let settings = Settings {
+                max_iterations,
+                ..Settings::default()
+            };
+            let s = solve(&q.problem(), &settings, &mut w).unwrap();
+            assert!(s.iterations <= max_iterations);
+            assert!(s.status == Status::Limit || s.residual.max() < 1e-8);
+            assert!(s.x.iter().all(|v| v.is_finite()));
+        }
+    });
 }
 
 /// The cap on steps holds for remembered rows as well, cold, warm and resumed, and what it ends is never called solved.
 #[test]
 fn cap_on_steps() {
-    let mut r = Rng(10);
-    let mut w = Box::new(Workspace::<f64, 20, 40>::new());
-    let (mut limits, mut others) = (0, 0);
-    for _ in 0..40 {
-        let mut q = Qp::<20, 40>::zero();
+    let tally = Tally::default();
+    each::<20, 40>(40, 10, |mut r| {
+        let mut w = Box::new(Workspace::<f64, 20, 40>::new());
+        let mut q = Qp::<f64, 20, 40>::zero();
         q.set_hessian(&mut r, 20, 0.1);
         q.set_rows(&mut r, 4, false);
         for max_steps in [0, 1, 3, 6, 10, 15, 25, 40] {
@@ -342,41 +332,43 @@ fn cap_on_steps() {
                 assert!(s.steps <= max_steps + 20 && s.iterations <= s.steps);
                 assert!(s.x.iter().all(|v| v.is_finite()));
                 match s.status {
-                    Status::Limit => limits += 1,
+                    Status::Limit => tally.add("limits"),
                     status => {
                         assert_eq!(status, Status::Solved);
                         assert!(s.residual.max() < 1e-7, "{:?}", s.residual);
-                        others += 1;
+                        tally.add("others");
                     }
                 }
             }
         }
-    }
+    });
+    let (limits, others) = (tally.of("limits"), tally.of("others"));
     assert!(limits > 300 && others > 100, "{limits} {others}");
 }
 
 /// Limits that go, or move, after a search, infeasible or not: [`resume`] finds what a fresh solve finds, in fewer steps.
 #[test]
 fn resumed_is_solved() {
-    let mut r = Rng(11);
-    let (mut w, mut fresh) = (
-        Box::new(Workspace::<f64, 20, 40>::new()),
-        Box::new(Workspace::<f64, 20, 40>::new()),
-    );
+    let tally = Tally::default();
+    let last = core::cell::RefCell::new(Box::new(Workspace::<f64, 20, 40>::new()));
     let settings = Settings::default();
-    let (mut infeasible, mut saved) = (0, 0);
-    for k in 0..200 {
-        let mut q = Qp::<20, 40>::zero();
+    each::<20, 40>(200, 11, |mut r| {
+        let mut w = last.borrow_mut();
+        let mut fresh = Box::new(Workspace::<f64, 20, 40>::new());
+        let mut q = Qp::<f64, 20, 40>::zero();
         q.set_hessian(&mut r, 20, 0.1);
         q.set_rows(&mut r, 4, false);
         // Sums that bounds do not allow.
+        let narrow = r.chance(0.5);
         let mut tight = q.clone();
         for i in 0..20 {
-            let x = if k % 2 == 0 { 0.01 } else { 20.0 };
+            let x = if narrow { 0.01 } else { 20.0 };
             (tight.lb[i], tight.ub[i]) = (-x, x);
         }
         let before = solve(&tight.problem(), &settings, &mut w).unwrap();
-        infeasible += u32::from(before.status == Status::Infeasible);
+        if before.status == Status::Infeasible {
+            tally.add("infeasible");
+        }
         let resumed = resume(&q.problem(), &settings, &mut w).unwrap();
         let truth = solve(&q.problem(), &settings, &mut fresh).unwrap();
         assert_eq!(
@@ -386,50 +378,43 @@ fn resumed_is_solved() {
         for (a, b) in resumed.x.iter().zip(truth.x) {
             assert!((a - b).abs() < 1e-7, "{a} {b}");
         }
-        saved += i64::from(truth.steps) - i64::from(resumed.steps);
-    }
+        tally.count("fresh", truth.steps);
+        tally.count("resumed", resumed.steps);
+    });
+    let infeasible = tally.of("infeasible");
     assert!(infeasible > 20 && infeasible < 200, "{infeasible}");
-    assert!(saved > 0, "{saved}");
+    assert!(tally.of("resumed") < tally.of("fresh"));
     // Without a last solve it is a solve; after another program it is none that lies.
-    let mut q = Qp::<20, 40>::zero();
-    q.set_hessian(&mut r, 20, 0.1);
-    q.set_rows(&mut r, 4, false);
-    let mut new = Box::new(Workspace::<f64, 20, 40>::new());
-    let s = resume(&q.problem(), &settings, &mut new).unwrap();
-    assert_eq!(s.status, Status::Solved);
-    let s = resume(&q.problem(), &settings, &mut w).unwrap();
-    assert!(s.status != Status::Solved || s.residual.max() < 1e-7);
+    each::<20, 40>(1, 12, |mut r| {
+        let mut q = Qp::<f64, 20, 40>::zero();
+        q.set_hessian(&mut r, 20, 0.1);
+        q.set_rows(&mut r, 4, false);
+        let mut new = Box::new(Workspace::<f64, 20, 40>::new());
+        let s = resume(&q.problem(), &settings, &mut new).unwrap();
+        assert_eq!(s.status, Status::Solved);
+        let mut old = last.borrow_mut();
+        let s = resume(&q.problem(), &settings, &mut old).unwrap();
+        assert!(s.status != Status::Solved || s.residual.max() < 1e-7);
+    });
 }
 
 /// f32 against f64 on the same problems, scaled residual.
 #[test]
 fn single_precision() {
-    fn check<const N: usize, const M: usize>(seeds: u64) {
-        let mut w = Box::new(Workspace::<f64, N, M>::new());
-        let mut v = Box::new(Workspace::<f32, N, M>::new());
-        for seed in 0..seeds {
-            let mut r = Rng(seed);
-            let mut q = Qp::<N, M>::zero();
+    fn check<const N: usize, const M: usize>(cases: u32) {
+        each::<N, M>(cases, 13, |mut r| {
+            let mut w = Box::new(Workspace::<f64, N, M>::new());
+            let mut v = Box::new(Workspace::<f32, N, M>::new());
+            let mut q = Qp::<f64, N, M>::zero();
             q.set_hessian(&mut r, N, 0.1);
-            q.set_rows(&mut r, N / 4, seed % 2 == 0);
-            let h = q.h.map(|h| h.map(|x| x as f32));
-            let a = q.a.map(|a| a.map(|x| x as f32));
-            let (g, l, u) = (
-                q.g.map(|x| x as f32),
-                q.l.map(|x| x as f32),
-                q.u.map(|x| x as f32),
-            );
-            let (lb, ub) = (q.lb.map(|x| x as f32), q.ub.map(|x| x as f32));
-            let p = Problem::new(&h, &g, &a, &l, &u).with_bounds(&lb, &ub);
+            let degenerate = r.chance(0.5);
+            q.set_rows(&mut r, N / 4, degenerate);
+            let f = q.single();
+            let p = f.problem();
             let s = solve(&p, &Settings::default(), &mut v).unwrap();
             let truth = solve(&q.problem(), &Settings::default(), &mut w).unwrap();
             assert_eq!(truth.status, Status::Solved);
-            assert_eq!(
-                s.status,
-                Status::Solved,
-                "N {N} seed {seed}: {:?}",
-                s.residual
-            );
+            assert_eq!(s.status, Status::Solved, "N {N}: {:?}", s.residual);
             let scale = truth
                 .row_multipliers
                 .iter()
@@ -439,9 +424,9 @@ fn single_precision() {
             let residual = kkt_residual(&p, s.x, s.row_multipliers, s.bound_multipliers);
             assert!(
                 f64::from(residual.max()) <= 1e-3 * scale,
-                "N {N} seed {seed}: {residual:?}"
+                "N {N}: {residual:?}"
             );
-        }
+        });
     }
     check::<5, 4>(300);
     check::<12, 20>(300);

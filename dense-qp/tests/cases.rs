@@ -3,9 +3,7 @@
 
 mod common;
 use common::{Draw, Qp, Tally, dot, each};
-use dense_qp::{
-    Problem, Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm,
-};
+use dense_qp::{Problem, Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 use so3::Scalar;
 
 /// Solves cold with a new workspace and hands the outcome on.
@@ -106,7 +104,10 @@ fn assert_proof<T: Scalar, const N: usize, const M: usize>(
     assert_eq!(s.status, Status::Infeasible, "cost {}", p.cost(s.x));
     let proof = infeasibility(p, s.row_multipliers, s.bound_multipliers);
     let (combination, support) = (proof.combination.to_f64(), proof.support.to_f64());
-    assert!(support < 0.0 && combination * reach <= -support, "{proof:?}");
+    assert!(
+        support < 0.0 && combination * reach <= -support,
+        "{proof:?}"
+    );
     assert!(s.conflict().count() > 0);
     assert!(s.x.iter().all(|x| x.is_finite_number()));
 }
@@ -274,7 +275,11 @@ fn walks_are_never_dearer_warm() {
             });
             let s = solve_warm(&q.problem(), &Settings::default(), &mut warm).unwrap();
             assert_eq!(s.status, Status::Solved);
-            assert!(s.steps <= steps + most, "{period}, {k}: {} {steps}", s.steps);
+            assert!(
+                s.steps <= steps + most,
+                "{period}, {k}: {} {steps}",
+                s.steps
+            );
             total = [total[0] + steps, total[1] + s.steps];
             let (d, jerk) = (period, s.x[0]);
             x = [

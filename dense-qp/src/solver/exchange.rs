@@ -130,22 +130,33 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
     }
 
-    /// How far the entering multiplier may grow until the first of the others reaches zero, and which; from r in `vec_b`.
-    fn first_zero(&self) -> (T, Option<usize>) {
-        let w = &*self.w;
-        let largest = max_abs(head(&w.vec_b, w.basis.len));
+    /// How far the entering multiplier may grow until the first of the others reaches zero, and which; from r in `vec_b`. Changes are told
+    /// from round-off as forces, |rₖ| max|aₖ|: rows in other units have other multipliers.
+    fn first_zero(&mut self) -> (T, Option<usize>) {
+        let len = self.w.basis.len;
+        let mut largest = T::ZERO;
+        for k in 0..len {
+            largest = math::max(largest, math::abs(self.force(k)));
+        }
         let noise = T::of(8.0) * T::EPSILON * largest;
         let mut blocking = None;
         let mut t = T::INFINITY;
-        for (k, (l, r)) in w.lambda.iter().zip(&w.vec_b).take(w.basis.len).enumerate() {
-            if *r > noise {
-                let ratio = math::max(*l, T::ZERO) / *r;
+        for k in 0..len {
+            let (l, r) = (at(&self.w.lambda, k), at(&self.w.vec_b, k));
+            if r > T::ZERO && self.force(k) > noise {
+                let ratio = math::max(l, T::ZERO) / r;
                 if ratio < t {
                     (t, blocking) = (ratio, Some(k));
                 }
             }
         }
         (t, blocking)
+    }
+
+    /// rₖ max|aₖ| of active row k.
+    fn force(&mut self, k: usize) -> T {
+        let id = at(&self.w.id, k);
+        at(&self.w.vec_b, k) / scale_inverse::<T, N, M>(self.p, self.w, id)
     }
 
     /// Coordinates of a row in the basis.

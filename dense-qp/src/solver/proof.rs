@@ -51,21 +51,38 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (id, mu) = (at(&w.elimination.id, k), at(&w.vec_a, k));
             set_multiplier(w, id, mu);
         }
+        // What is round-off is told by forces, |y| max|a|: rows in other units have other multipliers.
+        let mut strongest = T::ZERO;
+        for i in 0..M + N {
+            strongest = math::max(strongest, self.force_of(i));
+        }
+        let noise = T::of(4.0) * T::EPSILON * strongest;
+        for i in 0..M + N {
+            if self.force_of(i) <= noise {
+                set_multiplier(self.w, i, T::ZERO);
+            }
+        }
+        let w = &mut *self.w;
         let largest = math::max(max_abs(&w.row_multipliers), max_abs(&w.bound_multipliers));
-        let noise = T::of(4.0) * T::EPSILON * largest;
         let inverse = T::ONE / largest;
         for y in w.row_multipliers.iter_mut().chain(&mut w.bound_multipliers) {
-            *y = if math::abs(*y) <= noise {
-                T::ZERO
-            } else {
-                *y * inverse
-            };
+            *y *= inverse;
         }
         if self.is_contradiction() {
             Status::Infeasible
         } else {
             Status::Numerical
         }
+    }
+
+    /// |y| max|a| of a row's multiplier.
+    fn force_of(&mut self, i: usize) -> T {
+        let y = if i < M {
+            at(&self.w.row_multipliers, i)
+        } else {
+            at(&self.w.bound_multipliers, i - M)
+        };
+        math::abs(y) / scale_inverse::<T, N, M>(self.p, self.w, i)
     }
 
     /// Whether the caller's own numbers confirm the multipliers as a proof: with c = Aᵀy + μ, every feasible x has cᵀx ≤ support, so
@@ -257,9 +274,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (rate, least) = (self.p.value(i, d), noise * self.p.size_at(i, d));
             (rate <= least || u == T::INFINITY) && (rate >= -least || l == -T::INFINITY)
         };
-        self.is_descent()
-            && self.p.hessian.iter().all(straight)
-            && (0..M + N).all(clear)
+        self.is_descent() && self.p.hessian.iter().all(straight) && (0..M + N).all(clear)
     }
 }
 

@@ -71,7 +71,10 @@ pub struct Tally(RefCell<std::collections::BTreeMap<&'static str, u32>>);
 
 impl Tally {
     pub fn add(&self, what: &'static str) {
-        *self.0.borrow_mut().entry(what).or_default() += 1;
+        self.count(what, 1);
+    }
+    pub fn count(&self, what: &'static str, n: u32) {
+        *self.0.borrow_mut().entry(what).or_default() += n;
     }
     pub fn of(&self, what: &str) -> u32 {
         self.0.borrow().get(what).copied().unwrap_or_default()
