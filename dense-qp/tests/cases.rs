@@ -1,5 +1,10 @@
 //! Programs on which the solver used to say what was not so, or to end late: statuses, costs and steps of each.
-#![allow(clippy::unwrap_used, clippy::needless_range_loop, reason = "tests")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    clippy::needless_range_loop,
+    reason = "tests"
+)]
 
 mod common;
 use common::{Draw, Qp, Tally, dot, each};
@@ -238,7 +243,7 @@ fn walking(t: f64, start: [f64; 3]) -> Box<Qp<f64, 16, 32>> {
             let effect = (1.0 + 3.0 * m + 3.0 * m * m) * dt * dt * dt / 6.0 - dt * height;
             if j <= i { effect } else { 0.0 }
         });
-        let foot = if ((t + n) / 0.8) as usize % 2 == 0 {
+        let foot = if (((t + n) / 0.8) as usize).is_multiple_of(2) {
             0.08
         } else {
             -0.08

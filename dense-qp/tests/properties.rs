@@ -2,7 +2,7 @@
 #![allow(
     clippy::unwrap_used,
     clippy::needless_range_loop,
-    clippy::float_cmp,
+    clippy::disallowed_methods,
     reason = "tests"
 )]
 
