@@ -71,9 +71,10 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             if self.is_at_cap() {
                 return;
             }
-            self.w.id.swap(first, k);
-            self.w.side.swap(first, k);
-            let (id, side) = (at(&self.w.id, first), at(&self.w.side, first));
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let (passed, its_side) = (at(&self.w.id, first), at(&self.w.side, first));
+            put(&mut self.w.id, k, passed);
+            put(&mut self.w.side, k, its_side);
             self.steps += 1;
             self.prepare(id, side);
             let t = self.excess(id, side) / self.w.candidate.free;
@@ -106,13 +107,13 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.steps += 1;
             self.answer();
             self.turn();
-            let (t, blocking) = self.first_zero();
             let d = self.w.candidate.free;
             let full = if d > T::ZERO {
                 self.excess(id, side) / d
             } else {
                 T::INFINITY
             };
+            let (t, blocking) = self.first_zero(full);
             if full <= t {
                 if !full.is_finite_number() {
                     return Some(self.conflict(id, side));
@@ -130,20 +131,28 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
     }
 
-    /// How far the entering multiplier may grow until the first of the others reaches zero, and which; from r in `vec_b`. Changes are told
-    /// from round-off as forces, |rₖ| max|aₖ|: rows in other units have other multipliers.
-    fn first_zero(&mut self) -> (T, Option<usize>) {
-        let len = self.w.basis.len;
-        let mut largest = T::ZERO;
-        for k in 0..len {
-            largest = math::max(largest, math::abs(self.force(k)));
+    /// How far the entering multiplier may grow until the first of the others reaches zero, and which, if that is below `full`; from r
+    /// in `vec_b`. Changes are told from round-off as forces, |rₖ| max|aₖ|: rows in other units have other multipliers. Most steps
+    /// are full, and then it does not matter which changes are round-off.
+    fn first_zero(&mut self, full: T) -> (T, Option<usize>) {
+        let first = self.first_above(T::ZERO);
+        if full <= first.0 {
+            return first;
         }
-        let noise = T::of(8.0) * T::EPSILON * largest;
-        let mut blocking = None;
-        let mut t = T::INFINITY;
-        for k in 0..len {
+        let mut largest = T::ZERO;
+        for k in 0..self.w.basis.len {
+            let r = at(&self.w.vec_b, k);
+            largest = math::max(largest, math::abs(r) / self.active_scale(k));
+        }
+        self.first_above(T::of(8.0) * T::EPSILON * largest)
+    }
+
+    /// The first multiplier to reach zero of those that change by a force of more than `noise`, and when.
+    fn first_above(&mut self, noise: T) -> (T, Option<usize>) {
+        let (mut t, mut blocking) = (T::INFINITY, None);
+        for k in 0..self.w.basis.len {
             let (l, r) = (at(&self.w.lambda, k), at(&self.w.vec_b, k));
-            if r > T::ZERO && self.force(k) > noise {
+            if r > T::ZERO && (noise == T::ZERO || r > noise * self.active_scale(k)) {
                 let ratio = math::max(l, T::ZERO) / r;
                 if ratio < t {
                     (t, blocking) = (ratio, Some(k));
@@ -153,10 +162,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         (t, blocking)
     }
 
-    /// rₖ max|aₖ| of active row k.
-    fn force(&mut self, k: usize) -> T {
+    /// 1 / max|aₖ| of active row k.
+    #[inline(always)]
+    fn active_scale(&mut self, k: usize) -> T {
         let id = at(&self.w.id, k);
-        at(&self.w.vec_b, k) / scale_inverse::<T, N, M>(self.p, self.w, id)
+        scale_inverse::<T, N, M>(self.p, self.w, id)
     }
 
     /// Coordinates of a row in the basis.
