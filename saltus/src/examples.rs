@@ -66,7 +66,7 @@ pub(crate) const VERDICTS: &str = "\
 Examples:
   saltus verdicts                                      the nine tasks of A1, every measure
   saltus verdicts --plant ground=soft --interface joint-pd
-  saltus verdicts saltus/tasks/extra/*.toml            tasks of your own
+  saltus verdicts jump-planner/tasks/extra/*.toml            tasks of your own
   saltus verdicts --conditions --lab 100               what each condition does, and a hundred seeds of the lab
   saltus verdicts --ranges                             what may differ from the plan, and the lab's ranges
   saltus verdicts --expect saltus/verdicts.toml        the gate: every verdict as expected

@@ -28,7 +28,8 @@ fn numbers(row: &Value) -> Vec<f64> {
 
 /// The text of a built-in task.
 fn built_in(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tasks/{name}.toml"));
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../jump-planner/tasks/{name}.toml"));
     std::fs::read_to_string(path).unwrap()
 }
 

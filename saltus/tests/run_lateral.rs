@@ -48,7 +48,7 @@ fn on_target(json: &Value) -> bool {
 #[test]
 fn a_jump_onto_a_box_ends_on_it() {
     let path = folder("onto.toml");
-    let forward = include_str!("../tasks/a1/forward-60.toml");
+    let forward = include_str!("../../jump-planner/tasks/a1/forward-60.toml");
     let table = "[box]\ndrop_m = -0.1\naxis = \"x\"\nside = 1\ndistance_m = 0.3\n\n[total]";
     let onto = forward.replace("0.0, 0.0]", "0.0, 0.1]");
     std::fs::write(&path, onto.replace("[total]", table)).unwrap();

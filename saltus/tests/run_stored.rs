@@ -29,7 +29,7 @@ fn result(output: &Output) -> Value {
 #[test]
 fn a_stored_plan_jumps_as_the_one_that_was_just_made() {
     let folder = folder();
-    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
     std::fs::write(folder.join("mine.toml"), lateral).unwrap();
     let run = |arguments: &[&str]| saltus(&folder, arguments);
     assert!(

@@ -8,10 +8,10 @@ mod whole_body;
 use super::failure::Failure;
 use super::folder::{check_file, describe, write_file};
 use super::output::Output;
-use crate::range::Range;
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
+use jump_planner::range::Range;
 use ocp_solver::{Barrier, Progress, Solution};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -176,7 +176,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
 }
 
 fn read(path: &Path) -> Result<String, String> {
-    crate::file::read_text(path).map_err(|error| describe(path, &error))
+    jump_planner::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {

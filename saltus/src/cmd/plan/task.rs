@@ -4,14 +4,14 @@
 
 use super::Args;
 use super::layout::layout;
-use crate::audit::Audit;
 use crate::cmd::failure::{Failure, brief};
 use crate::cmd::folder::{check_new, publish, write_file};
-use crate::jump::answer::Answer;
-use crate::jump::bounds::impossible;
-use crate::jump::task::{SrbPlan, Task};
-use crate::jump::whole_body::{self, Timing, WholeBodyPlan};
 use indicatif::ProgressBar;
+use jump_planner::answer::Answer;
+use jump_planner::audit::Audit;
+use jump_planner::bounds::impossible;
+use jump_planner::task::{SrbPlan, Task};
+use jump_planner::whole_body::{self, Timing, WholeBodyPlan};
 use ocp_solver::{Progress, Settings, Status};
 use serde_json::{Value, json};
 use std::process::ExitCode;

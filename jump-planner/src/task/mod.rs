@@ -3,9 +3,12 @@
 //! The reference problems use Table I of paper A literally; a plan that is to be executed needs the robot that executes it:
 //! its mass, the composite inertia of the crouch, and margins on friction and force.
 
+pub mod file;
+mod values;
+
+use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
+use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN, Unusable, require, within};
 use super::FOOT_COUNT;
-use super::task_file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
-use super::task_values::{self, AXIS, DURATION, LENGTH, TOTAL, TURN, Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, State};
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Solver, Stage, Status};
@@ -14,7 +17,7 @@ use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::path::Path;
 
 /// Most contact phases of a task.
-pub(crate) const PHASES: usize = 6;
+pub const PHASES: usize = 6;
 const NX: usize = 12 + PHASES;
 const NU: usize = 12;
 const NI: usize = srb_opt::row_capacity(FOOT_COUNT, PHASES);
@@ -50,66 +53,63 @@ const EDGE_WIDTH: f64 = 0.03;
 /// Most intervals of a phase: beyond, only memory is used.
 const MOST_INTERVALS: usize = 1000;
 
-pub(crate) type SrbStage = Stage<f64, srb_opt::State<f64, PHASES>, NX, NU, NI>;
+/// A node of the rigid body's problem.
+pub type SrbStage = Stage<f64, srb_opt::State<f64, PHASES>, NX, NU, NI>;
 
 /// A task as it is planned for execution.
 #[derive(Clone)]
-pub(crate) struct Task {
+pub struct Task {
     /// Name of a built-in task, or path of the file.
-    pub(crate) name: String,
+    pub name: String,
     /// Who jumps.
-    pub(crate) robot: Quadruped,
+    pub robot: Quadruped,
     /// The single-rigid-body problem.
-    pub(crate) problem: Problem<f64, FOOT_COUNT, PHASES>,
+    pub problem: Problem<f64, FOOT_COUNT, PHASES>,
     /// Standing at the start.
-    pub(crate) start: State,
+    pub start: State,
     /// Wanted displacement of the base, m.
-    pub(crate) goal: Vector3<f64>,
+    pub goal: Vector3<f64>,
     /// Wanted heading at the end, rad.
-    pub(crate) heading: f64,
+    pub heading: f64,
     /// Wanted rotation of the base at the end: the whole turn, of which only the heading is a posture to stand in.
-    pub(crate) rot_goal: nalgebra::Rotation3<f64>,
+    pub rot_goal: nalgebra::Rotation3<f64>,
     /// Height of the box that the robot starts on, m, with its edge.
-    pub(crate) edge: Option<Edge<f64>>,
+    pub edge: Option<Edge<f64>>,
     /// The trunk may touch the ground in the landing.
-    pub(crate) trunk_may_touch: bool,
+    pub trunk_may_touch: bool,
     /// What the plan may use.
-    pub(crate) limits: LimitsTable,
+    pub limits: LimitsTable,
     /// Weights of the costs.
-    pub(crate) weights: WeightsTable,
+    pub weights: WeightsTable,
 }
 
 /// A single-rigid-body plan, or how far the solver came.
-pub(crate) struct SrbPlan {
-    pub(crate) stages: Vec<SrbStage>,
-    pub(crate) status: Status,
-    pub(crate) iterations: u32,
-    pub(crate) wall_ms: f64,
-    pub(crate) cost: f64,
-    pub(crate) max_violation: f64,
+pub struct SrbPlan {
+    /// Its nodes.
+    pub stages: Vec<SrbStage>,
+    /// How the solver ended.
+    pub status: Status,
+    /// Its iterations.
+    pub iterations: u32,
+    /// Time that it took, ms.
+    pub wall_ms: f64,
+    /// Cost of the plan.
+    pub cost: f64,
+    /// Largest violation of a row, in its own unit.
+    pub max_violation: f64,
 }
 
 impl Task {
-    /// The task of this name, or of the TOML file of this path, for the robot that is simulated.
-    pub(crate) fn load(name: &str) -> Result<Self, TaskError> {
-        let task = Self::load_for(name, None, &[])?;
-        if task.robot.is_a1() {
-            Ok(task)
-        } else {
-            Err(TaskError::Value {
-                task: name.to_owned(),
-                key: "robot".to_owned(),
-                what: "only a1 is simulated; `saltus plan` plans for others".to_owned(),
-            })
-        }
+    /// The task of this name, or of the TOML file of this path, for its own robot.
+    ///
+    /// # Errors
+    /// [`TaskError`] names file, line and key.
+    pub fn load(name: &str) -> Result<Self, TaskError> {
+        Self::load_for(name, None, &[])
     }
 
     /// The task of this name or path, for the robot of another URDF where one is given.
-    pub(crate) fn load_for(
-        name: &str,
-        urdf: Option<&Path>,
-        locks: &[String],
-    ) -> Result<Self, TaskError> {
+    pub fn load_for(name: &str, urdf: Option<&Path>, locks: &[String]) -> Result<Self, TaskError> {
         let (file, folder) = TaskFile::load(name)?;
         let robot = match urdf {
             Some(path) => Quadruped::from_urdf(path, locks),
@@ -129,8 +129,8 @@ impl Task {
     }
 
     fn of(name: &str, file: &TaskFile, robot: Quadruped) -> Result<Self, Unusable> {
-        task_values::limits(&file.limits)?;
-        task_values::weights(&file.weights)?;
+        values::limits(&file.limits)?;
+        values::weights(&file.weights)?;
         let goal = Vector3::from(file.goal_m);
         goal.iter().try_for_each(|x| within(*x, LENGTH, "goal_m"))?;
         require(
@@ -211,7 +211,7 @@ impl Task {
     }
 
     /// Fixes the durations of the phases, s: the manual timing of paper A. The bounds of the task give way.
-    pub(crate) fn fix_timing(&mut self, durations: &[f64]) -> Result<(), TaskError> {
+    pub fn fix_timing(&mut self, durations: &[f64]) -> Result<(), TaskError> {
         let count = self.problem.phase_count;
         let refuse = |what: String| TaskError::Value {
             task: self.name.clone(),
@@ -239,7 +239,7 @@ impl Task {
     }
 
     /// Name of a phase: the feet on the ground.
-    pub(crate) fn phase_name(&self, contacts: &[bool; FOOT_COUNT]) -> String {
+    pub fn phase_name(&self, contacts: &[bool; FOOT_COUNT]) -> String {
         let on: Vec<&str> = PLACES
             .into_iter()
             .filter(|place| self.robot.leg(place).is_some_and(|leg| contacts[leg]))
@@ -252,7 +252,7 @@ impl Task {
     }
 
     /// The guess of the single-rigid-body problem, not solved: where planning straight on the whole body starts.
-    pub(crate) fn guess(&self) -> Result<SrbPlan, String> {
+    pub fn guess(&self) -> Result<SrbPlan, String> {
         let problem = &self.problem;
         problem
             .check()
@@ -270,7 +270,7 @@ impl Task {
     }
 
     /// Tries to solve the single-rigid-body problem.
-    pub(crate) fn attempt(
+    pub fn attempt(
         &self,
         settings: &Settings<f64>,
         observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
@@ -294,7 +294,7 @@ impl Task {
     }
 
     /// Solves the single-rigid-body problem; anything but a solved problem is an error.
-    pub(crate) fn solve(&self) -> Result<SrbPlan, String> {
+    pub fn solve(&self) -> Result<SrbPlan, String> {
         let plan = self.attempt(&Settings::new(), |_| core::ops::ControlFlow::Continue(()))?;
         if plan.status != Status::Solved {
             return Err(format!(

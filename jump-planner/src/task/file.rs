@@ -1,10 +1,10 @@
-//! A task as it is written down: one TOML file. The nine tasks of the project are such files too, in `saltus/tasks`.
+//! A task as it is written down: one TOML file. The nine tasks of the project are such files too, in `jump-planner/tasks`.
 
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// The tasks that the program brings along.
-pub(crate) const BUILT_IN: [(&str, &str); 9] = [
+pub const BUILT_IN: [(&str, &str); 9] = [
     ("a1/lateral", include_str!("../../tasks/a1/lateral.toml")),
     (
         "a1/lateral-down",
@@ -37,79 +37,88 @@ pub(crate) const BUILT_IN: [(&str, &str); 9] = [
 /// A task file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct TaskFile {
+pub struct TaskFile {
     /// `a1`, or the path of a URDF, seen from the file.
-    pub(crate) robot: String,
+    pub robot: String,
     /// Joints of the URDF that are locked, `JOINT=VALUE`.
     #[serde(default)]
-    pub(crate) lock: Vec<String>,
+    pub lock: Vec<String>,
     /// Displacement of the centre of mass, m.
-    pub(crate) goal_m: [f64; 3],
-    pub(crate) turn: Option<TurnTable>,
-    pub(crate) r#box: Option<BoxTable>,
+    pub goal_m: [f64; 3],
+    /// Turn of the body; without it the body ends as it began.
+    pub turn: Option<TurnTable>,
+    /// A box to jump off or onto.
+    pub r#box: Option<BoxTable>,
     /// The trunk may touch the ground in the landing.
     #[serde(default)]
-    pub(crate) trunk_may_touch: bool,
+    pub trunk_may_touch: bool,
+    /// Contact phases in order; the last one is the flight.
     #[serde(rename = "phase")]
-    pub(crate) phases: Vec<PhaseTable>,
+    pub phases: Vec<PhaseTable>,
+    /// Bounds of the whole duration.
     #[serde(default)]
-    pub(crate) total: TotalTable,
+    pub total: TotalTable,
+    /// What the plan may use.
     #[serde(default)]
-    pub(crate) limits: LimitsTable,
+    pub limits: LimitsTable,
+    /// Weights of the costs.
     #[serde(default)]
-    pub(crate) weights: WeightsTable,
+    pub weights: WeightsTable,
 }
 
 /// The turn of the body.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct TurnTable {
+pub struct TurnTable {
     /// Axis in the world at the start, of any length.
-    pub(crate) axis: [f64; 3],
+    pub axis: [f64; 3],
     /// May exceed 360.
-    pub(crate) angle_deg: f64,
+    pub angle_deg: f64,
 }
 
 /// A step of the ground.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BoxTable {
+pub struct BoxTable {
     /// Height of the start over the landing, m; negative jumps up.
-    pub(crate) drop_m: f64,
+    pub drop_m: f64,
     /// Axis across the edge.
-    pub(crate) axis: Across,
+    pub axis: Across,
     /// Side of the landing along the axis, 1 or -1.
-    pub(crate) side: i8,
+    pub side: i8,
     /// Distance of the edge from the feet that stand nearest, m. Either this or `distance_m`.
-    pub(crate) beyond_feet_m: Option<f64>,
+    pub beyond_feet_m: Option<f64>,
     /// Distance of the edge from the middle of the robot, m.
-    pub(crate) distance_m: Option<f64>,
+    pub distance_m: Option<f64>,
 }
 
 /// Axis across an edge.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Across {
+pub enum Across {
+    /// Forwards.
     X,
+    /// To the left.
     Y,
 }
 
 /// One contact phase.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PhaseTable {
+pub struct PhaseTable {
     /// Feet on the ground: FL, FR, RL, RR.
-    pub(crate) feet: Vec<String>,
+    pub feet: Vec<String>,
     /// Intervals of the rigid body's plan.
     #[serde(default = "default_intervals")]
-    pub(crate) intervals: usize,
+    pub intervals: usize,
     /// Guess of the duration, s.
-    pub(crate) guess_s: f64,
-    /// Bounds of the duration, s. Defaults depend on the feet.
-    pub(crate) min_s: Option<f64>,
-    pub(crate) max_s: Option<f64>,
+    pub guess_s: f64,
+    /// Shortest duration, s; the default depends on the feet.
+    pub min_s: Option<f64>,
+    /// Longest duration, s; the default depends on the feet.
+    pub max_s: Option<f64>,
     /// Turn at the end of the phase that the body should follow, degrees: in all phases or in none. Without it the turn is even.
-    pub(crate) turn_deg: Option<f64>,
+    pub turn_deg: Option<f64>,
 }
 
 const fn default_intervals() -> usize {
@@ -119,9 +128,11 @@ const fn default_intervals() -> usize {
 /// Bounds of the whole duration, s.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct TotalTable {
-    pub(crate) min_s: f64,
-    pub(crate) max_s: f64,
+pub struct TotalTable {
+    /// Shortest, s.
+    pub min_s: f64,
+    /// Longest, s.
+    pub max_s: f64,
 }
 
 impl Default for TotalTable {
@@ -136,19 +147,19 @@ impl Default for TotalTable {
 /// What the plan may use. Defaults leave about a third to the controller.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct LimitsTable {
+pub struct LimitsTable {
     /// Friction of the ground.
-    pub(crate) friction: f64,
+    pub friction: f64,
     /// Share of it that the plan may use.
-    pub(crate) friction_share: f64,
+    pub friction_share: f64,
     /// Normal force per foot in weights of the robot.
-    pub(crate) force_weights: f64,
+    pub force_weights: f64,
     /// Least height of the trunk over the ground, m.
-    pub(crate) clearance_m: f64,
+    pub clearance_m: f64,
     /// Shares of the joints' torque limits: the first with which the task is solved.
-    pub(crate) torque_shares: [f64; 3],
+    pub torque_shares: [f64; 3],
     /// Share of the motors' speeds.
-    pub(crate) speed_share: f64,
+    pub speed_share: f64,
 }
 
 impl Default for LimitsTable {
@@ -167,15 +178,19 @@ impl Default for LimitsTable {
 /// Weights of the costs.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct WeightsTable {
-    /// Rigid body: angular velocity, forces, rotation error.
-    pub(crate) omega: f64,
-    pub(crate) force: f64,
-    pub(crate) rotation: f64,
-    /// Whole body: distance from the reference, torques, distance from the goal.
-    pub(crate) position: f64,
-    pub(crate) torque: f64,
-    pub(crate) goal: f64,
+pub struct WeightsTable {
+    /// Rigid body: angular velocity, s²/rad².
+    pub omega: f64,
+    /// Rigid body: forces, N⁻².
+    pub force: f64,
+    /// Rigid body: rotation from its reference, rad⁻².
+    pub rotation: f64,
+    /// Whole body: distance from the reference, m⁻² and rad⁻².
+    pub position: f64,
+    /// Whole body: torques, (N m)⁻².
+    pub torque: f64,
+    /// Whole body: distance from the goal, m⁻² and rad⁻².
+    pub goal: f64,
 }
 
 impl Default for WeightsTable {
@@ -193,7 +208,7 @@ impl Default for WeightsTable {
 
 /// Why a task cannot be read.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum TaskError {
+pub enum TaskError {
     /// Neither a built-in name nor a file.
     #[error("no task `{name}`: write the path of a TOML file, or one of {known}")]
     Unknown {
@@ -242,7 +257,7 @@ pub(crate) enum TaskError {
 
 impl TaskFile {
     /// The task of this name, or in the file of this path, with the folder that its paths are seen from.
-    pub(crate) fn load(name: &str) -> Result<(Self, PathBuf), TaskError> {
+    pub fn load(name: &str) -> Result<(Self, PathBuf), TaskError> {
         if let Some((_, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
             return Self::parse(Path::new(name), text).map(|file| (file, PathBuf::new()));
         }

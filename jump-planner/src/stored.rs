@@ -15,7 +15,7 @@ use rbd_core::{Configuration, Model, Tangent};
 use wb_opt::{BASE, Phase};
 
 /// A plan's container, for a quadruped.
-pub(crate) type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
+pub type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
 
 /// Bytes of the header and of everything else that is not a node.
 const OVERHEAD: usize = 1024;
@@ -23,11 +23,7 @@ const OVERHEAD: usize = 1024;
 const SAME_POSTURE: f64 = 1e-4;
 
 /// The container of a plan, with its feedback gains or without; its nodes begin with the posture in which the robot waits.
-pub(crate) fn store(
-    task: &Task,
-    plan: &WholeBodyPlan,
-    with_gains: bool,
-) -> Result<Vec<u8>, String> {
+pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<u8>, String> {
     let robot = &task.robot;
     let mut nodes = vec![record(robot, 0, &standing(task)?)];
     let mut gains = vec![NodeGains::default()];
@@ -100,7 +96,7 @@ fn ground(task: &Task) -> Option<GroundStep> {
 }
 
 /// A stored plan as the controller follows it, with the task that it is judged by.
-pub(crate) fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
+pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
     let header = plan.header();
     if header.ground != ground(task) {
         return Err(format!(
@@ -138,7 +134,7 @@ pub(crate) fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, Str
 }
 
 /// Opens a container for a robot.
-pub(crate) fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, ContainerError> {
+pub fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, ContainerError> {
     Container::open(bytes, hash(robot))
 }
 
@@ -203,6 +199,6 @@ fn feedback(interval: &Interval) -> NodeGains<JOINTS> {
 }
 
 /// Name of a robot's joint, without the word every joint has.
-pub(crate) fn joint_name(robot: &Quadruped, i: usize) -> String {
+pub fn joint_name(robot: &Quadruped, i: usize) -> String {
     Model::joint_names(robot)[i].replace("_joint", "")
 }

@@ -9,7 +9,7 @@ use rbd_core::{
 };
 
 /// Configuration of a quadruped.
-pub(crate) type State = Configuration<f64, JOINTS>;
+pub type State = Configuration<f64, JOINTS>;
 
 /// Foot below its hip in the pre-landing posture, as a share of the leg.
 const LANDING_LEG: f64 = 0.725;
@@ -19,35 +19,35 @@ const LANDING_WIDTH: f64 = 0.1;
 const SLACK: f64 = 1e-9;
 
 /// What keeps a robot standing.
-pub(crate) struct Holding {
+pub struct Holding {
     /// Joint torques, N m.
-    pub(crate) torques: [f64; JOINTS],
+    pub torques: [f64; JOINTS],
     /// Force of the ground on every foot, world, N.
-    pub(crate) forces_w: [Vector3<f64>; LEGS],
+    pub forces_w: [Vector3<f64>; LEGS],
 }
 
 impl Quadruped {
     /// Poses of all links.
-    pub(crate) fn poses(&self, q: &State) -> Kinematics<f64, JOINTS> {
+    pub fn poses(&self, q: &State) -> Kinematics<f64, JOINTS> {
         let mut kinematics = Kinematics::IDENTITY;
         forward_kinematics(self, &Posture::new(self, q), &mut kinematics);
         kinematics
     }
 
     /// Centre of mass in the world, m.
-    pub(crate) fn com(&self, q: &State) -> Vector3<f64> {
+    pub fn com(&self, q: &State) -> Vector3<f64> {
         center_of_mass(self, &Posture::new(self, q)).position_w
     }
 
     /// Rotational inertia about the centre of mass with the joints locked, world axes, kg m².
-    pub(crate) fn locked_inertia(&self, q: &State) -> Matrix3<f64> {
+    pub fn locked_inertia(&self, q: &State) -> Matrix3<f64> {
         let mut map = CentroidalMap::ZERO;
         centroidal_map(self, &Posture::new(self, q), &mut map);
         map.locked_inertia_w.to_matrix()
     }
 
     /// Jacobian of a frame, world axes.
-    pub(crate) fn jacobian(
+    pub fn jacobian(
         &self,
         kinematics: &Kinematics<f64, JOINTS>,
         frame: &Frame<f64>,
@@ -58,11 +58,7 @@ impl Quadruped {
     }
 
     /// Where a foot's ball touches level ground, as a frame of its link.
-    pub(crate) fn contact_frame(
-        &self,
-        kinematics: &Kinematics<f64, JOINTS>,
-        leg: usize,
-    ) -> Frame<f64> {
+    pub fn contact_frame(&self, kinematics: &Kinematics<f64, JOINTS>, leg: usize) -> Frame<f64> {
         let mut frame = self.feet[leg];
         let rot_wl = kinematics.link(frame.link).rotation;
         let down = rot_wl.inverse() * Vector3::new(0.0, 0.0, -self.foot_radius);
@@ -71,7 +67,7 @@ impl Quadruped {
     }
 
     /// Joints that put the balls of the feet at `targets_w`, by damped Newton steps from `q`; the base stays.
-    pub(crate) fn place_feet(
+    pub fn place_feet(
         &self,
         mut q: State,
         targets_w: &[Vector3<f64>; LEGS],
@@ -104,7 +100,7 @@ impl Quadruped {
     }
 
     /// The robot with its legs near a standing posture.
-    pub(crate) fn near(&self, base: Transform<f64>) -> State {
+    pub fn near(&self, base: Transform<f64>) -> State {
         State {
             base,
             joints: self.seed,
@@ -112,7 +108,7 @@ impl Quadruped {
     }
 
     /// A standing robot with its centre of mass at `com_w` and its balls over `points_w`, base level.
-    pub(crate) fn stand(
+    pub fn stand(
         &self,
         com_w: &Vector3<f64>,
         points_w: &[Vector3<f64>; LEGS],
@@ -132,7 +128,7 @@ impl Quadruped {
     }
 
     /// Joints of the pre-landing posture: feet below and outside the hips.
-    pub(crate) fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
+    pub fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
         let q = State {
             base: Transform::IDENTITY,
             joints: near.joints,
@@ -166,7 +162,7 @@ impl Quadruped {
     }
 
     /// Torques and forces of least norm that hold the robot at rest on all feet.
-    pub(crate) fn holding(&self, q: &State) -> Result<Holding, String> {
+    pub fn holding(&self, q: &State) -> Result<Holding, String> {
         let kinematics = self.poses(q);
         let gravity = generalized_gravity(self, &Posture::new(self, q));
         let jacobians: [_; LEGS] = core::array::from_fn(|leg| {

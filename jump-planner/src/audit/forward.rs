@@ -1,7 +1,7 @@
 //! The robot under given torques, by forward dynamics.
 
-use crate::jump::whole_body::FRICTION_SMOOTHING;
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use crate::whole_body::FRICTION_SMOOTHING;
 use nalgebra::Vector3;
 use rbd_core::{
     AbaWorkspace, BodyMotions, ContactRow, ContactWorkspace, Effort, MassFactors, MassMatrix,
@@ -9,13 +9,13 @@ use rbd_core::{
     joint_friction,
 };
 
-pub(crate) type Velocity = Tangent<f64, JOINTS>;
+pub type Velocity = Tangent<f64, JOINTS>;
 
 /// Rows of all feet.
 const ROWS: usize = 3 * LEGS;
 
 /// Scratch of the integration.
-pub(super) struct Forward<'a> {
+pub(crate) struct Forward<'a> {
     robot: &'a Quadruped,
     aba: AbaWorkspace<f64, JOINTS>,
     mass: MassMatrix<f64, JOINTS>,
@@ -25,7 +25,7 @@ pub(super) struct Forward<'a> {
 }
 
 impl<'a> Forward<'a> {
-    pub(super) fn new(robot: &'a Quadruped) -> Self {
+    pub(crate) fn new(robot: &'a Quadruped) -> Self {
         Self {
             robot,
             aba: AbaWorkspace::new(),
@@ -37,7 +37,7 @@ impl<'a> Forward<'a> {
     }
 
     /// One step of Heun's midpoint rule; the forces on the feet in the middle, world axes.
-    pub(super) fn step(
+    pub(crate) fn step(
         &mut self,
         q: &mut State,
         v: &mut Velocity,

@@ -1,8 +1,8 @@
 //! Whether the numbers of a stored plan are those of this robot, node by node: what a container cannot know of itself.
 
 use super::state;
-use crate::jump::stored::{Stored, joint_name};
 use crate::robot::{JOINTS, Quadruped};
+use crate::stored::{Stored, joint_name};
 use jump_control::container::PlanNode;
 use rbd_core::{JointLimits, Model, Tangent};
 
@@ -12,7 +12,7 @@ const BEYOND: f64 = 0.01;
 const FEET: [f64; 2] = [1e-4, 1e-3];
 
 /// Fails with the first node that is none of this robot's.
-pub(crate) fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
+pub fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
     plan.check().map_err(|error| error.to_string())?;
     let share = f64::from(plan.header().margins.torque_share);
     for (i, node) in plan.nodes().enumerate() {

@@ -1,6 +1,8 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
-use super::reference::{self, Reference, standing};
+use super::reference::{self, Reference};
+use super::robot::Quadruped;
+use super::stored::{self, open, store};
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Interval, N, Timing, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
@@ -9,11 +11,11 @@ use nalgebra::Vector3;
 use ocp_solver::Status;
 use rbd_core::{Motion, Transform};
 use std::time::Instant;
-use wb_opt::{BASE, Phase, State};
+use wb_opt::{BASE, State};
 
 /// How the legs are planned along the single rigid body's motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Planner {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Planner {
     /// Whole-body trajectory optimisation, paper A, III-B.
     WholeBody,
     /// Leg kinematics along the rigid body's angular momentum, and inverse dynamics.
@@ -25,18 +27,22 @@ pub(crate) enum Planner {
 
 /// How a whole-body problem was solved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Solved {
-    pub(crate) wall_ms: f64,
-    pub(crate) iterations: usize,
-    pub(crate) cost: f64,
-    pub(crate) max_violation: f64,
+pub struct Solved {
+    /// Time that it took, ms.
+    pub wall_ms: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Cost of the plan.
+    pub cost: f64,
+    /// Largest violation of a row, in its own unit.
+    pub max_violation: f64,
     /// Torque that the plan was allowed, N m.
-    pub(crate) torque_limit: f64,
+    pub torque_limit: f64,
 }
 
 /// Where a reference comes from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Origin {
+pub enum Origin {
     /// Leg kinematics.
     Kinematics,
     /// Optimisation on legs that weigh nothing, just now.
@@ -49,7 +55,7 @@ pub(crate) enum Origin {
 
 impl Origin {
     /// Its name in results.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "srb+kinematics",
             Self::RigidBody(_) => "srb+massless-legs",
@@ -59,7 +65,7 @@ impl Origin {
     }
 
     /// How the whole-body problem was solved, where that is known.
-    pub(crate) fn solved(self) -> Option<Solved> {
+    pub fn solved(self) -> Option<Solved> {
         match self {
             Self::WholeBody(solved) | Self::RigidBody(solved) => Some(solved),
             Self::Kinematics | Self::Stored => None,
@@ -67,9 +73,26 @@ impl Origin {
     }
 }
 
+impl core::str::FromStr for Planner {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|planner| planner.name() == name);
+        found.ok_or_else(|| {
+            format!(
+                "no planner `{name}`; there are {}",
+                Self::ALL.map(Self::name).join(", ")
+            )
+        })
+    }
+}
+
 impl Planner {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::WholeBody, Self::Kinematics, Self::RigidBody];
+
     /// Its name on the command line and in results.
-    pub(crate) const fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::WholeBody => "whole-body",
             Self::Kinematics => "kinematics",
@@ -78,7 +101,7 @@ impl Planner {
     }
 
     /// Plans the legs along a plan of the body.
-    pub(crate) fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+    pub fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
         match self {
             Self::WholeBody => whole_body(task, srb),
             Self::Kinematics => reference::build(task, srb),
@@ -99,7 +122,7 @@ fn whole_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
             audit.complaint()
         ));
     }
-    follow(task, &whole.plan, Origin::WholeBody(solved))
+    follow(task, &task.robot, &whole.bytes, Origin::WholeBody(solved))
 }
 
 /// Not audited: it is the plan of another robot.
@@ -112,7 +135,8 @@ fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
     let clock = Instant::now();
     let plan = whole_body::plan(&light, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
     let solved = solved(task, &plan, clock.elapsed().as_secs_f64() * 1e3)?;
-    follow(task, &plan, Origin::RigidBody(solved))
+    let bytes = store(&light, &plan, false)?;
+    follow(task, &light.robot, &bytes, Origin::RigidBody(solved))
 }
 
 /// How a plan was solved; an error if it was not.
@@ -134,35 +158,22 @@ fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, Str
     })
 }
 
-/// A whole-body plan as the controller follows it.
-fn follow(task: &Task, plan: &WholeBodyPlan, origin: Origin) -> Result<Reference, String> {
-    let stands = |phase: &&Phase<f64, FOOT_COUNT>| phase.contacts.contains(&true);
-    let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
-    let takeoff: f64 = plan.phases.iter().take_while(stands).map(duration).sum();
-    let touchdown: f64 = plan.phases.iter().map(duration).sum();
-    let mut nodes = vec![standing(task)?];
-    nodes.extend(
-        plan.intervals
-            .iter()
-            .map(|interval| node(interval.start, &interval.state, Some(interval))),
-    );
-    let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
+/// What the controller follows: what stands in the bytes, and nothing else.
+fn follow(
+    task: &Task,
+    robot: &Quadruped,
+    bytes: &[u8],
+    origin: Origin,
+) -> Result<Reference, String> {
+    let stored = open(bytes, robot).map_err(|error| error.to_string())?;
     Ok(Reference {
-        nodes,
-        takeoff,
-        posing: touchdown - whole_body::POSED,
-        touchdown,
-        landing_joints: task.robot.landing_joints(&task.start)?,
-        durations: plan.phases.iter().map(duration).collect(),
-        peak_torque,
-        peak_friction,
-        base_residual: plan.judged.max_violation,
         origin,
+        ..stored::reference(&stored, task)?
     })
 }
 
 /// Largest torque, N m, and largest tangential over normal force of the nodes before the take-off.
-pub(crate) fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
+pub fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
     let (mut torque, mut friction) = (0.0, 0.0);
     for node in nodes.iter().filter(|node| node.time < takeoff) {
         torque = node
@@ -177,7 +188,7 @@ pub(crate) fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
 }
 
 /// A node of the plan: a state, and what is held over the interval that starts there; nothing after the last.
-pub(crate) fn node(time: f64, state: &State<f64, N>, interval: Option<&Interval>) -> Node {
+pub fn node(time: f64, state: &State<f64, N>, interval: Option<&Interval>) -> Node {
     let held = interval.map(|interval| &interval.sample);
     let (q, v, rot_wb) = (&state.q, &state.v, &state.rot_wc);
     let velocity_w = Vector3::new(v[0], v[1], v[2]);

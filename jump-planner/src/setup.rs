@@ -10,21 +10,21 @@ use srb_opt::Edge;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
 
 /// Coordinates of the robot.
-pub(crate) const N: usize = BASE + JOINTS;
-pub(super) const NX: usize = 2 * N;
-pub(super) const NU: usize = N + 3 * FOOT_COUNT;
+pub const N: usize = BASE + JOINTS;
+pub(crate) const NX: usize = 2 * N;
+pub(crate) const NU: usize = N + 3 * FOOT_COUNT;
 /// Sides of a friction pyramid.
 const SIDES: usize = 8;
 /// Trunk corners and knees.
 const CLEARANCES: usize = 12;
-pub(super) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES, true);
+pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES, true);
 
 /// Longest interval in contact, s. At twice the length the audit finds limits exceeded between nodes.
 const CONTACT_DT: f64 = 0.005;
 /// Longest interval in flight, s: no forces change, but the turn must be right.
 const FLIGHT_DT: f64 = 0.005;
 /// Time before touchdown in which the legs rest in the landing posture, s.
-pub(crate) const POSED: f64 = 0.05;
+pub const POSED: f64 = 0.05;
 /// How much farther than it is a box edge is taken to be at most, m; that of a box to jump onto, nearer.
 const EDGE_MARGIN: f64 = 0.12;
 /// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
@@ -40,19 +40,20 @@ const KNEE_CLEARANCE: f64 = 0.03;
 /// Least normal force of a foot that stands, in weights of the robot.
 const LEAST_FORCE: f64 = 0.04;
 /// Speed at which planned Coulomb friction of the joints fades, rad/s.
-pub(crate) const FRICTION_SMOOTHING: f64 = 0.3;
-pub(crate) const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
+pub const FRICTION_SMOOTHING: f64 = 0.3;
+/// How far from its goal the base may be at the touchdown: m, and rad.
+pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 
 /// What the problem borrows, and the guess that comes with it.
-pub(super) struct Setup<'a> {
+pub(crate) struct Setup<'a> {
     task: &'a Task,
     srb: &'a SrbPlan,
     track: Track<Transform<f64>>,
-    pub(super) phases: Vec<Phase<f64, FOOT_COUNT>>,
+    pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
     /// Times of the nodes, s.
-    pub(super) times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
     /// References of the nodes and of the intervals.
-    pub(super) nodes: Vec<Pose<f64, N>>,
+    pub(crate) nodes: Vec<Pose<f64, N>>,
     reference: Vec<Pose<f64, N>>,
     clearances: Vec<Clearance<f64>>,
     goal: Pose<f64, N>,
@@ -71,7 +72,7 @@ fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
 }
 
 /// Times of the nodes of phases, s.
-pub(super) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
+pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
     let mut times = vec![0.0];
     for phase in phases {
         let begin = times[times.len() - 1];
@@ -82,7 +83,7 @@ pub(super) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
 
 impl<'a> Setup<'a> {
     /// On intervals of a share of their usual length.
-    pub(super) fn new(task: &'a Task, srb: &'a SrbPlan, share: f64) -> Result<Self, String> {
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, share: f64) -> Result<Self, String> {
         let rigid = &task.problem;
         let landing_joints = task.robot.landing_joints(&task.start)?;
         let mut phases = Vec::new();
@@ -139,7 +140,7 @@ impl<'a> Setup<'a> {
     }
 
     /// The problem, with all the torque there is.
-    pub(super) fn problem(&self) -> Problem<'_, f64, N, FOOT_COUNT> {
+    pub(crate) fn problem(&self) -> Problem<'_, f64, N, FOOT_COUNT> {
         let task = self.task;
         let rigid = &task.problem;
         let cone = CONE_SHARE * rigid.friction / task.limits.friction_share;
@@ -189,7 +190,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Force of the rigid body's motion on a foot at a node, world, N.
-    pub(super) fn force(&self, k: usize, foot: usize) -> Vector3<f64> {
+    pub(crate) fn force(&self, k: usize, foot: usize) -> Vector3<f64> {
         let k = self.track.interval(self.times[k]);
         let stage = &self.srb.stages[k];
         let sample = self.task.problem.sample(k, &stage.state, &stage.control);
@@ -264,7 +265,7 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{EDGE_MARGIN, cautious};
-    use crate::jump::task::Task;
+    use crate::task::Task;
 
     /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
     fn moved(aside: f64, drop: f64) -> f64 {

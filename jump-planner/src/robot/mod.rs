@@ -1,68 +1,80 @@
 //! The robot that is planned for: A1 with its rotors, or a quadruped from a URDF.
 
+mod hardware;
 mod posture;
+mod rolling;
 mod urdf;
 
-use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, SHAPES, a1};
+use a1_model::{A1Geared, BUDGETS, FEET, FOOT_RADIUS, MOTORS, OWNERS, SHAPES, a1};
 use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
 use rbd_core::{
-    BaseBody, BaseKind, Body, Frame, Inertia, JointLimits, MassMatrix, Model, Motor, Posture,
-    Shape, TableModel, Tree, crba,
+    BaseBody, BaseKind, Body, Budgets, Frame, Inertia, JointLimits, MassMatrix, Model, Motor,
+    Posture, Shape, TableModel, Tree, crba,
 };
 
-pub(crate) use posture::State;
-pub(crate) use urdf::RobotError;
+pub use posture::State;
+pub use urdf::RobotError;
 
 /// Joints: four legs of three.
-pub(crate) const JOINTS: usize = 12;
+pub const JOINTS: usize = 12;
 /// Legs, one foot each.
-pub(crate) const LEGS: usize = 4;
+pub const LEGS: usize = 4;
 
 /// A torque that no leg reaches, N m.
 const UNLIMITED: f64 = 1e3;
 
 /// Places of the legs, in the order of [`Data::legs`] and of task files.
-pub(crate) const PLACES: [&str; LEGS] = ["FL", "FR", "RL", "RR"];
+pub const PLACES: [&str; LEGS] = ["FL", "FR", "RL", "RR"];
 
 /// A quadruped. Copies share one description, which lives as long as the program: a session plans for few robots.
 #[derive(Clone, Copy)]
-pub(crate) struct Quadruped(&'static Data);
+pub struct Quadruped(&'static Data);
 
 /// What is known about a quadruped. Leg i has joints 3 i to 3 i + 2, from the trunk down.
 #[derive(Clone)]
-pub(crate) struct Data {
-    pub(crate) name: &'static str,
+pub struct Data {
+    /// Its name in plans and results.
+    pub name: &'static str,
     table: TableModel<f64, JOINTS>,
     limits: [JointLimits<f64>; JOINTS],
     motors: Option<[Motor<f64>; JOINTS]>,
     joint_names: [&'static str; JOINTS],
     /// Leg at each of [`PLACES`].
-    pub(crate) legs: [usize; LEGS],
+    pub legs: [usize; LEGS],
     /// Centres of the balls of the feet.
-    pub(crate) feet: [Frame<f64>; LEGS],
+    pub feet: [Frame<f64>; LEGS],
     /// Radius of the balls, m; 0 for points.
-    pub(crate) foot_radius: f64,
+    pub foot_radius: f64,
     /// Middle of each foot's workspace at the height of its hip: where the foot hangs with the hip's first joint at zero,
     /// base axes, m.
-    pub(crate) hips: [Vector3<f64>; LEGS],
+    pub hips: [Vector3<f64>; LEGS],
     /// From the second joint of a leg to its foot when stretched, m.
-    pub(crate) leg_length: f64,
+    pub leg_length: f64,
     /// Corners of the trunk, base axes, m.
-    pub(crate) corners: [Vector3<f64>; 8],
-    /// Collision shapes of all links, where they are known.
-    pub(crate) shapes: Option<&'static Shapes>,
+    pub corners: [Vector3<f64>; 8],
+    /// Collision shapes of all links: feet in the order of the legs first.
+    pub shapes: Shapes,
+    /// What the forces on the shapes count for: feet, shanks, thighs and hips by leg, and the trunk.
+    pub owners: [&'static str; OWNER_COUNT],
+    /// What the hardware may be asked for.
+    pub budgets: Budgets,
     /// Joints near a standing posture.
     seed: [f64; JOINTS],
 }
 
+/// Shapes of a robot: a ball per foot, a capsule per shank, thigh and hip, and ten capsules around the trunk.
+pub const SHAPE_COUNT: usize = SHAPES.len();
+/// What they belong to.
+pub const OWNER_COUNT: usize = OWNERS.len();
+
 /// Collision shapes of a robot.
-pub(crate) type Shapes = [Shape<f64>; SHAPES.len()];
+pub type Shapes = [Shape<f64>; SHAPE_COUNT];
 
 impl Quadruped {
     /// A1 as published, with rotors: what `saltus run` simulates.
-    pub(crate) fn a1() -> Result<Self, RobotError> {
+    pub fn a1() -> Result<Self, RobotError> {
         let model = A1Geared;
         let table = TableModel::with_any_inertia(
             BaseKind::Floating,
@@ -88,14 +100,16 @@ impl Quadruped {
             hips: core::array::from_fn(|i| Vector3::new(0.1805 * end(i), 0.1308 * side(i), 0.0)),
             leg_length: 0.4,
             corners: core::array::from_fn(corner),
-            shapes: Some(&SHAPES),
+            shapes: SHAPES,
+            owners: OWNERS,
+            budgets: BUDGETS,
             seed: core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]),
         }))
     }
 
     /// The same robot with all its mass in the trunk: the single rigid body with its legs where they are at the `start`, on legs that weigh
     /// nothing and whose torques have no limit.
-    pub(crate) fn on_massless_legs(&self, start: &State) -> Result<Self, RobotError> {
+    pub fn on_massless_legs(&self, start: &State) -> Result<Self, RobotError> {
         let mut mass = MassMatrix::ZERO;
         crba(self, &Posture::new(self, start), &mut mass);
         let Inertia {
@@ -134,25 +148,25 @@ impl Quadruped {
     }
 
     /// The leg at a place, by its name in task files.
-    pub(crate) fn leg(&self, place: &str) -> Option<usize> {
+    pub fn leg(&self, place: &str) -> Option<usize> {
         let at = PLACES.iter().position(|name| *name == place)?;
         self.legs.get(at).copied()
     }
 
     /// Name of the place of a leg.
-    pub(crate) fn place(&self, leg: usize) -> &'static str {
+    pub fn place(&self, leg: usize) -> &'static str {
         let at = self.legs.iter().position(|l| *l == leg);
         at.and_then(|at| PLACES.get(at)).copied().unwrap_or("?")
     }
 
     /// Mass, kg.
-    pub(crate) fn mass(&self) -> f64 {
+    pub fn mass(&self) -> f64 {
         let bodies = self.table.bodies().iter().map(|body| body.mass);
         self.table.base().mass + bodies.sum::<f64>()
     }
 
-    /// Whether this is the robot that the simulators have.
-    pub(crate) fn is_a1(&self) -> bool {
+    /// Whether this is the built-in robot.
+    pub fn is_a1(&self) -> bool {
         // A URDF may have this name too, but it has no motors.
         self.name == "a1" && self.motors.is_some()
     }

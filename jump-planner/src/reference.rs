@@ -5,13 +5,14 @@
 //! forces, changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
-use super::kinematics::{com, contact_frame, jacobian, locked, poses, rolling_velocity};
 use super::planned::Origin;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
-use super::{FOOT_COUNT, JOINTS, Node, ROBOT, State, Velocity};
-use a1_model::a1;
+use super::{FOOT_COUNT, JOINTS, Node, State, Velocity};
+use crate::robot::Quadruped;
 use nalgebra::{Matrix6, Vector3, Vector6};
-use rbd_core::{Force, GRAVITY, Motion, Posture, Transform, integrate, joint_friction, rnea};
+use rbd_core::{
+    Force, GRAVITY, Model, Motion, Posture, Transform, integrate, joint_friction, rnea,
+};
 
 /// Longest integration step of the kinematics, s.
 const STEP: f64 = 1e-3;
@@ -23,23 +24,27 @@ const POSING_SHARE: f64 = 0.5;
 const FRICTION_SMOOTHING: f64 = 0.1;
 
 /// The reference and its margins.
-pub(crate) struct Reference {
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) takeoff: f64,
-    pub(crate) posing: f64,
-    pub(crate) touchdown: f64,
+pub struct Reference {
+    /// From the posture in which the robot waits to the touchdown.
+    pub nodes: Vec<Node>,
+    /// When the last foot leaves the ground, s.
+    pub takeoff: f64,
+    /// From when on the legs are in their landing posture, s.
+    pub posing: f64,
+    /// When the plan expects the ground, s.
+    pub touchdown: f64,
     /// Pre-landing joint positions.
-    pub(crate) landing_joints: [f64; JOINTS],
+    pub landing_joints: [f64; JOINTS],
     /// Durations of the phases, s.
-    pub(crate) durations: Vec<f64>,
+    pub durations: Vec<f64>,
     /// Largest planned torque in the push-off, N m.
-    pub(crate) peak_torque: f64,
+    pub peak_torque: f64,
     /// Largest tangential over normal force in the push-off.
-    pub(crate) peak_friction: f64,
+    pub peak_friction: f64,
     /// Largest wrench on the base that the forces do not balance: N or N m; not a number for a stored plan.
-    pub(crate) base_residual: f64,
+    pub base_residual: f64,
     /// Where it comes from.
-    pub(crate) origin: Origin,
+    pub origin: Origin,
 }
 
 /// Motion of the single rigid body over one interval.
@@ -105,12 +110,18 @@ struct Load {
 }
 
 /// Inverse dynamics in contact, starting from the plan's forces.
-fn load(q: &State, v: &Velocity, a: &Velocity, interval: &Interval) -> Result<Load, String> {
-    let kinematics = poses(q);
-    let effort = rnea(&ROBOT, &Posture::new(&ROBOT, q), v, a);
+fn load(
+    robot: &Quadruped,
+    q: &State,
+    v: &Velocity,
+    a: &Velocity,
+    interval: &Interval,
+) -> Result<Load, String> {
+    let kinematics = robot.poses(q);
+    let effort = rnea(robot, &Posture::new(robot, q), v, a);
     let (contacts, mut forces_w) = (&interval.contacts, interval.forces_w);
     let jacobians: Vec<_> = (0..FOOT_COUNT)
-        .map(|leg| jacobian(&kinematics, &contact_frame(&kinematics, leg)))
+        .map(|leg| robot.jacobian(&kinematics, &robot.contact_frame(&kinematics, leg)))
         .collect();
     let push = |forces: &[Vector3<f64>; FOOT_COUNT]| {
         let mut total = rbd_core::Effort::ZERO;
@@ -142,7 +153,7 @@ fn load(q: &State, v: &Velocity, a: &Velocity, interval: &Interval) -> Result<Lo
     }
     let residual = missing(&forces_w).amax();
     let total = push(&forces_w);
-    let lost = joint_friction(&a1::LIMITS, &v.joints, FRICTION_SMOOTHING);
+    let lost = joint_friction(Model::limits(robot), &v.joints, FRICTION_SMOOTHING);
     let torques = core::array::from_fn(|i| effort.joints[i] - total.joints[i] - lost[i]);
     Ok(Load {
         torques,
@@ -152,7 +163,12 @@ fn load(q: &State, v: &Velocity, a: &Velocity, interval: &Interval) -> Result<Lo
 }
 
 /// Inverse dynamics of the legs in free fall.
-fn swing_torques(q: &State, joints: &[f64; JOINTS], rates: &[f64; JOINTS]) -> [f64; JOINTS] {
+fn swing_torques(
+    robot: &Quadruped,
+    q: &State,
+    joints: &[f64; JOINTS],
+    rates: &[f64; JOINTS],
+) -> [f64; JOINTS] {
     let falling = q.base.rotation.inverse() * Vector3::from(GRAVITY);
     let a = Velocity {
         base: Motion::new(falling, Vector3::zeros()),
@@ -162,13 +178,13 @@ fn swing_torques(q: &State, joints: &[f64; JOINTS], rates: &[f64; JOINTS]) -> [f
         base: Motion::ZERO,
         joints: *joints,
     };
-    let effort = rnea(&ROBOT, &Posture::new(&ROBOT, q), &v, &a);
-    let lost = joint_friction(&a1::LIMITS, joints, FRICTION_SMOOTHING);
+    let effort = rnea(robot, &Posture::new(robot, q), &v, &a);
+    let lost = joint_friction(Model::limits(robot), joints, FRICTION_SMOOTHING);
     core::array::from_fn(|i| effort.joints[i] - lost[i])
 }
 
 /// The node before the plan begins: at rest, with the torques that hold the robot.
-pub(crate) fn standing(task: &Task) -> Result<Node, String> {
+pub fn standing(task: &Task) -> Result<Node, String> {
     let q = task.start;
     let held = task.robot.holding(&q)?;
     Ok(Node {
@@ -182,7 +198,8 @@ pub(crate) fn standing(task: &Task) -> Result<Node, String> {
 }
 
 /// The whole-body reference of a solved plan.
-pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
+pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
+    let robot = &task.robot;
     let intervals = intervals(task, &plan.stages);
     let landing_joints = task.robot.landing_joints(&task.start)?;
     let mut q = task.start;
@@ -197,8 +214,8 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     for interval in &intervals[..stance] {
         let speed = |q: &State, s: f64, swing: &[f64; JOINTS]| {
             let [pos, vel, momentum] = interval.at(s);
-            let pulled = vel + (pos - com(q)) / PULL;
-            rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
+            let pulled = vel + (pos - robot.com(q)) / PULL;
+            robot.rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
         };
         // Legs that have left the ground early fold towards the pre-landing posture.
         for leg in (0..FOOT_COUNT).filter(|leg| !interval.contacts[*leg]) {
@@ -220,7 +237,7 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         }
         let end = speed(&q, interval.dt, &swing)?;
         let rate = (end - begin) * (1.0 / interval.dt);
-        let load = load(&middle.0, &middle.1, &rate, interval)?;
+        let load = load(robot, &middle.0, &middle.1, &rate, interval)?;
         base_residual = f64::max(base_residual, load.residual);
         peak_torque = load
             .torques
@@ -248,7 +265,14 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         .last()
         .map_or(takeoff, |last| last.start + last.dt);
     let posing = takeoff + POSING_SHARE * (touchdown - takeoff);
-    fly(&mut nodes, flight, &q, takeoff, posing, &landing_joints);
+    fly(
+        robot,
+        &mut nodes,
+        flight,
+        &q,
+        [takeoff, posing],
+        &landing_joints,
+    );
     let used = &plan.stages[0].state.durations[..task.problem.phase_count];
     Ok(Reference {
         nodes,
@@ -267,14 +291,15 @@ pub(crate) fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
 /// Flight nodes: the base as planned, the legs on cubics from rest at take-off to the pre-landing posture. The
 /// planned take-off speed of the joints is dropped: it would drive the feet on into the ground.
 fn fly(
+    robot: &Quadruped,
     nodes: &mut Vec<Node>,
     flight: &[Interval],
     takeoff_q: &State,
-    takeoff: f64,
-    posing: f64,
+    [takeoff, posing]: [f64; 2],
     landing_joints: &[f64; JOINTS],
 ) {
-    let com_b = takeoff_q.base.rotation.inverse() * (com(takeoff_q) - takeoff_q.base.translation);
+    let com_b =
+        takeoff_q.base.rotation.inverse() * (robot.com(takeoff_q) - takeoff_q.base.translation);
     for interval in flight {
         let [pos, vel, momentum] = interval.at(0.0);
         let rotation = interval.rotation;
@@ -291,10 +316,10 @@ fn fly(
         nodes.push(Node {
             time: interval.start,
             base,
-            base_velocity: Motion::new(rotation.inverse() * vel, locked(&q, &momentum)),
+            base_velocity: Motion::new(rotation.inverse() * vel, robot.locked(&q, &momentum)),
             joints,
             joint_velocities,
-            torques: swing_torques(&q, &joint_velocities, &rates),
+            torques: swing_torques(robot, &q, &joint_velocities, &rates),
             forces_w: [Vector3::zeros(); FOOT_COUNT],
         });
     }
@@ -316,17 +341,16 @@ fn fly(
 }
 
 /// The matrix of a heading.
-pub(crate) fn heading_matrix(heading: f64) -> nalgebra::Rotation3<f64> {
+pub fn heading_matrix(heading: f64) -> nalgebra::Rotation3<f64> {
     so3::exp(&(Vector3::z() * heading))
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{build, com};
-    use crate::jump::kinematics::{contact_frame, poses};
-    use crate::jump::state;
-    use crate::jump::task::Task;
+    use super::build;
+    use crate::state;
+    use crate::task::Task;
 
     /// The reference meets the plan's centre of mass and its feet stay where they roll.
     #[test]

@@ -6,13 +6,13 @@ use rbd_core::Transform;
 use wb_opt::{BASE, EulerOrder};
 
 /// Where the base is at the nodes of a plan, with at least one interval.
-pub(crate) struct Track<P> {
+pub struct Track<P> {
     times: Vec<f64>,
     places: Vec<P>,
 }
 
 /// A place of the base that has places between it and another.
-pub(crate) trait Between {
+pub trait Between {
     /// A share of the way to `to`.
     fn between(&self, to: &Self, share: f64) -> Self;
 }
@@ -34,10 +34,7 @@ impl Between for [f64; BASE] {
 
 impl Track<Transform<f64>> {
     /// From the times of the nodes, s, ascending, and the base's position and rotation at each.
-    pub(crate) fn new(
-        times: Vec<f64>,
-        poses: impl Iterator<Item = (Vector3<f64>, Matrix3<f64>)>,
-    ) -> Self {
+    pub fn new(times: Vec<f64>, poses: impl Iterator<Item = (Vector3<f64>, Matrix3<f64>)>) -> Self {
         // A product of Taylor exponentials is a rotation only nearly.
         let places = poses.map(|(pos, rot)| {
             let near = Rotation3::from_matrix_unchecked(rot);
@@ -50,7 +47,7 @@ impl Track<Transform<f64>> {
 
 impl Track<[f64; BASE]> {
     /// As [`Track::new`], in angles without jumps.
-    pub(crate) fn in_angles(
+    pub fn in_angles(
         times: Vec<f64>,
         poses: impl Iterator<Item = (Vector3<f64>, Matrix3<f64>)>,
         order: EulerOrder,
@@ -75,13 +72,13 @@ impl Track<[f64; BASE]> {
 
 impl<P: Between> Track<P> {
     /// The interval at a time: that of the last node at or before it, the last one at the end.
-    pub(crate) fn interval(&self, time: f64) -> usize {
+    pub fn interval(&self, time: f64) -> usize {
         let after = self.times.partition_point(|t| *t <= time + 1e-9);
         after.saturating_sub(1).min(self.times.len() - 2)
     }
 
     /// Place at a time, on the straight way between nodes.
-    pub(crate) fn at(&self, time: f64) -> P {
+    pub fn at(&self, time: f64) -> P {
         let i = self.interval(time);
         let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);
         self.places[i].between(&self.places[i + 1], share.clamp(0.0, 1.0))

@@ -5,7 +5,8 @@
 //! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else the foot is a point. The trunk is the
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
-use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State};
+use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
+use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
 use rbd_core::{BaseKind, Frame, JointLimits, Kinematics, Link, TableError, TableModel, Transform};
@@ -21,7 +22,7 @@ const TRUNK_HEIGHT: f64 = 0.14;
 
 /// Why a robot cannot be planned for.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum RobotError {
+pub enum RobotError {
     /// The file cannot be read.
     #[error("{0}")]
     File(#[from] std::io::Error),
@@ -81,7 +82,7 @@ pub(crate) enum RobotError {
 
 impl Quadruped {
     /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
-    pub(crate) fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
+    pub fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
         let text = crate::file::read_text(path)?;
         let locks = locks.iter().map(|lock| parse_lock(lock));
         let mut options = Options {
@@ -146,7 +147,10 @@ impl Quadruped {
         let length =
             |leg: usize| planar(offset(3 * leg + 2)) + planar(Vector3::from(feet[leg].offset));
         let leg_length = (0..LEGS).map(length).fold(f64::INFINITY, f64::min);
-        let limits = core::array::from_fn(|i| robot.joints[i].limits);
+        let limits: [JointLimits<f64>; JOINTS] = core::array::from_fn(|i| robot.joints[i].limits);
+        let strongest = limits
+            .iter()
+            .fold(0.0, |m, limit| f64::max(m, limit.effort));
         let mut data = Data {
             name: leaked(&robot.name),
             table,
@@ -159,10 +163,14 @@ impl Quadruped {
             hips,
             leg_length,
             corners: trunk(&document, robot, leg_length),
-            shapes: None,
+            shapes: SHAPES,
+            owners: OWNERS,
+            budgets: hardware::budgets(strongest),
             seed: [0.0; JOINTS],
         };
         data.seed = seed(&data)?;
+        data.shapes = hardware::shapes(&data);
+        data.owners = hardware::owners(&Self::leak(data.clone()));
         Ok(Self::leak(data))
     }
 }
@@ -191,7 +199,7 @@ fn check_limits(joint: &JointInfo) -> Result<(), RobotError> {
 }
 
 /// Names of a robot live as long as the robot, which lives as long as the program.
-fn leaked(name: &str) -> &'static str {
+pub(crate) fn leaked(name: &str) -> &'static str {
     Box::leak(name.to_owned().into_boxed_str())
 }
 

@@ -2,7 +2,7 @@
 
 /// Numbers from the first to the second.
 #[derive(Clone, Copy)]
-pub(crate) enum Range {
+pub enum Range {
     /// With both ends.
     From(f64, f64),
     /// Without the first.
@@ -11,7 +11,7 @@ pub(crate) enum Range {
 
 impl Range {
     /// What the number must be, and what it is, where it is outside.
-    pub(crate) fn check(self, x: f64) -> Result<(), String> {
+    pub fn check(self, x: f64) -> Result<(), String> {
         let (inside, words) = match self {
             Self::From(low, high) => (low <= x && x <= high, format!("from {low} to {high}")),
             Self::Above(low, high) => (
@@ -27,10 +27,7 @@ impl Range {
     }
 
     /// The same for each of some numbers.
-    pub(crate) fn check_all<'a>(
-        self,
-        all: impl IntoIterator<Item = &'a f64>,
-    ) -> Result<(), String> {
+    pub fn check_all<'a>(self, all: impl IntoIterator<Item = &'a f64>) -> Result<(), String> {
         all.into_iter().try_for_each(|x| self.check(*x))
     }
 }

@@ -13,8 +13,8 @@ mod forward;
 mod limits;
 mod values;
 
-use crate::jump::{self, stored::Stored};
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use crate::stored::Stored;
 use clearance::is_clearance;
 use forward::{Forward, Velocity};
 use jump_control::container::PlanNode;
@@ -22,7 +22,7 @@ use limits::Limits;
 use nalgebra::Vector3;
 use rbd_core::difference;
 use serde_json::{Value, json};
-pub(crate) use values::check as check_values;
+pub use values::check as check_values;
 
 /// Step of the integration, s.
 const STEP: f64 = 1e-4;
@@ -39,39 +39,39 @@ const BEYOND: f64 = 0.01;
 
 /// The smallest distance from one limit over the whole plan.
 #[derive(Clone, Debug)]
-pub(crate) struct Margin {
+pub struct Margin {
     /// Which limit, of which joint or foot.
-    pub(crate) name: String,
+    pub name: String,
     /// Distance as a share of the limit's range; negative beyond it.
-    pub(crate) value: f64,
+    pub value: f64,
     /// When, s.
-    pub(crate) time: f64,
+    pub time: f64,
 }
 
 /// What an audit found.
 #[derive(Clone, Debug)]
-pub(crate) struct Audit {
+pub struct Audit {
     /// Angle between the planned and the integrated base at touchdown, rad.
-    pub(crate) flight_orientation_error: f64,
+    pub flight_orientation_error: f64,
     /// Distance between them, m.
-    pub(crate) flight_position_error: f64,
+    pub flight_position_error: f64,
     /// Time for which each joint's torque is at its limit, s.
-    pub(crate) saturation: [f64; JOINTS],
+    pub saturation: [f64; JOINTS],
     /// Time for which any joint's is, s.
-    pub(crate) any_saturation: f64,
+    pub any_saturation: f64,
     /// Largest difference of an integrated interval from the next node: base or joint position, m or rad, and velocity.
-    pub(crate) defect: [f64; 2],
+    pub defect: [f64; 2],
     /// Largest difference of a stored force from that of the robot under the stored torques, as a share of the largest normal force.
-    pub(crate) force_error: f64,
+    pub force_error: f64,
     /// All limits, the worst first.
-    pub(crate) margins: Vec<Margin>,
+    pub margins: Vec<Margin>,
     /// What heights and gaps are shares of, m.
     leg_length: f64,
 }
 
 impl Audit {
     /// Audits a stored plan of this robot.
-    pub(crate) fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
+    pub fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
         let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
         let takeoff = f64::from(plan.header().takeoff);
         let mut forward = Forward::new(robot);
@@ -137,13 +137,13 @@ impl Audit {
     }
 
     /// Whether the plan may be called solved.
-    pub(crate) fn passes(&self) -> bool {
+    pub fn passes(&self) -> bool {
         self.is_a_motion() && self.margins.iter().all(|margin| margin.value >= -BEYOND)
     }
 
     /// Whether the robot could move so if its links passed through the ground and each other. A plan that only fails there is worth a
     /// simulation, which shows what comes of it.
-    pub(crate) fn is_a_motion(&self) -> bool {
+    pub fn is_a_motion(&self) -> bool {
         let mut inner = self.margins.iter().filter(|m| !is_clearance(&m.name));
         self.flight_orientation_error <= ORIENTATION
             && self.flight_position_error <= POSITION
@@ -157,7 +157,7 @@ impl Audit {
     }
 
     /// What was found, in a line.
-    pub(crate) fn summary(&self) -> String {
+    pub fn summary(&self) -> String {
         let worst = self.margins.first().map_or_else(String::new, |m| {
             format!(
                 ", worst margin {} {:.4} at {:.3} s",
@@ -173,7 +173,7 @@ impl Audit {
     }
 
     /// Why the plan does not pass.
-    pub(crate) fn complaint(&self) -> String {
+    pub fn complaint(&self) -> String {
         let mut told = Vec::new();
         // Not <=: NaN is no agreement either.
         if !(self.flight_orientation_error <= ORIENTATION && self.flight_position_error <= POSITION)
@@ -210,7 +210,7 @@ impl Audit {
     }
 
     /// The object of `--json`.
-    pub(crate) fn json(&self) -> Value {
+    pub fn json(&self) -> Value {
         json!({
             "flight_orientation_error_deg": self.flight_orientation_error.to_degrees(),
             "flight_position_error_m": self.flight_position_error,
@@ -220,9 +220,9 @@ impl Audit {
     }
 
     /// Everything that was found.
-    pub(crate) fn details(&self, robot: &Quadruped) -> Value {
+    pub fn details(&self, robot: &Quadruped) -> Value {
         let mut details = self.json();
-        let names = (0..JOINTS).map(|i| crate::jump::stored::joint_name(robot, i));
+        let names = (0..JOINTS).map(|i| crate::stored::joint_name(robot, i));
         let saturation = names.zip(self.saturation.map(|t| json!(t * 1e3)));
         details["torque_saturation_by_joint_ms"] = Value::Object(saturation.collect());
         details["interval_defect"] = json!({
@@ -271,5 +271,5 @@ impl Held {
 
 /// Configuration and velocity at a node.
 fn state(node: &PlanNode<JOINTS, LEGS>) -> (State, Velocity) {
-    jump::state(&node.node())
+    crate::state(&node.node())
 }

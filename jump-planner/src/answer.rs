@@ -14,18 +14,18 @@ use serde_json::{Value, json};
 use srb_opt::Row;
 
 /// Why there is no plan.
-pub(crate) struct Answer {
+pub struct Answer {
     /// `Infeasible` where that is proven, else `NotFound`, or `AuditFailed`.
-    pub(crate) status: &'static str,
+    pub status: &'static str,
     /// What blocks.
-    pub(crate) because: String,
+    pub because: String,
     /// Changes with which there would be a plan, each on its own.
-    pub(crate) relaxations: Vec<String>,
+    pub relaxations: Vec<String>,
 }
 
 impl Answer {
     /// As text.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let head = match self.status {
             "Infeasible" => "infeasible",
             "AuditFailed" => "planned, but the audit refuses the plan",
@@ -40,12 +40,12 @@ impl Answer {
     }
 
     /// As JSON.
-    pub(crate) fn json(&self) -> Value {
+    pub fn json(&self) -> Value {
         json!({ "because": self.because, "relaxations": self.relaxations })
     }
 
     /// From a proof.
-    pub(crate) fn proven(proof: Impossible) -> Self {
+    pub fn proven(proof: Impossible) -> Self {
         Self {
             status: "Infeasible",
             because: format!("{} ({} bound)", proof.because, proof.bound),
@@ -54,7 +54,7 @@ impl Answer {
     }
 
     /// From a rigid-body plan that was not found.
-    pub(crate) fn no_body_plan(task: &Task, plan: &SrbPlan) -> Self {
+    pub fn no_body_plan(task: &Task, plan: &SrbPlan) -> Self {
         let rows = blocking_rows::<4, _, _, _, _, _, _>(&plan.stages);
         let worst = rows[0].map_or(0.0, |row| row.violation.abs());
         let counts = |violation: f64| violation.abs() >= 0.05 * worst && violation.abs() > 1e-4;
@@ -76,7 +76,7 @@ impl Answer {
     }
 
     /// From a whole-body plan that was not found.
-    pub(crate) fn no_whole_body_plan(task: &Task, srb: &SrbPlan, plan: &WholeBodyPlan) -> Self {
+    pub fn no_whole_body_plan(task: &Task, srb: &SrbPlan, plan: &WholeBodyPlan) -> Self {
         let rows = plan
             .blocked
             .iter()

@@ -2,8 +2,8 @@
 
 use super::clearance::Clearance;
 use super::{Held, Margin};
-use crate::jump::stored::joint_name;
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use crate::stored::joint_name;
 use jump_control::container::{GroundStep, Header};
 use nalgebra::Vector3;
 use rbd_core::{Link, Model, Motor};
@@ -16,22 +16,22 @@ const SATURATED: f64 = 1e-3;
 /// Watches the limits of a robot. Ranges: of a joint's position, its limits; of its speed and torque, the largest; of forces, the
 /// largest planned normal force of a foot (times friction); of heights and gaps, the leg. In the last interval feet come down, so that their
 /// height is no limit there.
-pub(super) struct Limits<'a> {
+pub(crate) struct Limits<'a> {
     robot: &'a Quadruped,
     motors: Option<&'a [Motor<f64>; JOINTS]>,
     ground: Option<GroundStep>,
-    clearance: Option<Clearance>,
+    clearance: Clearance,
     friction: f64,
     force_range: f64,
     names: Vec<String>,
-    pub(super) saturation: [f64; JOINTS],
-    pub(super) any_saturation: f64,
+    pub(crate) saturation: [f64; JOINTS],
+    pub(crate) any_saturation: f64,
     /// The smallest of each limit so far, by its name's index.
-    pub(super) margins: Vec<Margin>,
+    pub(crate) margins: Vec<Margin>,
 }
 
 impl<'a> Limits<'a> {
-    pub(super) fn new(robot: &'a Quadruped, header: &Header<'_>, start: &State) -> Self {
+    pub(crate) fn new(robot: &'a Quadruped, header: &Header<'_>, start: &State) -> Self {
         let clearance = Clearance::new(robot, header.ground, start);
         let names = (0..JOINTS).map(|i| joint_name(robot, i));
         let names = names.flat_map(|joint| {
@@ -50,7 +50,7 @@ impl<'a> Limits<'a> {
             names: names
                 .chain(feet)
                 .chain(["trunk height".to_owned()])
-                .chain(clearance.iter().flat_map(Clearance::names))
+                .chain(clearance.names())
                 .collect(),
             clearance,
             saturation: [0.0; JOINTS],
@@ -60,7 +60,7 @@ impl<'a> Limits<'a> {
     }
 
     /// Looks at the state after a step that began at `time`.
-    pub(super) fn check(
+    pub(crate) fn check(
         &mut self,
         time: f64,
         h: f64,
@@ -111,10 +111,8 @@ impl<'a> Limits<'a> {
             .iter()
             .map(|c| self.height(&q.base.point(c)));
         values.push(corners.fold(f64::INFINITY, f64::min));
-        if let Some(clearance) = &self.clearance {
-            let gaps = clearance.gaps(&kinematics, held);
-            values.extend(gaps.map(|gap| gap / self.robot.leg_length));
-        }
+        let gaps = self.clearance.gaps(&kinematics, held);
+        values.extend(gaps.map(|gap| gap / self.robot.leg_length));
         self.remember(time + h, &values);
     }
 

@@ -25,20 +25,20 @@ use rbd_core::Model;
 
 /// A proof that a task has no plan.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Impossible {
+pub struct Impossible {
     /// Name of the bound.
-    pub(crate) bound: &'static str,
+    pub bound: &'static str,
     /// What blocks.
-    pub(crate) because: String,
+    pub because: String,
     /// The smallest change that would satisfy the bound.
-    pub(crate) relaxation: String,
+    pub relaxation: String,
 }
 
 /// Distance that does not count, m.
 const SLACK: f64 = 1e-6;
 
 /// The first bound that the task breaks.
-pub(crate) fn impossible(task: &Task) -> Option<Impossible> {
+pub fn impossible(task: &Task) -> Option<Impossible> {
     let facts = Facts::of(task);
     let bounds: [fn(&Task, &Facts) -> Option<Impossible>; 9] = [
         durations, falling, feet, start, goal, sideways, free_fall, impulse, lifting,
@@ -445,8 +445,8 @@ fn joint_power(task: &Task, i: usize, torque_share: f64) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::impossible;
-    use crate::jump::task::Task;
-    use crate::jump::task_file::BUILT_IN;
+    use crate::task::Task;
+    use crate::task::file::BUILT_IN;
     use core::ops::ControlFlow;
     use ocp_solver::{Settings, Status};
 

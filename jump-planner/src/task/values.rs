@@ -1,29 +1,29 @@
 //! What the numbers of a task file may be: wide enough for any legged robot, narrow enough that nothing overflows, no memory is asked for
 //! that is not there, and a slip of the pen is named.
 
-use super::task_file::{LimitsTable, WeightsTable};
+use super::file::{LimitsTable, WeightsTable};
 use crate::range::Range::{self, Above, From};
 
 /// Lengths and displacements, m.
-pub(super) const LENGTH: Range = From(-100.0, 100.0);
+pub(crate) const LENGTH: Range = From(-100.0, 100.0);
 /// Ten turns, degrees.
-pub(super) const TURN: Range = From(-3600.0, 3600.0);
+pub(crate) const TURN: Range = From(-3600.0, 3600.0);
 /// Length of an axis, which is scaled to 1.
-pub(super) const AXIS: Range = From(1e-6, 1e6);
+pub(crate) const AXIS: Range = From(1e-6, 1e6);
 /// Duration of a phase, s.
-pub(super) const DURATION: Range = Above(0.0, 5.0);
+pub(crate) const DURATION: Range = Above(0.0, 5.0);
 /// Duration of a jump, s: intervals of milliseconds are held in memory.
-pub(super) const TOTAL: Range = Above(0.0, 10.0);
+pub(crate) const TOTAL: Range = Above(0.0, 10.0);
 /// A share of what there is.
 const SHARE: Range = Above(0.0, 1.0);
 /// Weights of costs.
 const WEIGHT: Range = From(1e-12, 1e12);
 
 /// A value of a task file that cannot be: `(key, what it must be)`.
-pub(super) type Unusable = (String, String);
+pub(crate) type Unusable = (String, String);
 
 /// Fails with the key where a value does not meet its condition.
-pub(super) fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
+pub(crate) fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
     if ok {
         Ok(())
     } else {
@@ -32,11 +32,11 @@ pub(super) fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
 }
 
 /// Fails with the key where a value is out of its range.
-pub(super) fn within(x: f64, range: Range, key: &str) -> Result<(), Unusable> {
+pub(crate) fn within(x: f64, range: Range, key: &str) -> Result<(), Unusable> {
     range.check(x).map_err(|what| (key.to_owned(), what))
 }
 
-pub(super) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
+pub(crate) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
     within(limits.friction, From(0.0, 10.0), "limits.friction")?;
     within(limits.friction_share, SHARE, "limits.friction_share")?;
     within(
@@ -52,7 +52,7 @@ pub(super) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
         .try_for_each(|x| within(x, SHARE, "limits.torque_shares"))
 }
 
-pub(super) fn weights(weights: &WeightsTable) -> Result<(), Unusable> {
+pub(crate) fn weights(weights: &WeightsTable) -> Result<(), Unusable> {
     let all = [
         ("weights.omega", weights.omega),
         ("weights.force", weights.force),

@@ -8,7 +8,7 @@ use std::path::Path;
 const LONGEST: u64 = 64 << 20;
 
 /// The bytes of a file.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
+pub fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut file = File::open(path)?.take(LONGEST + 1);
     file.read_to_end(&mut bytes)?;
@@ -20,7 +20,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The text of a file.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
+pub fn read_text(path: &Path) -> Result<String> {
     let what = |_| Error::new(ErrorKind::InvalidData, "not UTF-8 text");
     String::from_utf8(read(path)?).map_err(what)
 }

@@ -2,7 +2,7 @@
 
 use super::FOOT_COUNT;
 use super::pace::Pace;
-pub(crate) use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
+pub use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
 use super::setup::{NI, NU, NX, Setup, times};
 use super::stored::{open, store};
 use super::task::{PHASES, SrbPlan, Task};
@@ -17,7 +17,7 @@ const PATIENCE: usize = 150;
 
 /// Where the durations of the phases come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Timing {
+pub enum Timing {
     /// From the rigid body's plan: the two-stage way of paper A.
     Given,
     /// They are unknowns of the whole body's problem, and start from the given ones.
@@ -25,54 +25,62 @@ pub(crate) enum Timing {
 }
 
 /// A solved whole-body plan.
-pub(crate) struct WholeBodyPlan {
-    pub(crate) outcome: Solution<f64>,
-    pub(crate) judged: Judgement<f64>,
+pub struct WholeBodyPlan {
+    /// How the solver ended.
+    pub outcome: Solution<f64>,
+    /// Cost and violations in physical units.
+    pub judged: Judgement<f64>,
     /// Torque that the plan was allowed of the strongest joint, N m.
-    pub(crate) torque_limit: f64,
-    pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
-    pub(crate) intervals: Vec<Interval>,
+    pub torque_limit: f64,
+    /// Contact phases with their durations.
+    pub phases: Vec<Phase<f64, FOOT_COUNT>>,
+    /// All intervals in order.
+    pub intervals: Vec<Interval>,
     /// State at the planned touchdown.
-    pub(crate) end: State<f64, N>,
+    pub end: State<f64, N>,
     /// What blocks, worst first; nothing if the plan was solved.
-    pub(crate) blocked: Vec<Blocked>,
+    pub blocked: Vec<Blocked>,
     /// Share of the torque limits that the plan was allowed.
-    pub(crate) torque_share: f64,
+    pub torque_share: f64,
 }
 
 /// A row that is violated where the solver stopped.
-pub(crate) struct Blocked {
-    pub(crate) row: Row,
+pub struct Blocked {
+    /// Which row.
+    pub row: Row,
     /// By how much, in the row's own unit.
-    pub(crate) violation: f64,
+    pub violation: f64,
 }
 
 /// One interval of a plan; torques and forces are held over it.
-pub(crate) struct Interval {
-    /// Start and length, s.
-    pub(crate) start: f64,
-    pub(crate) dt: f64,
+pub struct Interval {
+    /// Start, s.
+    pub start: f64,
+    /// Length, s.
+    pub dt: f64,
     /// State at the start.
-    pub(crate) state: State<f64, N>,
+    pub state: State<f64, N>,
     /// The middle.
-    pub(crate) sample: Sample<f64, N, FOOT_COUNT>,
-    pub(crate) gains: Gains<f64, N, FOOT_COUNT>,
+    pub sample: Sample<f64, N, FOOT_COUNT>,
+    /// Feedback gains of the solver's last recursion.
+    pub gains: Gains<f64, N, FOOT_COUNT>,
 }
 
 /// A plan and what its audit found.
-pub(crate) struct Audited {
-    pub(crate) plan: WholeBodyPlan,
+pub struct Audited {
+    /// The plan, or how far the solver came.
+    pub plan: WholeBodyPlan,
     /// The plan as it is stored; nothing of a plan that was not solved.
-    pub(crate) bytes: Vec<u8>,
+    pub bytes: Vec<u8>,
     /// None of a plan that was not solved.
-    pub(crate) audit: Option<Audit>,
+    pub audit: Option<Audit>,
     /// Time of planning, without the audit, ms.
-    pub(crate) wall_ms: f64,
+    pub wall_ms: f64,
 }
 
 /// Plans the whole body and audits the plan. Where the audit finds limits exceeded between nodes or a flight that is not
 /// true to the dynamics, the intervals were too long for this robot: they are halved, once.
-pub(crate) fn audited(
+pub fn audited(
     task: &Task,
     srb: &SrbPlan,
     timing: Timing,
@@ -110,7 +118,7 @@ pub(crate) fn audited(
 }
 
 /// Plans the whole body along a single-rigid-body plan.
-pub(crate) fn plan(
+pub fn plan(
     task: &Task,
     srb: &SrbPlan,
     timing: Timing,
