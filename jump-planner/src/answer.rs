@@ -4,6 +4,7 @@
 //! with the point of least violation that it came to and the rows that are violated there. The relaxations are not guessed from those
 //! rows: each is a task that was planned.
 
+use super::audit::Audit;
 use super::bounds::Impossible;
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Blocked, Timing, WholeBodyPlan};
@@ -15,7 +16,7 @@ use srb_opt::Row;
 
 /// Why there is no plan.
 pub struct Answer {
-    /// `Infeasible` where that is proven, else `NotFound`, or `AuditFailed`.
+    /// `Infeasible` where that is proven, else `NotFound`, `AuditFailed` or `Cancelled`.
     pub status: &'static str,
     /// What blocks.
     pub because: String,
@@ -29,6 +30,7 @@ impl Answer {
         let head = match self.status {
             "Infeasible" => "infeasible",
             "AuditFailed" => "planned, but the audit refuses the plan",
+            "Cancelled" => "cancelled",
             _ => "not found",
         };
         let mut text = format!("{head}: {}", self.because);
@@ -50,6 +52,24 @@ impl Answer {
             status: "Infeasible",
             because: format!("{} ({} bound)", proof.because, proof.bound),
             relaxations: vec![proof.relaxation],
+        }
+    }
+
+    /// From an audit that the plan did not pass.
+    pub(crate) fn failed(audit: &Audit) -> Self {
+        Self {
+            status: "AuditFailed",
+            because: audit.complaint(),
+            relaxations: Vec::new(),
+        }
+    }
+
+    /// From an observer that did not want to wait.
+    pub(crate) fn cancelled() -> Self {
+        Self {
+            status: "Cancelled",
+            because: "stopped before a plan was found".to_owned(),
+            relaxations: Vec::new(),
         }
     }
 
@@ -322,7 +342,7 @@ fn stronger(task: &Task, srb: &SrbPlan) -> Option<String> {
     let (speed, j) = speeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let bytes = super::stored::store(&strong, &plan, false).ok()?;
     let stored = super::stored::open(&bytes, &task.robot).ok()?;
-    let audit = crate::audit::Audit::of(&task.robot, &stored).ok()?;
+    let audit = Audit::of(&task.robot, &stored).ok()?;
     Some(format!(
         "peak torque of {} would have to be {peak:.0} N m and peak speed of {} {speed:.0} rad/s: joints saturate for {:.1} ms of that plan",
         super::stored::joint_name(&task.robot, i),

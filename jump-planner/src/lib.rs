@@ -5,6 +5,7 @@ pub mod audit;
 pub mod bounds;
 pub mod file;
 mod pace;
+mod plan;
 pub mod planned;
 pub mod range;
 pub mod reference;
@@ -15,6 +16,9 @@ pub mod task;
 pub mod terrain;
 pub mod track;
 pub mod whole_body;
+
+pub use plan::{Outcome, Step, plan};
+pub use whole_body::Timing;
 
 use rbd_core::{Configuration, Tangent};
 

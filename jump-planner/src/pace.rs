@@ -9,7 +9,7 @@ const NEAR: f64 = 0.05;
 
 /// The violations of an attempt so far.
 #[derive(Debug, Default)]
-pub struct Pace {
+pub(crate) struct Pace {
     attempt: usize,
     violations: Vec<f64>,
 }
@@ -17,7 +17,7 @@ pub struct Pace {
 impl Pace {
     /// Counts an iterate of an attempt; whether its violation, which falls about geometrically, will be near zero within
     /// `patience` iterations of the attempt.
-    pub fn keeps_up(&mut self, attempt: usize, violation: f64, patience: usize) -> bool {
+    pub(crate) fn keeps_up(&mut self, attempt: usize, violation: f64, patience: usize) -> bool {
         if attempt != self.attempt {
             self.attempt = attempt;
             self.violations.clear();

@@ -111,9 +111,7 @@ impl Planner {
 }
 
 fn whole_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
-    let whole = whole_body::audited(task, srb, Timing::Given, false, |_| {
-        ControlFlow::Continue(())
-    })?;
+    let whole = whole_body::audited(task, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
     let solved = solved(task, &whole.plan, whole.wall_ms)?;
     if let Some(audit) = whole.audit.filter(|audit| !audit.is_a_motion()) {
         return Err(format!(

@@ -84,7 +84,6 @@ pub fn audited(
     task: &Task,
     srb: &SrbPlan,
     timing: Timing,
-    with_gains: bool,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
     let mut wall_ms = 0.0;
@@ -94,7 +93,7 @@ pub fn audited(
         wall_ms += clock.elapsed().as_secs_f64() * 1e3;
         let (mut bytes, mut audit) = (Vec::new(), None);
         if plan.outcome.status == Status::Solved {
-            bytes = store(task, &plan, with_gains)?;
+            bytes = store(task, &plan, false)?;
             let stored = open(&bytes, &task.robot).map_err(|error| error.to_string())?;
             audit = Some(Audit::of(&task.robot, &stored)?);
         }

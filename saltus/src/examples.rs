@@ -76,7 +76,7 @@ Exit codes: 0 all on target, or all as expected; 2 one is not: it is named, or a
 pub(crate) const REPRODUCE: &str = "\
 Examples:
   saltus reproduce --quick                            native simulator only
-  saltus reproduce --expect saltus/expected.toml      the gate: every item as expected
+  saltus reproduce --expect jump-planner/tasks/expected.toml      the gate: every item as expected
   saltus reproduce --json --out out/papers            also MuJoCo, in a build with the feature `mujoco`
 
 Exit codes: 0 every claim that can be judged holds; 2 one does not, or the folder is refused; 130 stopped by Ctrl-C, with the page of the

@@ -9,7 +9,7 @@ use rbd_core::{
     joint_friction,
 };
 
-pub type Velocity = Tangent<f64, JOINTS>;
+pub(super) type Velocity = Tangent<f64, JOINTS>;
 
 /// Rows of all feet.
 const ROWS: usize = 3 * LEGS;

@@ -46,9 +46,6 @@ pub(crate) struct Args {
     /// New folder for the plan: plan.bin, the container that controllers read, and plan.json.
     #[arg(long, requires = "task")]
     out: Option<PathBuf>,
-    /// Leave the feedback gains out of the container: they take seven eighths of it.
-    #[arg(long, requires = "out")]
-    no_gains: bool,
     /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).
     #[arg(long)]
     reference: Option<String>,
