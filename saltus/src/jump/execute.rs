@@ -9,7 +9,7 @@ use super::task::Task;
 use super::{FOOT_COUNT, JOINTS, ROBOT, feet, kinematics};
 use crate::lab::{Boards, Disturbance, Interface, Motors};
 use crate::verdict::{Hardware, Stage, Tick as HardwareTick};
-use a1_model::{BUDGETS, MOTORS, OWNERS, a1};
+use a1_model::{BUDGETS, BUILD, MOTORS, OWNERS, a1};
 use jump_control::{Fault, Phase, Plan, Torques, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use landing::Outcome;
@@ -263,7 +263,7 @@ pub(crate) fn run_watched(
     let mut world = plant(trial.sim, task, &trial.disturbance)?;
     let jump = jump(task, reference)?;
     let mut workspace = landing::Workspace::new();
-    let mut settings = Settings::a1(feet(), MOTORS, task.start.joints);
+    let mut settings = Settings::new(&BUILD, feet(), MOTORS, task.start.joints);
     for measure in trial.without {
         measure.leave(&mut settings);
     }

@@ -7,9 +7,11 @@ mod plant;
 mod programs;
 mod wholebody;
 
-use a1_model::A1Geared;
+use a1_model::{A1Geared, BUILD};
 use icub_model::Icub23Geared;
-use rbd_core::{Configuration, Frame, JointLimits, Model, Motion, Motor, Tangent, Transform};
+use rbd_core::{
+    Build, Configuration, Frame, JointLimits, Model, Motion, Motor, Tangent, Transform,
+};
 
 use crate::inputs::Stream;
 use crate::{Real, Recorder, Subject};
@@ -58,6 +60,7 @@ pub fn planner<T: Real, R: Recorder>(recorder: &mut R) {
 /// A robot with its tables and a state near standing.
 struct Robot<T: Real, M, const N: usize, const F: usize> {
     model: M,
+    build: Build<T>,
     feet: [Frame<T>; F],
     limits: [JointLimits<T>; N],
     motors: [Motor<T>; N],
@@ -75,6 +78,7 @@ where
         let mut stream = Stream::new(12);
         Self {
             model: A1Geared,
+            build: BUILD.cast(),
             feet: core::array::from_fn(foot),
             limits: *A1Geared.limits(),
             motors: motors(&A1Geared),
