@@ -173,23 +173,41 @@ fn base(t: f64) -> (Transform<f64>, Motion<f64>, bool) {
     let height = 0.25 + 5.0 * pushed * pushed + (2.0 - 0.5 * GRAVITY * flown) * flown;
     let fallen = rising * 0.05 * (1.0 - left * left);
     let turned = 4.0 * flown + 0.3 * pushed;
-    let rate = if landed > 0.0 {
-        0.3 * left
-    } else {
-        4.0 * flown.signum().max(0.0)
+    let rate = match (flown > 0.0, landed > 0.0) {
+        (true, false) => 4.0,
+        _ => 0.3 * left,
     };
-    let rotation = so3::exp(&Vector3::new(0.05 * pushed, turned, 0.02));
+    let rotation = so3::exp(&Vector3::new(0.05 * pushed, 0.02, turned));
     let vel_w = Vector3::new(0.3 * left, 0.05 * left, rising * left);
     let pose = Transform::new(rotation, Vector3::new(0.3 * t * left, 0.0, height + fallen));
-    let velocity = Motion::new(rotation.inverse() * vel_w, Vector3::y() * rate);
+    let velocity = Motion::new(rotation.inverse() * vel_w, Vector3::z() * rate);
     (pose, velocity, flown > 0.0 && landed == 0.0)
 }
 
-/// What A1 measures at millisecond `k`, beside its plan by a few per cent.
+/// What A1 measures at millisecond `k`: it flies higher than planned and leans, one foot sensor is dead after the landing and another
+/// chatters.
 fn heard(k: i32) -> Inputs<f64, 12, 4> {
     let t = f64::from(k) * 1e-3;
-    let (base, base_velocity, flies) = base(t * 1.02);
-    let load = |i: usize| 30.0 + 2.0 * i as f64;
+    let (mut base, mut base_velocity, flies) = base(t * 1.02);
+    if flies {
+        base.translation.z += 0.1;
+        base_velocity.linear += base.rotation.inverse() * Vector3::new(0.0, 0.0, 0.3);
+    }
+    if t < TOUCHDOWN {
+        base_velocity.angular += Vector3::new(0.1, -0.2, 0.05);
+    }
+    let landed = !flies && t > TAKEOFF;
+    let load = |foot: usize| match (flies, landed, foot) {
+        (true, ..) | (_, true, 2) => 0.0,
+        (_, true, 3) if k % 40 < 10 => 0.0,
+        // It settles until the start.
+        _ => 30.0 + 2.0 * foot as f64 + 4.0 * t.min(0.0),
+    };
+    let share = if flies {
+        0.0
+    } else {
+        0.5 + 0.4 * so3::math::sin(15.0 * t)
+    };
     let wave = |i: usize| 0.01 * so3::math::sin(20.0 * t + i as f64);
     let q = crouch();
     Inputs {
@@ -198,10 +216,10 @@ fn heard(k: i32) -> Inputs<f64, 12, 4> {
             base_velocity,
             joints: core::array::from_fn(|i| q[i] + wave(i)),
             joint_velocities: core::array::from_fn(|i| 20.0 * wave(i + 3)),
-            foot_forces: core::array::from_fn(|i| if flies { 0.0 } else { load(i) }),
+            foot_forces: core::array::from_fn(load),
             age: 0.002,
         },
-        felt: core::array::from_fn(|i| if flies { 0.0 } else { [0.5, 1.0, 6.0][i % 3] }),
+        felt: core::array::from_fn(|i| share * [0.5, 1.0, 6.0][i % 3]),
     }
 }
 
@@ -319,9 +337,11 @@ fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
     ];
     let (own, foreign) = (LARGE.settings(), SMALL.settings());
     let similar = fly(LARGE, own);
-    for (name, take) in takes {
+    let idle = takes.iter().filter(|(_, take)| {
         let mut settings = own;
         take(&mut settings, &foreign);
-        assert!(fly(LARGE, settings) != similar, "{name} does nothing");
-    }
+        fly(LARGE, settings) == similar
+    });
+    let idle: Vec<_> = idle.map(|(name, _)| name).collect();
+    assert!(idle.is_empty(), "{idle:?}");
 }

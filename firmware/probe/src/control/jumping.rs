@@ -1,8 +1,8 @@
 //! From a plan to torques: sampler, Cartesian PD, joint PD, slew, phases, watch, scales, profiles.
 
 use jump_control::{
-    CartesianPd, ComProfile, Curve, Event, JointCommand, JointGains, Measurement, MinimumJerk,
-    Node, Phase, Plan, Reference, Scales, Slew, Torques, Watch, next_phase, sample, takeoff_speed,
+    CartesianPd, ComProfile, Curve, Event, JointCommand, Measurement, MinimumJerk, Node, Phase,
+    Plan, Reference, Scales, Slew, Torques, Watch, next_phase, sample, takeoff_speed,
 };
 use rbd_core::Tree;
 
