@@ -166,7 +166,7 @@ mod tests {
     use super::PreLanding;
     use a1_model::{A1Geared, BUILD, FEET};
     use nalgebra::Vector3;
-    use rbd_core::{Build, Configuration, Kinematics, Limbs, Posture, forward_kinematics};
+    use rbd_core::{Configuration, Kinematics, Limbs, Posture, forward_kinematics};
 
     const LEVEL: [f64; 12] = [
         0.14, 0.77, -1.54, -0.14, 0.77, -1.54, 0.14, 0.77, -1.54, -0.14, 0.77, -1.54,
