@@ -1,8 +1,9 @@
 //! What a URDF does not say of a robot's hardware, by rules that it does say enough for.
 
-use super::{Data, JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, Shapes};
+use super::{Data, JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, Shapes, State};
+use a1_model::BUILD;
 use nalgebra::Vector3;
-use rbd_core::{Budgets, Link, Model, Motor, Shape, Tree};
+use rbd_core::{Budgets, Build, Link, Model, Motor, Shape, Tree};
 
 /// Speed at which a motor without data has nothing left, over its speed limit.
 const NO_LOAD: f64 = 1.25;
@@ -37,6 +38,20 @@ impl Quadruped {
             no_load_speed: NO_LOAD * limits[i].speed,
             rotor_inertia: bodies[i].rotor_inertia,
         })
+    }
+
+    /// Its size, from which the gains of its controllers follow; the inertia is that of the standing robot.
+    #[must_use]
+    pub fn build(&self, standing: &State) -> Build<f64> {
+        if self.is_a1() {
+            return BUILD;
+        }
+        let inertia = self.locked_inertia(standing);
+        Build {
+            mass: self.mass(),
+            leg_length: self.leg_length,
+            inertia_b: [inertia[(0, 0)], inertia[(1, 1)], inertia[(2, 2)]],
+        }
     }
 
     /// Length, width and height of the trunk's box, m.

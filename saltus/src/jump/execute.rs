@@ -283,7 +283,8 @@ pub(crate) fn run_watched(
     let jump = jump(task, reference)?;
     let mut workspace = landing::Workspace::new();
     let robot = task.robot;
-    let mut settings = Settings::a1(robot.feet, robot.drives(), task.start.joints);
+    let build = robot.build(&task.start);
+    let mut settings = Settings::new(&build, robot.feet, robot.drives(), task.start.joints);
     for measure in trial.without {
         measure.leave(&mut settings);
     }
