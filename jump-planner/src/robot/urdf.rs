@@ -9,7 +9,10 @@ use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
 use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
-use rbd_core::{BaseKind, Frame, JointLimits, Kinematics, Link, TableError, TableModel, Transform};
+use rbd_core::{
+    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, TableError, TableModel, Transform,
+    forward_kinematics,
+};
 use roxmltree::{Document, Node};
 use std::path::Path;
 
@@ -17,6 +20,8 @@ use std::path::Path;
 const SEED_LEG: f64 = 0.65;
 /// Joint positions that are tried per joint.
 const SEED_STEPS: usize = 25;
+/// How far the sides of a trunk without a box are inside of the hips' joints, as a share of the leg: half a hip and half a thigh.
+const LEG_ROOM: f64 = 0.1;
 /// Half height of a trunk without a box, as a share of the leg.
 const TRUNK_HEIGHT: f64 = 0.14;
 
@@ -137,15 +142,20 @@ impl Quadruped {
             }
             foot.rotation = Frame::IDENTITY.rotation;
         }
-        let offset = |i: usize| Vector3::from(robot.bodies[i].offset);
-        let knee_y = |leg: usize| offset(3 * leg + 2).y + feet[leg].offset[1];
+        // Where joints and feet are with all joints at zero: frames of links need not be parallel to the base's.
+        let mut zero: Kinematics<f64, JOINTS> = Kinematics::IDENTITY;
+        forward_kinematics(&table, &Posture::new(&table, &State::NEUTRAL), &mut zero);
+        let joint = |i: usize| zero.link(Link::Joint(i)).translation;
+        let foot = |leg: usize| zero.frame(&feet[leg]).translation;
         let hips = core::array::from_fn(|leg| {
-            let second = offset(3 * leg) + offset(3 * leg + 1);
-            second + Vector3::new(0.0, knee_y(leg), 0.0)
+            let second = joint(3 * leg + 1);
+            Vector3::new(second.x, foot(leg).y, second.z)
         });
         let planar = |v: Vector3<f64>| so3::math::hypot(v.x, v.z);
-        let length =
-            |leg: usize| planar(offset(3 * leg + 2)) + planar(Vector3::from(feet[leg].offset));
+        let length = |leg: usize| {
+            let knee = joint(3 * leg + 2);
+            planar(knee - joint(3 * leg + 1)) + planar(foot(leg) - knee)
+        };
         let leg_length = (0..LEGS).map(length).fold(f64::INFINITY, f64::min);
         let limits: [JointLimits<f64>; JOINTS] = core::array::from_fn(|i| robot.joints[i].limits);
         let strongest = limits
@@ -296,7 +306,9 @@ fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f6
         .step_by(3)
         .map(|b| Vector3::from(b.offset));
     let hips = offsets.fold(Vector3::zeros(), |most: Vector3<f64>, o| most.sup(&o.abs()));
-    let mut half = Vector3::new(hips.x, hips.y, TRUNK_HEIGHT * leg_length);
+    // Narrower than the hips by the room that legs take.
+    let wide = f64::max(hips.y - LEG_ROOM * leg_length, 0.5 * hips.y);
+    let mut half = Vector3::new(hips.x, wide, TRUNK_HEIGHT * leg_length);
     let mut pose = Transform::IDENTITY;
     let mut largest = 0.0;
     for frame in robot.frames.iter().filter(|f| f.frame.link == Link::Base) {
