@@ -26,6 +26,7 @@ pub struct Answer {
 
 impl Answer {
     /// As text.
+    #[must_use]
     pub fn text(&self) -> String {
         let head = match self.status {
             "Infeasible" => "infeasible",
@@ -42,11 +43,13 @@ impl Answer {
     }
 
     /// As JSON.
+    #[must_use]
     pub fn json(&self) -> Value {
         json!({ "because": self.because, "relaxations": self.relaxations })
     }
 
     /// From a proof.
+    #[must_use]
     pub fn proven(proof: Impossible) -> Self {
         Self {
             status: "Infeasible",
@@ -74,6 +77,7 @@ impl Answer {
     }
 
     /// From a rigid-body plan that was not found.
+    #[must_use]
     pub fn no_body_plan(task: &Task, plan: &SrbPlan) -> Self {
         let rows = blocking_rows::<4, _, _, _, _, _, _>(&plan.stages);
         let worst = rows[0].map_or(0.0, |row| row.violation.abs());
@@ -96,6 +100,7 @@ impl Answer {
     }
 
     /// From a whole-body plan that was not found.
+    #[must_use]
     pub fn no_whole_body_plan(task: &Task, srb: &SrbPlan, plan: &WholeBodyPlan) -> Self {
         let rows = plan
             .blocked

@@ -38,6 +38,7 @@ pub struct Impossible {
 const SLACK: f64 = 1e-6;
 
 /// The first bound that the task breaks.
+#[must_use]
 pub fn impossible(task: &Task) -> Option<Impossible> {
     let facts = Facts::of(task);
     let bounds: [fn(&Task, &Facts) -> Option<Impossible>; 9] = [

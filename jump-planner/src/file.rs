@@ -8,6 +8,9 @@ use std::path::Path;
 const LONGEST: u64 = 64 << 20;
 
 /// The bytes of a file.
+///
+/// # Errors
+/// What the operating system says, or that the file is longer than 64 MiB.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut file = File::open(path)?.take(LONGEST + 1);
@@ -20,6 +23,9 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
 }
 
 /// The text of a file.
+///
+/// # Errors
+/// As [`read`], or that it is no UTF-8.
 pub fn read_text(path: &Path) -> Result<String> {
     let what = |_| Error::new(ErrorKind::InvalidData, "not UTF-8 text");
     String::from_utf8(read(path)?).map_err(what)

@@ -55,6 +55,7 @@ pub enum Origin {
 
 impl Origin {
     /// Its name in results.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "srb+kinematics",
@@ -65,6 +66,7 @@ impl Origin {
     }
 
     /// How the whole-body problem was solved, where that is known.
+    #[must_use]
     pub fn solved(self) -> Option<Solved> {
         match self {
             Self::WholeBody(solved) | Self::RigidBody(solved) => Some(solved),
@@ -92,6 +94,7 @@ impl Planner {
     pub const ALL: [Self; 3] = [Self::WholeBody, Self::Kinematics, Self::RigidBody];
 
     /// Its name on the command line and in results.
+    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::WholeBody => "whole-body",
@@ -101,6 +104,9 @@ impl Planner {
     }
 
     /// Plans the legs along a plan of the body.
+    ///
+    /// # Errors
+    /// A sentence: not solved, or refused by its audit.
     pub fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
         match self {
             Self::WholeBody => whole_body(task, srb),
@@ -171,6 +177,7 @@ fn follow(
 }
 
 /// Largest torque, N m, and largest tangential over normal force of the nodes before the take-off.
+#[must_use]
 pub fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
     let (mut torque, mut friction) = (0.0, 0.0);
     for node in nodes.iter().filter(|node| node.time < takeoff) {
@@ -186,6 +193,7 @@ pub fn peaks(nodes: &[Node], takeoff: f64) -> [f64; 2] {
 }
 
 /// A node of the plan: a state, and what is held over the interval that starts there; nothing after the last.
+#[must_use]
 pub fn node(time: f64, state: &State<f64, N>, interval: Option<&Interval>) -> Node {
     let held = interval.map(|interval| &interval.sample);
     let (q, v, rot_wb) = (&state.q, &state.v, &state.rot_wc);

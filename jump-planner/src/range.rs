@@ -11,6 +11,9 @@ pub enum Range {
 
 impl Range {
     /// What the number must be, and what it is, where it is outside.
+    ///
+    /// # Errors
+    /// What the number must be, and what it is.
     pub fn check(self, x: f64) -> Result<(), String> {
         let (inside, words) = match self {
             Self::From(low, high) => (low <= x && x <= high, format!("from {low} to {high}")),
@@ -27,6 +30,9 @@ impl Range {
     }
 
     /// The same for each of some numbers.
+    ///
+    /// # Errors
+    /// Those of the first that is outside.
     pub fn check_all<'a>(self, all: impl IntoIterator<Item = &'a f64>) -> Result<(), String> {
         all.into_iter().try_for_each(|x| self.check(*x))
     }

@@ -184,6 +184,9 @@ fn swing_torques(
 }
 
 /// The node before the plan begins: at rest, with the torques that hold the robot.
+///
+/// # Errors
+/// Feet that cannot carry the robot.
 pub fn standing(task: &Task) -> Result<Node, String> {
     let q = task.start;
     let held = task.robot.holding(&q)?;
@@ -198,6 +201,9 @@ pub fn standing(task: &Task) -> Result<Node, String> {
 }
 
 /// The whole-body reference of a solved plan.
+///
+/// # Errors
+/// Legs that cannot follow the plan, or a task without a flight.
 pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let robot = &task.robot;
     let intervals = intervals(task, &plan.stages);
@@ -341,6 +347,7 @@ fn fly(
 }
 
 /// The matrix of a heading.
+#[must_use]
 pub fn heading_matrix(heading: f64) -> nalgebra::Rotation3<f64> {
     so3::exp(&(Vector3::z() * heading))
 }

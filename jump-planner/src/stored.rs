@@ -23,6 +23,9 @@ const OVERHEAD: usize = 1024;
 const SAME_POSTURE: f64 = 1e-4;
 
 /// The container of a plan, with its feedback gains or without; its nodes begin with the posture in which the robot waits.
+///
+/// # Errors
+/// More nodes or a longer name than a container takes.
 pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<u8>, String> {
     let robot = &task.robot;
     let mut nodes = vec![record(robot, 0, &standing(task)?)];
@@ -96,6 +99,9 @@ fn ground(task: &Task) -> Option<GroundStep> {
 }
 
 /// A stored plan as the controller follows it, with the task that it is judged by.
+///
+/// # Errors
+/// A sentence: of another box, or from another posture.
 pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
     let header = plan.header();
     if header.ground != ground(task) {
@@ -134,6 +140,9 @@ pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
 }
 
 /// Opens a container for a robot.
+///
+/// # Errors
+/// [`ContainerError`] says why the bytes are no plan for this robot.
 pub fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, ContainerError> {
     Container::open(bytes, hash(robot))
 }
@@ -199,6 +208,7 @@ fn feedback(interval: &Interval) -> NodeGains<JOINTS> {
 }
 
 /// Name of a robot's joint, without the word every joint has.
+#[must_use]
 pub fn joint_name(robot: &Quadruped, i: usize) -> String {
     Model::joint_names(robot)[i].replace("_joint", "")
 }

@@ -9,6 +9,7 @@ const AROUND: f64 = 0.6;
 
 /// The world of a task, whose landing is `higher` than known, m. The robot starts at height zero: on the floor, with or without a box
 /// to jump onto, or on a box with the floor below. Without a box start and landing are on one floor, which the simulated lab moves.
+#[must_use]
 pub fn terrain(task: &Task, higher: f64) -> Terrain<f64> {
     let Some(mut edge) = task.edge.filter(|edge| edge.drop != 0.0) else {
         return Terrain::FLAT;
@@ -28,6 +29,7 @@ pub fn terrain(task: &Task, higher: f64) -> Terrain<f64> {
 
 /// A floor, and a block that reaches so far `around` a middle and is cut at an edge: (axis across it, side of the landing, distance from the
 /// origin). The robot stands at height zero and lands `drop` below; `onto` the block, or off it.
+#[must_use]
 pub fn over_edge(
     onto: bool,
     (axis, side, distance): (usize, f64, f64),

@@ -72,12 +72,14 @@ impl Track<[f64; BASE]> {
 
 impl<P: Between> Track<P> {
     /// The interval at a time: that of the last node at or before it, the last one at the end.
+    #[must_use]
     pub fn interval(&self, time: f64) -> usize {
         let after = self.times.partition_point(|t| *t <= time + 1e-9);
         after.saturating_sub(1).min(self.times.len() - 2)
     }
 
     /// Place at a time, on the straight way between nodes.
+    #[must_use]
     pub fn at(&self, time: f64) -> P {
         let i = self.interval(time);
         let share = (time - self.times[i]) / (self.times[i + 1] - self.times[i]);

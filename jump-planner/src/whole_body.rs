@@ -80,6 +80,9 @@ pub struct Audited {
 
 /// Plans the whole body and audits the plan. Where the audit finds limits exceeded between nodes or a flight that is not
 /// true to the dynamics, the intervals were too long for this robot: they are halved, once.
+///
+/// # Errors
+/// A problem that cannot be begun with, or a plan that cannot be stored.
 pub fn audited(
     task: &Task,
     srb: &SrbPlan,
@@ -117,6 +120,9 @@ pub fn audited(
 }
 
 /// Plans the whole body along a single-rigid-body plan.
+///
+/// # Errors
+/// A problem that cannot be begun with.
 pub fn plan(
     task: &Task,
     srb: &SrbPlan,

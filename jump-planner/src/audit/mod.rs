@@ -71,6 +71,9 @@ pub struct Audit {
 
 impl Audit {
     /// Audits a stored plan of this robot.
+    ///
+    /// # Errors
+    /// A plan without nodes, without a flight, or with an interval that is none.
     pub fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
         let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
         let takeoff = f64::from(plan.header().takeoff);
@@ -137,12 +140,14 @@ impl Audit {
     }
 
     /// Whether the plan may be called solved.
+    #[must_use]
     pub fn passes(&self) -> bool {
         self.is_a_motion() && self.margins.iter().all(|margin| margin.value >= -BEYOND)
     }
 
     /// Whether the robot could move so if its links passed through the ground and each other. A plan that only fails there is worth a
     /// simulation, which shows what comes of it.
+    #[must_use]
     pub fn is_a_motion(&self) -> bool {
         let mut inner = self.margins.iter().filter(|m| !is_clearance(&m.name));
         self.flight_orientation_error <= ORIENTATION
@@ -173,6 +178,7 @@ impl Audit {
     }
 
     /// Why the plan does not pass.
+    #[must_use]
     pub fn complaint(&self) -> String {
         let mut told = Vec::new();
         // Not <=: NaN is no agreement either.
@@ -210,6 +216,7 @@ impl Audit {
     }
 
     /// The object of `--json`.
+    #[must_use]
     pub fn json(&self) -> Value {
         json!({
             "flight_orientation_error_deg": self.flight_orientation_error.to_degrees(),
@@ -220,6 +227,7 @@ impl Audit {
     }
 
     /// Everything that was found.
+    #[must_use]
     pub fn details(&self, robot: &Quadruped) -> Value {
         let mut details = self.json();
         let names = (0..JOINTS).map(|i| crate::stored::joint_name(robot, i));

@@ -12,6 +12,9 @@ const BEYOND: f64 = 0.01;
 const FEET: [f64; 2] = [1e-4, 1e-3];
 
 /// Fails with the first node that is none of this robot's.
+///
+/// # Errors
+/// A sentence that names the first node and what is wrong there.
 pub fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
     plan.check().map_err(|error| error.to_string())?;
     let share = f64::from(plan.header().margins.torque_share);

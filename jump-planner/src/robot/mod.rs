@@ -74,6 +74,9 @@ pub type Shapes = [Shape<f64>; SHAPE_COUNT];
 
 impl Quadruped {
     /// A1 as published, with rotors: what `saltus run` simulates.
+    ///
+    /// # Errors
+    /// Tables that are no model: never of the published robot.
     pub fn a1() -> Result<Self, RobotError> {
         let model = A1Geared;
         let table = TableModel::with_any_inertia(
@@ -109,6 +112,9 @@ impl Quadruped {
 
     /// The same robot with all its mass in the trunk: the single rigid body with its legs where they are at the `start`, on legs that weigh
     /// nothing and whose torques have no limit.
+    ///
+    /// # Errors
+    /// Tables that are no model.
     pub fn on_massless_legs(&self, start: &State) -> Result<Self, RobotError> {
         let mut mass = MassMatrix::ZERO;
         crba(self, &Posture::new(self, start), &mut mass);
@@ -148,24 +154,28 @@ impl Quadruped {
     }
 
     /// The leg at a place, by its name in task files.
+    #[must_use]
     pub fn leg(&self, place: &str) -> Option<usize> {
         let at = PLACES.iter().position(|name| *name == place)?;
         self.legs.get(at).copied()
     }
 
     /// Name of the place of a leg.
+    #[must_use]
     pub fn place(&self, leg: usize) -> &'static str {
         let at = self.legs.iter().position(|l| *l == leg);
         at.and_then(|at| PLACES.get(at)).copied().unwrap_or("?")
     }
 
     /// Mass, kg.
+    #[must_use]
     pub fn mass(&self) -> f64 {
         let bodies = self.table.bodies().iter().map(|body| body.mass);
         self.table.base().mass + bodies.sum::<f64>()
     }
 
     /// Whether this is the built-in robot.
+    #[must_use]
     pub fn is_a1(&self) -> bool {
         // A URDF may have this name too, but it has no motors.
         self.name == "a1" && self.motors.is_some()

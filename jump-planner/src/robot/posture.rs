@@ -28,6 +28,7 @@ pub struct Holding {
 
 impl Quadruped {
     /// Poses of all links.
+    #[must_use]
     pub fn poses(&self, q: &State) -> Kinematics<f64, JOINTS> {
         let mut kinematics = Kinematics::IDENTITY;
         forward_kinematics(self, &Posture::new(self, q), &mut kinematics);
@@ -35,11 +36,13 @@ impl Quadruped {
     }
 
     /// Centre of mass in the world, m.
+    #[must_use]
     pub fn com(&self, q: &State) -> Vector3<f64> {
         center_of_mass(self, &Posture::new(self, q)).position_w
     }
 
     /// Rotational inertia about the centre of mass with the joints locked, world axes, kg m².
+    #[must_use]
     pub fn locked_inertia(&self, q: &State) -> Matrix3<f64> {
         let mut map = CentroidalMap::ZERO;
         centroidal_map(self, &Posture::new(self, q), &mut map);
@@ -47,6 +50,7 @@ impl Quadruped {
     }
 
     /// Jacobian of a frame, world axes.
+    #[must_use]
     pub fn jacobian(
         &self,
         kinematics: &Kinematics<f64, JOINTS>,
@@ -58,6 +62,7 @@ impl Quadruped {
     }
 
     /// Where a foot's ball touches level ground, as a frame of its link.
+    #[must_use]
     pub fn contact_frame(&self, kinematics: &Kinematics<f64, JOINTS>, leg: usize) -> Frame<f64> {
         let mut frame = self.feet[leg];
         let rot_wl = kinematics.link(frame.link).rotation;
@@ -67,6 +72,9 @@ impl Quadruped {
     }
 
     /// Joints that put the balls of the feet at `targets_w`, by damped Newton steps from `q`; the base stays.
+    ///
+    /// # Errors
+    /// Legs that cannot reach, with the distance.
     pub fn place_feet(
         &self,
         mut q: State,
@@ -100,6 +108,7 @@ impl Quadruped {
     }
 
     /// The robot with its legs near a standing posture.
+    #[must_use]
     pub fn near(&self, base: Transform<f64>) -> State {
         State {
             base,
@@ -108,6 +117,9 @@ impl Quadruped {
     }
 
     /// A standing robot with its centre of mass at `com_w` and its balls over `points_w`, base level.
+    ///
+    /// # Errors
+    /// No such posture, or one outside the joints' limits, with the joint.
     pub fn stand(
         &self,
         com_w: &Vector3<f64>,
@@ -128,6 +140,9 @@ impl Quadruped {
     }
 
     /// Joints of the pre-landing posture: feet below and outside the hips.
+    ///
+    /// # Errors
+    /// As [`Quadruped::stand`].
     pub fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
         let q = State {
             base: Transform::IDENTITY,
@@ -162,6 +177,9 @@ impl Quadruped {
     }
 
     /// Torques and forces of least norm that hold the robot at rest on all feet.
+    ///
+    /// # Errors
+    /// Feet that cannot carry.
     pub fn holding(&self, q: &State) -> Result<Holding, String> {
         let kinematics = self.poses(q);
         let gravity = generalized_gravity(self, &Posture::new(self, q));

@@ -13,6 +13,7 @@ fn leg_columns(j: &FrameJacobian<f64, JOINTS>, leg: usize) -> Matrix3<f64> {
 
 impl Quadruped {
     /// Angular velocity, base axes, of a robot that has this angular momentum about its centre of mass, world axes, and turns as one body.
+    #[must_use]
     pub fn locked(&self, q: &State, momentum_w: &Vector3<f64>) -> Vector3<f64> {
         let mut map = CentroidalMap::ZERO;
         centroidal_map(self, &Posture::new(self, q), &mut map);
@@ -24,6 +25,9 @@ impl Quadruped {
     /// balls of the feet in `stance` roll without slip and the other joints move with `swing`.
     ///
     /// Found by fixed-point steps on the base's velocity: the legs are lighter than the rest.
+    ///
+    /// # Errors
+    /// A stretched leg, or steps that do not converge.
     pub fn rolling_velocity(
         &self,
         q: &State,

@@ -87,6 +87,9 @@ pub enum RobotError {
 
 impl Quadruped {
     /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
+    ///
+    /// # Errors
+    /// [`RobotError`] names what is missing and where.
     pub fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
         let text = crate::file::read_text(path)?;
         let locks = locks.iter().map(|lock| parse_lock(lock));

@@ -257,6 +257,9 @@ pub enum TaskError {
 
 impl TaskFile {
     /// The task of this name, or in the file of this path, with the folder that its paths are seen from.
+    ///
+    /// # Errors
+    /// [`TaskError`] names file, line, key and what is accepted there.
     pub fn load(name: &str) -> Result<(Self, PathBuf), TaskError> {
         if let Some((_, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
             return Self::parse(Path::new(name), text).map(|file| (file, PathBuf::new()));

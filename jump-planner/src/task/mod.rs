@@ -109,6 +109,9 @@ impl Task {
     }
 
     /// The task of this name or path, for the robot of another URDF where one is given.
+    ///
+    /// # Errors
+    /// [`TaskError`] names file, line and key, or what is wrong with the robot.
     pub fn load_for(name: &str, urdf: Option<&Path>, locks: &[String]) -> Result<Self, TaskError> {
         let (file, folder) = TaskFile::load(name)?;
         let robot = match urdf {
@@ -211,6 +214,9 @@ impl Task {
     }
 
     /// Fixes the durations of the phases, s: the manual timing of paper A. The bounds of the task give way.
+    ///
+    /// # Errors
+    /// As many durations as phases are needed, each possible.
     pub fn fix_timing(&mut self, durations: &[f64]) -> Result<(), TaskError> {
         let count = self.problem.phase_count;
         let refuse = |what: String| TaskError::Value {
@@ -239,6 +245,7 @@ impl Task {
     }
 
     /// Name of a phase: the feet on the ground.
+    #[must_use]
     pub fn phase_name(&self, contacts: &[bool; FOOT_COUNT]) -> String {
         let on: Vec<&str> = PLACES
             .into_iter()
@@ -252,6 +259,9 @@ impl Task {
     }
 
     /// The guess of the single-rigid-body problem, not solved: where planning straight on the whole body starts.
+    ///
+    /// # Errors
+    /// A problem that cannot be, with its row.
     pub fn guess(&self) -> Result<SrbPlan, String> {
         let problem = &self.problem;
         problem
@@ -270,6 +280,9 @@ impl Task {
     }
 
     /// Tries to solve the single-rigid-body problem.
+    ///
+    /// # Errors
+    /// As [`Task::guess`].
     pub fn attempt(
         &self,
         settings: &Settings<f64>,
@@ -294,6 +307,9 @@ impl Task {
     }
 
     /// Solves the single-rigid-body problem; anything but a solved problem is an error.
+    ///
+    /// # Errors
+    /// As [`Task::attempt`], or that it was not solved.
     pub fn solve(&self) -> Result<SrbPlan, String> {
         let plan = self.attempt(&Settings::new(), |_| core::ops::ControlFlow::Continue(()))?;
         if plan.status != Status::Solved {

@@ -114,9 +114,9 @@ fn draw(
         }
     }
     let kinematics = robot.poses(&q);
-    for leg in 0..FOOT_COUNT {
+    for (leg, (foot, color)) in robot.feet.iter().zip(COLORS).enumerate() {
         let link = |i: usize| kinematics.bodies[3 * leg + i].translation;
-        let foot = kinematics.frame(&robot.feet[leg]).translation;
-        path(&[link(0), link(1), link(2), foot], COLORS[leg], 3.0);
+        let foot = kinematics.frame(foot).translation;
+        path(&[link(0), link(1), link(2), foot], color, 3.0);
     }
 }
