@@ -10,7 +10,7 @@
 //! | *durations* | T_i ≥ T_i,min, so Σ T ≥ Σ T_min; likewise from above |
 //! | *falling* | without contact p̈ = −g ẑ from rest: no sideways motion, no turn, p_z falls by g T²/2 |
 //! | *sideways* | every axis of a friction pyramid gives at most μ n F, so \|p̈\| ≤ a = μ n F/m while feet stand, for at most T_s; farthest is a at first and coasting then, a T_s (T − T_s/2) |
-//! | *free fall* | see [`free_fall`] |
+//! | *free fall* | see `free_fall` |
 //! | *force* | as free fall, upwards with p̈_z ≤ n F/m − g |
 //! | *impulse* | p̈_z ≤ a = n F/m − g while feet stand and −g after, from rest, so p_z rises by at most a T_s²/2 + a T_s T_f − g T_f²/2 in a stance of T_s and a flight of T_f |
 //! | *power* | the joints' work is at most the sum of their largest torque × speed times T_s; losses only take from it; it must lift m g Δz |

@@ -1,8 +1,8 @@
 //! A jump in one picture: poses side by side, seen along the axis about which the body turns.
 
+use super::State;
 use super::execute::Run;
 use super::log::Sample;
-use super::{FOOT_COUNT, State};
 use crate::report::COLORS;
 use core::fmt::Write;
 use jump_planner::robot::Quadruped;
