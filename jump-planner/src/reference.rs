@@ -376,11 +376,11 @@ mod tests {
             .filter(|n| n.time >= 0.0 && n.time < reference.takeoff);
         for (node, stage) in stance.zip(&plan.stages) {
             let (q, _) = state(node);
-            assert!((com(&q) - stage.state.pos_w).norm() < 2e-3);
-            let kinematics = poses(&q);
+            assert!((task.robot.com(&q) - stage.state.pos_w).norm() < 2e-3);
+            let kinematics = task.robot.poses(&q);
             for leg in 0..4 {
                 let point = kinematics
-                    .frame(&contact_frame(&kinematics, leg))
+                    .frame(&task.robot.contact_frame(&kinematics, leg))
                     .translation;
                 assert!(
                     point.z.abs() < 1e-3,
