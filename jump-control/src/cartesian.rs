@@ -4,7 +4,7 @@
 //! reference joints, so a plan need not carry them.
 
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Frame, Limbs, Tree};
+use rbd_core::{Build, Configuration, Frame, Limbs, Tree};
 use so3::Scalar;
 
 use crate::joint::JointGains;
@@ -32,18 +32,19 @@ pub struct CartesianPd<T, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
-    /// Gains with which A1's jumps were measured: 200 N/m and 5 N s/m on feet, 60 N m/rad and 1.5 N m s/rad on joints.
+    /// Gains for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those with which A1's jumps were measured
+    /// (`saltus verdicts`): 200 N/m and 5 N s/m on feet, 60 N m/rad and 1.5 N m s/rad on joints.
     #[must_use]
-    pub fn a1(feet: [Frame<T>; F]) -> Self {
+    pub fn new(build: &Build<T>, feet: [Frame<T>; F]) -> Self {
         Self {
             feet,
             gains: CartesianGains {
-                stiffness: [T::of(200.0); 3],
-                damping: [T::of(5.0); 3],
+                stiffness: [build.stiffness(200.0); 3],
+                damping: [build.damping(5.0); 3],
             },
             joint_gains: [JointGains {
-                stiffness: T::of(60.0),
-                damping: T::of(1.5),
+                stiffness: build.joint_stiffness(60.0),
+                damping: build.joint_damping(1.5),
             }; N],
         }
     }

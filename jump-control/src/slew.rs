@@ -14,7 +14,7 @@ pub struct Slew<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Slew<T, N> {
-    /// From zero torque; 10 kN m/s takes A1's motors from zero to full in 3 ms.
+    /// From zero torque; 10 kN m/s takes motors of 33.5 N m from zero to full in 3 ms.
     #[must_use]
     pub const fn new(rate: T) -> Self {
         Self {

@@ -13,6 +13,7 @@
 //! Σ (r_i − r̄) × w_i (λ × (r_i − r̄)) = c (ω_d − ω): Δf_i = w_i λ × (r_i − r̄) + (w_i / Σ w) m (k e + d ė).
 
 use nalgebra::{Matrix3, Vector3};
+use rbd_core::Build;
 use so3::Scalar;
 use so3::math;
 
@@ -37,14 +38,17 @@ pub struct Steady<T> {
 }
 
 impl<T: Scalar> Steady<T> {
-    /// Gains for A1 with an estimated base: its turning rate alone, which gyroscopes know. Centimetres per second, by which
-    /// the estimate of its speed is off, would be amplified: of 20 disturbed double backflips three fell.
+    /// Gains for a robot of this size whose base is estimated: its turning rate alone, which gyroscopes know. Centimetres per second, by
+    /// which the estimate of its speed is off, would be amplified: of 20 disturbed double backflips of A1 three fell.
+    ///
+    /// 5 N m s/rad are those of a robot of 13.741 kg with legs of 0.4 m, scaled by [dynamic similarity](rbd_core::similarity): a turn
+    /// too fast by 0.1 rad/s is answered by 0.5 N m.
     #[must_use]
-    pub fn a1() -> Self {
+    pub fn new(build: &Build<T>) -> Self {
         Self {
             stiffness: T::ZERO,
             damping: T::ZERO,
-            turning: T::of(5.0),
+            turning: build.joint_damping(5.0),
             direction: T::ONE,
             grip: T::of(0.25),
             share: T::of(0.3),
@@ -286,8 +290,8 @@ mod tests {
         for (weights, grip) in [([30.0; 4], 0.0), ([0.0, 0.0, 60.0, 60.0], 0.25)] {
             let nodes = [node(0.0, weights), node(0.01, weights)];
             let plan = Plan::new(&nodes, 0.01, 0.01, 0.01, Torques::Hold).unwrap();
-            assert_eq!(Steady::<f64>::a1().grip(&plan, 0), grip);
-            assert_eq!(Steady::<f64>::a1().grip(&plan, 2), 0.0);
+            assert_eq!(Steady::new(&a1_model::BUILD).grip(&plan, 0), grip);
+            assert_eq!(Steady::new(&a1_model::BUILD).grip(&plan, 2), 0.0);
         }
     }
 

@@ -2,14 +2,14 @@
 //!
 //! `cargo run --release -p jump-machine --example faults`
 
-use a1_model::{A1Geared, FEET, MOTORS};
+use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::Measurement;
 use jump_machine::{Inputs, Machine, Settings};
 use rbd_core::{Motion, Transform};
 
 fn main() {
     let crouch = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
-    let settings = Settings::a1(FEET.map(|foot| foot.frame), MOTORS, crouch);
+    let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch);
     // All memory there is; a static in firmware.
     let mut workspace = landing::Workspace::new();
     let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings, &mut workspace);

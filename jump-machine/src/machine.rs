@@ -348,6 +348,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                     let grip = Grip {
                         turn: measured.base.rotation.inverse() * planned.rot_wb,
                         rate_b: planned.omega_b - measured.base_velocity.angular,
+                        // The same legs are moved likewise in flight.
+                        damping: s.tuck.damping,
                     };
                     let (moved, speeds) = grip.joints(share, &self.wanted, &then.joint_velocities);
                     add(&mut then.joints, &moved);

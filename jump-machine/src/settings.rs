@@ -2,7 +2,7 @@
 
 use jump_control::{CartesianPd, Steady};
 use landing::{Detector, PreLanding, Tuck};
-use rbd_core::{Frame, Motor};
+use rbd_core::{Build, Frame, Motor};
 use so3::Scalar;
 
 /// Periods, limits and gains of a robot with `N` joints and `F` feet.
@@ -57,40 +57,50 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
-    /// Measured on A1's jumps: 1 kHz, 10 ms of age, 5 ms of silence, and the gains with which `saltus run` executes.
+    /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
+    /// 0.4 m, with which `saltus run` executes; `saltus verdicts` measures them.
+    ///
+    /// Period, age, silence and lookahead are the computers' and links', the same for all robots: 1 kHz, 10 ms, 5 ms, 1 ms. The
+    /// drives' 10 kN m/s build up a torque in a time that is theirs as well, so the rate scales as a torque. All other times are the
+    /// body's.
     ///
     /// `standing` are joint positions for legs without ground while no jump is armed.
     #[must_use]
-    pub fn a1(feet: [Frame<T>; F], motors: [Motor<T>; N], standing: [T; N]) -> Self {
+    pub fn new(
+        build: &Build<T>,
+        feet: [Frame<T>; F],
+        motors: [Motor<T>; N],
+        standing: [T; N],
+    ) -> Self {
         let of = T::of;
         Self {
             period: of(1e-3),
             max_age: of(0.010),
             max_silence: of(0.005),
             lookahead: of(0.001),
-            weighing: of(0.15),
+            weighing: build.time(0.15),
             max_payload: of(0.15),
             start_tolerance: of(0.15),
-            levelling: of(0.12),
-            foresight: of(0.12),
-            max_late: of(0.05),
-            patience: T::HALF,
-            rest: (of(0.05), of(0.2)),
-            settling: of(0.2),
-            stand_height: of(0.25),
-            safe_damping: T::TWO,
-            slew: of(1e4),
-            pd: CartesianPd::a1(feet),
-            steady: Steady::a1(),
-            tuck: Tuck::a1(),
-            detector: Detector::new(feet),
+            levelling: build.time(0.12),
+            foresight: build.time(0.12),
+            max_late: build.time(0.05),
+            patience: build.time(0.5),
+            rest: (build.speed(0.05), build.rate(0.2)),
+            settling: build.time(0.2),
+            stand_height: build.length(0.25),
+            safe_damping: build.joint_damping(2.0),
+            slew: build.torque(1e4),
+            pd: CartesianPd::new(build, feet),
+            steady: Steady::new(build),
+            tuck: Tuck::new(build),
+            detector: Detector::new(build, feet),
             posture: PreLanding {
                 // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the
                 // forward jump tip over.
-                lead: of(0.04),
-                ..PreLanding::new(feet, standing)
+                lead: build.time(0.04),
+                ..PreLanding::new(build, feet, standing)
             },
-            landing: landing::Settings::a1(),
+            landing: landing::Settings::new(build),
             motors,
         }
     }

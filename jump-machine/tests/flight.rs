@@ -1,7 +1,7 @@
 //! What the robot does about a flight that is not the planned one: later or earlier ground, another turn.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use a1_model::{A1Geared, FEET, MOTORS};
+use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Measurement, Node, Phase, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Settings};
 use landing::{PreLanding, Workspace};
@@ -127,7 +127,7 @@ proptest! {
         height in 0.31..0.39,
         speed in 2.2..2.8,
     ) {
-        let settings = Settings::a1(feet(), MOTORS, crouch());
+        let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
         let posing = |settings: &Settings<f64, 12, 4>| {
             fly(settings, &nodes(0.0), (height, speed, 0.0), 1.0, |t, machine| {
                 (machine.phase() == Phase::PreLanding).then_some(t)
@@ -147,7 +147,7 @@ proptest! {
     /// Before the ground, feet are where the tilt at the touchdown wants them, not the tilt of now.
     #[test]
     fn feet_are_set_for_the_attitude_in_which_they_will_land(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
-        let settings = Settings::a1(feet(), MOTORS, crouch());
+        let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
         let nodes = nodes(rate);
         // The plan's rotation is shifted by the tilt with which the body will arrive.
         let nodes: Vec<_> = nodes
@@ -190,7 +190,7 @@ proptest! {
     /// A body that is behind its plan draws its legs in, one that is ahead stretches them, and both let go before the touchdown.
     #[test]
     fn legs_are_drawn_in_when_the_turn_is_late_and_stretched_when_it_is_early(rate in 5.0..12.0, off in 0.03..0.1) {
-        let settings = Settings::a1(feet(), MOTORS, crouch());
+        let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
         for sign in [-1.0, 1.0] {
             let nodes = nodes(rate);
             let flight = (0.35, 2.5, rate * (1.0 + sign * off));

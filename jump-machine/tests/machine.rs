@@ -1,7 +1,7 @@
 //! Every way in which the world may not keep its side: late, missing, impossible.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use a1_model::{A1Geared, FEET, MOTORS};
+use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Fault, Measurement, Node, Phase, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Refusal, Settings, Work};
 use landing::Workspace;
@@ -62,7 +62,7 @@ fn in_air() -> Inputs<f64, 12, 4> {
 }
 
 fn machine(workspace: &mut Workspace<f64, 12, 4>) -> A1Machine<'_, f64> {
-    let settings = Settings::a1(FEET.map(|foot| foot.frame), MOTORS, crouch());
+    let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch());
     Machine::new(&A1Geared, settings, workspace)
 }
 
@@ -221,7 +221,7 @@ fn single_precision_goes_the_same_way() {
         no_load_speed: m.no_load_speed as f32,
         rotor_inertia: m.rotor_inertia as f32,
     });
-    let settings = Settings::a1(feet, motors, crouch());
+    let settings = Settings::new(&BUILD.cast(), feet, motors, crouch());
     let mut m: A1Machine<'_, f32> = Machine::new(&A1Geared, settings, &mut workspace);
     m.arm(jump(&nodes), 0.0).unwrap();
     for k in -300..600_i32 {

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p landing --example drop`
 
-use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
+use a1_model::{A1Geared, BUILD, FEET, FOOT_RADIUS, MOTORS, a1};
 use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use landing::{Landing, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
@@ -24,7 +24,7 @@ fn main() -> Result<(), Error> {
 
     // What firmware holds: the controller, and its memory in a static.
     let feet = FEET.map(|foot| foot.frame);
-    let landing = Landing::<f64, 12, 4>::new(feet, Settings::a1(), [33.5; 12]);
+    let landing = Landing::<f64, 12, 4>::new(feet, Settings::new(&BUILD), [33.5; 12]);
     let mut workspace = Workspace::new();
     let target = Target {
         height: 0.25,

@@ -17,6 +17,8 @@ pub struct Grip<T: Scalar> {
     pub turn: Rotation3<T>,
     /// ω_d − ω, base axes, rad/s.
     pub rate_b: Vector3<T>,
+    /// Tikhonov term on the way of a foot, m²: keeps stretched legs from large motions.
+    pub damping: T,
 }
 
 impl<T: Scalar> Grip<T> {
@@ -34,8 +36,8 @@ impl<T: Scalar> Grip<T> {
             let velocity = end.mul(speeds);
             let way = (self.turn * foot - foot) * share;
             let speed = (self.turn * velocity - velocity + self.rate_b.cross(foot)) * share;
-            end.add_tr_mul(&solve_damped(end, T::of(1e-3), &way), &mut moved);
-            end.add_tr_mul(&solve_damped(end, T::of(1e-3), &speed), &mut rates);
+            end.add_tr_mul(&solve_damped(end, self.damping, &way), &mut moved);
+            end.add_tr_mul(&solve_damped(end, self.damping, &speed), &mut rates);
         }
         if moved.iter().chain(&rates).all(|x| x.is_finite_number()) {
             (moved, rates)
@@ -67,6 +69,7 @@ mod tests {
         let grip = Grip {
             turn: Rotation3::from_euler_angles(0.02, -0.03, 0.01),
             rate_b: Vector3::new(0.2, -0.3, 0.1),
+            damping: 1e-3,
         };
         let planned = limbs(&joints);
         for share in [0.0, 0.5, 1.0] {

@@ -6,7 +6,7 @@
 //! step towards the capture point.
 
 use nalgebra::Vector3;
-use rbd_core::{Configuration, Frame, Limbs, Tree};
+use rbd_core::{Build, Configuration, Frame, Limbs, Tree};
 use so3::{Scalar, math};
 
 use crate::least_squares::solve_damped;
@@ -31,20 +31,24 @@ pub struct PreLanding<T, const N: usize, const F: usize> {
     pub max_tilt: T,
     /// Farthest that a joint goes from its level position, rad.
     pub reach: T,
+    /// Tikhonov term on the way of a foot, m²: keeps a stretched leg from jumping about.
+    pub damping: T,
 }
 
 impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
-    /// Half of at most 0.6 rad, 0.12 s of lead up to 12 cm, joints within 0.5 rad.
+    /// Half of at most 0.6 rad, joints within 0.5 rad; and, on legs of 0.4 m, 0.12 s of lead up to 12 cm, scaled by
+    /// [dynamic similarity](rbd_core::similarity).
     #[must_use]
-    pub fn new(feet: [Frame<T>; F], joints: [T; N]) -> Self {
+    pub fn new(build: &Build<T>, feet: [Frame<T>; F], joints: [T; N]) -> Self {
         Self {
             feet,
             joints,
             share: T::HALF,
-            lead: T::of(0.12),
-            max_lead: T::of(0.12),
+            lead: build.time(0.12),
+            max_lead: build.length(0.12),
             max_tilt: T::of(0.6),
             reach: T::HALF,
+            damping: build.area(1e-4),
         }
     }
 
@@ -144,7 +148,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         let mut next = *joints;
         for (end, wanted) in limbs.ends.iter().zip(wanted) {
             let missing = wanted - end.position;
-            end.add_tr_mul(&solve_damped(end, T::of(1e-4), &missing), &mut next);
+            end.add_tr_mul(&solve_damped(end, self.damping, &missing), &mut next);
         }
         for (q, level) in next.iter_mut().zip(&self.joints) {
             *q = math::clamp(*q, *level - self.reach, *level + self.reach);
@@ -160,7 +164,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
 #[cfg(test)]
 mod tests {
     use super::PreLanding;
-    use a1_model::{A1Geared, FEET};
+    use a1_model::{A1Geared, BUILD, FEET};
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Kinematics, Limbs, Posture, forward_kinematics};
 
@@ -180,7 +184,7 @@ mod tests {
 
     #[test]
     fn feet_turn_by_the_share_of_the_tilt_and_lead_the_motion() {
-        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
         let tilt: f64 = 0.2;
         let up_b = Vector3::new(0.0, so3::math::sin(tilt), so3::math::cos(tilt));
         let velocity = Vector3::new(0.3, 0.0, 0.0);
@@ -194,7 +198,7 @@ mod tests {
 
     #[test]
     fn following_finds_what_starting_anew_finds() {
-        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
         let level = posture.level_feet(&A1Geared);
         let up_b = Vector3::new(0.1, 0.2, 0.97);
         let velocity = Vector3::new(0.3, -0.1, -1.0);
@@ -213,7 +217,7 @@ mod tests {
 
     #[test]
     fn level_and_at_rest_nothing_changes_and_bad_numbers_change_nothing() {
-        let posture = PreLanding::new(FEET.map(|foot| foot.frame), LEVEL);
+        let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
         let joints = |up_b: Vector3<f64>, v: Vector3<f64>| posture.joints(&A1Geared, &up_b, &v);
         assert_eq!(joints(Vector3::z(), Vector3::zeros()), LEVEL);
         for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {

@@ -1,9 +1,10 @@
 //! Gains, weights and limits of the landing controller, and where it is to bring the body.
 
 use nalgebra::Rotation3;
+use rbd_core::Build;
 use so3::Scalar;
 
-/// Settings; [`Settings::a1`] holds those measured on A1 drops.
+/// Settings; [`Settings::new`] holds those measured on drops, for a robot of any size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings<T> {
     /// Gains on height: s⁻², s⁻¹.
@@ -37,25 +38,30 @@ pub struct Settings<T> {
 }
 
 impl<T: Scalar> Settings<T> {
-    /// Measured on drops of A1 from 0.3 to 2 m.
+    /// Those of a robot of this size, by [dynamic similarity](rbd_core::similarity).
+    ///
+    /// The numbers were measured on drops of A1 from 0.3 to 2 m
+    /// (`cargo xtask mujoco run --release -p saltus-tests --features mujoco --example drops -- 1000`). Height and rotation are damped by
+    /// 0.64 and 0.89 of critical; a foot may carry three times the robot's weight; a moment weighs as much as the
+    /// force that makes it at 0.18 m, half a trunk. Friction is the ground's and does not scale.
     #[must_use]
-    pub fn a1() -> Self {
-        let of = T::of;
+    pub fn new(build: &Build<T>) -> Self {
+        let gains = |way, speed| (build.rate_squared(way), build.rate(speed));
         Self {
-            height: (of(120.0), of(14.0)),
-            horizontal: (of(20.0), of(8.0)),
-            resting: (of(80.0), of(14.0)),
-            moving: of(0.2),
-            rotation: (of(250.0), of(28.0)),
-            inertia_b: [of(0.141), of(0.379), of(0.410)],
-            force_weight: T::ONE,
-            moment_weight: of(30.0),
-            effort_weight: of(1e-4),
+            height: gains(120.0, 14.0),
+            horizontal: gains(20.0, 8.0),
+            resting: gains(80.0, 14.0),
+            moving: build.speed(0.2),
+            rotation: gains(250.0, 28.0),
+            inertia_b: build.inertia_b,
+            force_weight: build.per_force_squared(1.0),
+            moment_weight: build.per_torque_squared(30.0),
+            effort_weight: build.per_force_squared(1e-4),
             friction: T::HALF,
-            max_normal_force: of(400.0),
-            stance_damping: T::ONE,
-            swing_stiffness: of(60.0),
-            swing_damping: of(2.0),
+            max_normal_force: build.force(400.0),
+            stance_damping: build.joint_damping(1.0),
+            swing_stiffness: build.joint_stiffness(60.0),
+            swing_damping: build.joint_damping(2.0),
         }
     }
 }

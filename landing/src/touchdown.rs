@@ -4,6 +4,7 @@
 //! landing the feet bounce and sensors chatter; a foot therefore counts as in contact from its first sample at
 //! or above δ until it has been below for the release time.
 
+use rbd_core::Build;
 use so3::Scalar;
 
 /// The contact filter's settings.
@@ -47,12 +48,13 @@ impl<T: Scalar, const F: usize> Default for TouchdownState<T, F> {
 }
 
 impl<T: Scalar> ContactFilter<T> {
-    /// 15 N, released after 20 ms.
+    /// 15 N, released after 20 ms, for a robot of 13.741 kg with legs of 0.4 m, scaled by
+    /// [dynamic similarity](rbd_core::similarity): feet bounce as high, in their legs, on any robot.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn new(build: &Build<T>) -> Self {
         Self {
-            threshold: T::of(15.0),
-            release: T::of(0.020),
+            threshold: build.force(15.0),
+            release: build.time(0.020),
         }
     }
 
@@ -78,19 +80,14 @@ pub(crate) fn is_step<T: Scalar>(dt: T) -> bool {
     dt > T::ZERO && dt <= T::ONE
 }
 
-impl<T: Scalar> Default for ContactFilter<T> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::{ContactFilter, TouchdownState};
+    use a1_model::BUILD;
 
     #[test]
     fn a_missing_sample_does_not_lift_a_foot_and_twenty_milliseconds_do() {
-        let filter = ContactFilter::<f64>::new();
+        let filter = ContactFilter::new(&BUILD);
         let mut state = TouchdownState::<f64, 2>::new();
         filter.update(&mut state, &[14.0, 15.0], 1e-3);
         assert_eq!(state.contacts, [false, true]);

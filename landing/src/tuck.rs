@@ -6,7 +6,7 @@
 //! and the measured rate. So the rate that is missing is found without knowing the inertia.
 
 use nalgebra::Vector3;
-use rbd_core::Limbs;
+use rbd_core::{Build, Limbs};
 use so3::{Scalar, math};
 
 use crate::least_squares::solve_damped;
@@ -22,6 +22,8 @@ pub struct Tuck<T> {
     pub slowest: T,
     /// Time in which the legs are let go before they are needed, and taken after take-off, s.
     pub ramp: T,
+    /// Tikhonov term on the way of a foot, m²: keeps stretched legs from large motions.
+    pub damping: T,
 }
 
 /// What the body's turning is compared with.
@@ -40,14 +42,18 @@ pub struct Turning<T: Scalar> {
 }
 
 impl<T: Scalar> Tuck<T> {
-    /// A fifth of the distance; turning slower than 3 rad/s is left alone.
+    /// For a robot of this size, by [dynamic similarity](rbd_core::similarity): at most a fifth of the distance, which legs of any
+    /// length can do; turning slower than 3 rad/s on legs of 0.4 m is left alone.
+    ///
+    /// Measured on A1's double backflip: `saltus envelope a1/double-backflip --without tuck` shows what it is worth.
     #[must_use]
-    pub fn a1() -> Self {
+    pub fn new(build: &Build<T>) -> Self {
         Self {
-            gain: T::of(20.0),
+            gain: build.rate(20.0),
             most: T::of(0.2),
-            slowest: T::of(3.0),
-            ramp: T::of(0.1),
+            slowest: build.rate(3.0),
+            ramp: build.time(0.1),
+            damping: build.area(1e-3),
         }
     }
 
@@ -90,7 +96,7 @@ impl<T: Scalar> Tuck<T> {
             let foot = &end.position;
             let along = turning.omega_b * (foot.dot(&turning.omega_b) / squared);
             let way = (along - foot) * share;
-            end.add_tr_mul(&solve_damped(end, T::of(1e-3), &way), &mut joints);
+            end.add_tr_mul(&solve_damped(end, self.damping, &way), &mut joints);
         }
         if joints.iter().all(|q| q.is_finite_number()) {
             joints

@@ -1,7 +1,7 @@
 //! Properties of the commanded forces and torques.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use a1_model::{A1Geared, FEET};
+use a1_model::{A1Geared, BUILD, FEET};
 use landing::{Landing, Outcome, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, Motion, Tangent};
@@ -10,7 +10,7 @@ type A1Landing = Landing<f64, 12, 4>;
 
 fn landing() -> A1Landing {
     let feet = FEET.map(|foot| foot.frame);
-    Landing::new(feet, Settings::a1(), [33.5; 12])
+    Landing::new(feet, Settings::new(&BUILD), [33.5; 12])
 }
 
 fn crouched() -> Configuration<f64, 12> {

@@ -1,7 +1,7 @@
 //! The forces of a tick are the optimum of its program, by the judgement of a general solver.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use a1_model::{A1Geared, FEET};
+use a1_model::{A1Geared, BUILD, FEET};
 use dense_qp::Status;
 use landing::{Command, Landing, Outcome, Program, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
@@ -67,7 +67,7 @@ where
             ..Frame::IDENTITY
         });
         Self {
-            landing: Landing::new(feet, Settings::a1(), [T::of(33.5); 12]),
+            landing: Landing::new(feet, Settings::new(&BUILD.cast()), [T::of(33.5); 12]),
             workspace: Workspace::new(),
         }
     }

@@ -66,7 +66,7 @@ pub(crate) const VERDICTS: &str = "\
 Examples:
   saltus verdicts                                      the nine tasks of A1, every measure
   saltus verdicts --plant ground=soft --interface joint-pd
-  saltus verdicts saltus/tasks/extra/*.toml            tasks of your own
+  saltus verdicts jump-planner/tasks/extra/*.toml            tasks of your own
   saltus verdicts --conditions --lab 100               what each condition does, and a hundred seeds of the lab
   saltus verdicts --ranges                             what may differ from the plan, and the lab's ranges
   saltus verdicts --expect saltus/verdicts.toml        the gate: every verdict as expected
@@ -76,7 +76,7 @@ Exit codes: 0 all on target, or all as expected; 2 one is not: it is named, or a
 pub(crate) const REPRODUCE: &str = "\
 Examples:
   saltus reproduce --quick                            native simulator only
-  saltus reproduce --expect saltus/expected.toml      the gate: every item as expected
+  saltus reproduce --expect jump-planner/tasks/expected.toml      the gate: every item as expected
   saltus reproduce --json --out out/papers            also MuJoCo, in a build with the feature `mujoco`
 
 Exit codes: 0 every claim that can be judged holds; 2 one does not, or the folder is refused; 130 stopped by Ctrl-C, with the page of the

@@ -7,23 +7,18 @@
 #[macro_use]
 mod stream;
 
-mod audit;
 mod cmd;
 mod examples;
-mod file;
 mod humanoid;
 mod jump;
 mod lab;
 mod log;
 mod noise;
 mod observer;
-mod range;
 mod recording;
 mod reference;
 mod report;
 mod reproduce;
-mod robot;
-mod track;
 mod verdict;
 
 use clap::error::ErrorKind;

@@ -21,6 +21,7 @@ fn read(folder: &Path, name: &str) -> String {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     let (whole, parts) = (folder("whole"), folder("parts"));
     assert!(envelope(&whole, &[]).status.success());
@@ -49,6 +50,7 @@ fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn the_study_without_each_measure_is_one_table() {
     let out = folder("ablation");
     let ablate = |more: &[&str]| {
@@ -104,6 +106,7 @@ fn the_study_without_each_measure_is_one_table() {
 /// Ctrl-C: the samples so far make a table, and the same command goes on.
 #[cfg(unix)]
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn a_study_that_is_interrupted_keeps_what_it_has() {
     let out = folder("interrupted");
     let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));

@@ -18,7 +18,7 @@ fn saltus(arguments: &[&str]) -> Output {
 fn folder() -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile");
     std::fs::create_dir_all(path.join("folder.urdf")).unwrap();
-    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
     let goal = |goal: &str| {
         let lines = lateral.lines().map(|line| match line {
             _ if line.starts_with("goal_m") => format!("goal_m = [{goal}]\n"),

@@ -60,11 +60,13 @@ fn check(task: &str, name: &str) {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn the_velocity_program_jumps_four_centimetres_and_stands() {
     check("icub/velocity", "icub-velocity");
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn the_torque_program_jumps_four_centimetres_and_stands() {
     check("icub/torque", "icub-torque");
 }

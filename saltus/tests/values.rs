@@ -194,7 +194,8 @@ fn a_problem_without_solution_leaves_none() {
         "s.json",
     ];
     assert_eq!(saltus(&folder, &arguments).status.code(), Some(2));
-    let far = include_str!("../tasks/a1/lateral.toml").replace("0.3, 0.0]", "50.0, 0.0]");
+    let far =
+        include_str!("../../jump-planner/tasks/a1/lateral.toml").replace("0.3, 0.0]", "50.0, 0.0]");
     fs::write(folder.join("far.toml"), far).unwrap();
     let arguments = ["plan", "far.toml", "--solution", "s.json", "--out", "far"];
     assert_eq!(saltus(&folder, &arguments).status.code(), Some(2));
@@ -209,7 +210,7 @@ fn a_problem_without_solution_leaves_none() {
 #[test]
 fn a_task_file_names_key_value_and_what_is_allowed() {
     let folder = folder("task");
-    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
     let turn =
         |angle: &str| format!("{lateral}\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = {angle}\n");
     let limit = |line: &str| format!("{lateral}\n[limits]\n{line}\n");
@@ -330,7 +331,7 @@ fn a_robot_with_limits_of_no_motor_is_refused() {
 fn long_values_are_cut_in_what_is_told() {
     let folder = folder("long");
     let long = "x".repeat(10_000_000);
-    let lateral = include_str!("../tasks/a1/lateral.toml");
+    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
     let files = [
         (
             "value.toml",

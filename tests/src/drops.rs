@@ -1,6 +1,6 @@
 //! A1 dropped on its feet: the landing controller in closed loop with any simulator.
 
-use a1_model::{A1Geared, FEET, FOOT_RADIUS, MOTORS, a1};
+use a1_model::{A1Geared, BUILD, FEET, FOOT_RADIUS, MOTORS, a1};
 use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use jump_control::{JointCommand, JointGains};
 use landing::{
@@ -207,10 +207,10 @@ fn place(plant: &mut Plant, drop: &Drop) {
 pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
     place(plant, drop);
     let feet = FEET.map(|foot| foot.frame);
-    let landing = Landing::<f64, 12, 4>::new(feet, Settings::a1(), [33.5; 12]);
+    let landing = Landing::<f64, 12, 4>::new(feet, Settings::new(&BUILD), [33.5; 12]);
     let mut workspace = Workspace::new();
-    let detector = Detector::new(feet);
-    let posture = PreLanding::new(feet, POSTURE);
+    let detector = Detector::new(&BUILD, feet);
+    let posture = PreLanding::new(&BUILD, feet, POSTURE);
     let mut contact = DetectorState::<f64, 12, 4>::new();
     let target = Target {
         height: 0.25,

@@ -2,10 +2,10 @@
 //! inputs afterwards give good results again.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use a1_model::{A1Geared, FEET, MOTORS};
+use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{
-    CartesianGains, CartesianPd, Fault, JointCommand, JointGains, Measurement, Node, Plan, Slew,
-    Torques, Watch, sample,
+    CartesianPd, Fault, JointCommand, JointGains, Measurement, Node, Plan, Slew, Torques, Watch,
+    sample,
 };
 use landing::{Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -90,11 +90,6 @@ const CROUCH: [f64; 12] = [
     0.1, 0.8, -1.6, -0.1, 0.8, -1.6, 0.1, 0.8, -1.6, -0.1, 0.8, -1.6,
 ];
 
-const GAINS: JointGains<f64> = JointGains {
-    stiffness: 60.0,
-    damping: 1.5,
-};
-
 /// Torques that the motors are asked for are numbers inside their limits.
 fn inside(torques: &[f64; 12], qd: &[f64; 12]) -> bool {
     torques
@@ -168,11 +163,7 @@ proptest! {
         let plan: Plan<'_, f64, 12, 4> = Plan::new(&nodes, 0.2, 0.3, 0.5, Torques::Hold).unwrap();
         let reference = sample(&plan, time, hint);
         prop_assert!(reference.joints.iter().chain(&reference.torques).all(|x| x.is_finite()));
-        let pd = CartesianPd {
-            feet: feet(),
-            gains: CartesianGains { stiffness: [200.0; 3], damping: [5.0; 3] },
-            joint_gains: [GAINS; 12],
-        };
+        let pd = CartesianPd::new(&BUILD, feet());
         let then = sample(&plan, time - m.age, reference.node);
         let command = pd.command(&A1Geared, &m, &reference, &then);
         prop_assert!(inside(&command.torques(&q, &qd, &MOTORS), &qd));
@@ -191,7 +182,7 @@ proptest! {
         waiting in uniform12(number()),
         (q, qd) in (uniform12(number()), uniform12(number())),
     ) {
-        let landing = Landing::<f64, 12, 4>::new(feet(), Settings::a1(), [33.5; 12]);
+        let landing = Landing::<f64, 12, 4>::new(feet(), Settings::new(&BUILD), [33.5; 12]);
         let mut workspace = Workspace::new();
         let (height, rot_wb, x, y) = target;
         let target = Target { height, rot_wb, offset_w: [x, y] };
@@ -229,7 +220,7 @@ proptest! {
     fn detection_with_any_numbers_recovers(
         bad in vec((measurement(), uniform12(number()), number()), 1..6),
     ) {
-        let detector = Detector::<f64, 12, 4>::new(feet());
+        let detector = Detector::<f64, 12, 4>::new(&BUILD, feet());
         let mut state = DetectorState::new();
         let mut tick = |m: &Measurement<f64, 12, 4>, torques: &[f64; 12], dt: f64| {
             let at = Configuration { base: m.base, joints: m.joints };
@@ -254,7 +245,7 @@ proptest! {
 
     #[test]
     fn legs_meet_the_ground_within_reach(up in vector(), velocity in vector()) {
-        let joints = PreLanding::new(feet(), CROUCH).joints(&A1Geared, &up, &velocity);
+        let joints = PreLanding::new(&BUILD, feet(), CROUCH).joints(&A1Geared, &up, &velocity);
         prop_assert!(joints.iter().zip(&CROUCH).all(|(q, level)| (q - level).abs() <= 0.5 + 1e-12));
     }
 

@@ -66,7 +66,7 @@ const HOST: &[Step<'_>] = &[
         ],
     ),
     (
-        "iCub jumps in MuJoCo",
+        "iCub and noise, at length",
         &[
             "xtask",
             "mujoco",
@@ -76,7 +76,10 @@ const HOST: &[Step<'_>] = &[
             JUDGE,
             "--bin",
             "saltus",
-            "humanoid::tests::mujoco",
+            "--",
+            "--include-ignored",
+            "humanoid::tests",
+            "jump::fuzz",
         ],
     ),
 ];
@@ -85,6 +88,7 @@ const HOST: &[Step<'_>] = &[
 const RELEASE: &[Step<'_>] = &[
     ("verdicts as expected", &["xtask", "verdicts"]),
     ("both papers", &["xtask", "reproduce"]),
+    ("long suites", &["xtask", "suites"]),
     ("the report in a browser", &["xtask", "report"]),
     ("instruction counts", &["xtask", "icount"]),
     ("publishable crates", &["xtask", "package"]),

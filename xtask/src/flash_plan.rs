@@ -25,7 +25,7 @@ pub(crate) fn run(_: &Args) -> Result<()> {
         "--package",
         "saltus",
     ]);
-    plan.args(["--", "plan", TASK, "--no-gains", "--out"]);
+    plan.args(["--", "plan", TASK, "--out"]);
     run::succeed(plan.arg(&folder))?;
     let mut write = run::firmware_cargo();
     write.args(["run", "--quiet", "--profile=host", "--locked"]);

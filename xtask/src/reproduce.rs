@@ -1,4 +1,4 @@
-//! `cargo xtask reproduce`: both papers in both simulators; every item comes out as `saltus/expected.toml` says, and the page shows all.
+//! `cargo xtask reproduce`: both papers in both simulators; every item comes out as `jump-planner/tasks/expected.toml` says, and the page shows all.
 //!
 //! Whether the papers' claims hold is the answer of `saltus reproduce`; that the answer has not changed unseen is the check.
 

@@ -1,4 +1,4 @@
-//! `cargo xtask verdicts`: every task in both simulators ends as `saltus/expected.toml` says, and README shows what came out.
+//! `cargo xtask verdicts`: every task in both simulators ends as `jump-planner/tasks/expected.toml` says, and README shows what came out.
 //!
 //! A verdict that differs, for better or worse, fails and is named with its task: whoever changed it looks at the run and writes the new
 //! one down.
@@ -11,7 +11,7 @@ use anyhow::{Context, Result, ensure};
 use crate::{mujoco, run};
 
 /// The file of expected verdicts.
-pub(crate) const EXPECTED: &str = "saltus/expected.toml";
+pub(crate) const EXPECTED: &str = "jump-planner/tasks/expected.toml";
 
 /// Arguments of `cargo xtask verdicts`.
 #[derive(clap::Args)]

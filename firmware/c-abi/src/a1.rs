@@ -2,8 +2,8 @@
 
 use core::ffi::c_void;
 
-use a1_model::{A1Geared, FEET, MOTORS};
-use jump_control::{CartesianGains, CartesianPd, JointCommand, JointGains, Measurement, Reference};
+use a1_model::{A1Geared, BUILD, FEET, MOTORS};
+use jump_control::{CartesianPd, JointCommand, JointGains, Measurement, Reference};
 use landing::{Landing, Outcome, Settings, Target, Workspace};
 
 use crate::memory::{Resident, align, input, output, place, resident, size, status};
@@ -191,17 +191,7 @@ pub extern "C" fn saltus_a1_cartesian_pd(
             foot_forces: [0.0; 4],
             age: 0.0,
         };
-        let pd = CartesianPd {
-            feet: FEET.each_ref().map(|foot| foot.frame),
-            gains: CartesianGains {
-                stiffness: [200.0; 3],
-                damping: [5.0; 3],
-            },
-            joint_gains: [JointGains {
-                stiffness: 60.0,
-                damping: 1.5,
-            }; N],
-        };
+        let pd = CartesianPd::new(&BUILD, FEET.each_ref().map(|foot| foot.frame));
         let c = pd.command(&A1Geared, &measured, &reference, &then);
         *out = A1Command {
             position: c.position,
@@ -236,7 +226,7 @@ pub extern "C" fn saltus_a1_landing_init(
     status(place(memory, bytes, version, || A1Landing {
         landing: Landing::new(
             FEET.each_ref().map(|foot| foot.frame),
-            Settings::a1(),
+            Settings::new(&BUILD),
             MOTORS.each_ref().map(|motor| motor.torque),
         ),
         workspace: Workspace::new(),

@@ -38,7 +38,7 @@ impl Expected {
     /// Reads the file.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-        let text = crate::file::read_text(path).map_err(|error| show(&error))?;
+        let text = jump_planner::file::read_text(path).map_err(|error| show(&error))?;
         Ok(Self {
             path: path.to_owned(),
             tables: toml::from_str(&text).map_err(|error| show(&error))?,

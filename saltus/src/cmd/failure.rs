@@ -1,6 +1,6 @@
 //! Why a command ends without an answer, and with which exit code.
 
-use crate::jump::task_file::TaskError;
+use jump_planner::task::file::TaskError;
 use serde_json::json;
 use std::process::ExitCode;
 

@@ -61,7 +61,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let read = |path: &Path| match path.extension().is_some_and(|e| e == "xml") {
         true => mjcf::read(path),
-        false => crate::file::read_text(path),
+        false => jump_planner::file::read_text(path),
     };
     let text = read(&args.urdf).map_err(|error| describe(&args.urdf, &error))?;
     let robot = options(args)

@@ -1,7 +1,9 @@
 //! What a command prints: text, one JSON object, or nothing; and how far it is, on a terminal only.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
+use jump_planner::planned::Planner;
 
 /// Options of every command that prints a result.
 #[derive(clap::Args, Clone, Copy)]
@@ -40,4 +42,10 @@ impl Output {
         bar.set_style(style.progress_chars("=> "));
         Ok(bar)
     }
+}
+
+/// Planners by their names.
+pub(crate) fn planners() -> impl TypedValueParser<Value = Planner> {
+    PossibleValuesParser::new(Planner::ALL.map(Planner::name))
+        .try_map(|name| name.parse::<Planner>())
 }

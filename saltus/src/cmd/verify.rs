@@ -5,9 +5,9 @@
 use super::failure::Failure;
 use super::folder::describe;
 use super::output::Output;
-use crate::audit::{Audit, check_values};
-use crate::jump::stored::open;
-use crate::robot::Quadruped;
+use jump_planner::audit::{Audit, check_values};
+use jump_planner::robot::Quadruped;
+use jump_planner::stored::open;
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -34,7 +34,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         None => Quadruped::a1(),
     };
     let robot = robot.map_err(|error| error.to_string())?;
-    let bytes = crate::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
+    let bytes =
+        jump_planner::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
     let show = |error| format!("{}: {error}", args.file.display());
     check_values(&robot, &plan).map_err(show)?;

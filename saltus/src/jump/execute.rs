@@ -3,18 +3,18 @@
 use super::log::Sample;
 use super::measure::Measure;
 use super::plant::{Sim, plant};
-use super::reference::{Reference, heading_matrix};
 use super::sensors::{Sensors, Told, World};
-use super::task::Task;
-use super::{FOOT_COUNT, JOINTS, ROBOT, feet, kinematics};
+use super::{FOOT_COUNT, JOINTS};
 use crate::lab::{Boards, Disturbance, Interface, Motors};
 use crate::verdict::{Hardware, Stage, Tick as HardwareTick};
-use a1_model::{BUDGETS, MOTORS, OWNERS, a1};
 use jump_control::{Fault, Phase, Plan, Torques, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
+use jump_planner::reference::{Reference, heading_matrix};
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
 use landing::Outcome;
 use nalgebra::Vector3;
-use rbd_core::joint_friction;
+use rbd_core::{Model, Motor, joint_friction};
 
 /// Time of standing still before the jump, s.
 pub(crate) const HOLD: f64 = 0.3;
@@ -61,6 +61,7 @@ impl Trial<'_> {
 
 /// Everything a run leaves behind.
 pub(crate) struct Run {
+    robot: Quadruped,
     pub(crate) samples: Vec<Sample>,
     pub(crate) final_phase: Phase,
     pub(crate) fault: Option<Fault>,
@@ -78,13 +79,21 @@ pub(crate) struct Run {
 
 impl Run {
     pub(super) fn new(task: &Task, tick: f64) -> Self {
+        let robot = &task.robot;
         let weight = task.problem.mass * task.problem.gravity;
         Self {
+            robot: *robot,
             samples: Vec::new(),
             final_phase: Phase::Hold,
             fault: None,
             first_contact: None,
-            hardware: Hardware::new(BUDGETS, MOTORS, &a1::LIMITS, weight, tick),
+            hardware: Hardware::new(
+                robot.budgets,
+                robot.drives(),
+                Model::limits(robot),
+                weight,
+                tick,
+            ),
             peak_torque: 0.0,
             peak_foot_force: 0.0,
             ticks: [0; 3],
@@ -130,7 +139,12 @@ impl Run {
         if self.first_contact.is_none() && looking && foot > TOUCHDOWN {
             self.first_contact = Some(time);
         }
-        let owners = OWNERS.iter().zip(forces).zip(plant.link_forces());
+        let owners = self
+            .robot
+            .owners
+            .iter()
+            .zip(forces)
+            .zip(plant.link_forces());
         let touches: Vec<(&'static str, f64)> = owners
             .enumerate()
             // A foot may touch the ground, and no link.
@@ -190,14 +204,19 @@ struct Drive {
     computed: [f64; JOINTS],
     /// Mean of what the boards believe to have given, friction included, since the last tick of the machine.
     felt: [f64; JOINTS],
+    robot: Quadruped,
+    drives: [Motor<f64>; JOINTS],
 }
 
 impl Drive {
-    fn new(trial: &Trial<'_>) -> Self {
+    fn new(trial: &Trial<'_>, robot: Quadruped) -> Self {
+        let drives = robot.drives();
         Self {
+            robot,
+            drives,
             interface: trial.interface,
             boards: Boards::new(&trial.disturbance, trial.seed.wrapping_add(0xb0a2d)),
-            motors: Motors::new(&trial.disturbance, MOTORS, &BUDGETS),
+            motors: Motors::new(&trial.disturbance, drives, &robot.budgets),
             computed: [0.0; JOINTS],
             felt: [0.0; JOINTS],
         }
@@ -215,13 +234,13 @@ impl Drive {
         let asked = self.computed;
         self.computed = match self.interface {
             Interface::Torque => machine.joint_tick(&q, &v, dt),
-            Interface::JointPd { .. } => self.boards.torques(now, (&q, &v), &MOTORS),
+            Interface::JointPd { .. } => self.boards.torques(now, (&q, &v), &self.drives),
         };
         let speeds = world.velocity().joints;
         let given = self.motors.give(&asked, &speeds, dt);
         let flies = matches!(machine.phase(), Phase::Flight | Phase::PreLanding);
         world.step(&given, flies)?;
-        let losses = joint_friction(&a1::LIMITS, &v, FRICTION_SMOOTHING);
+        let losses = joint_friction(Model::limits(&self.robot), &v, FRICTION_SMOOTHING);
         for ((felt, tau), loss) in self.felt.iter_mut().zip(self.motors.measured()).zip(losses) {
             *felt += (tau + loss) / f64::from(RATIO);
         }
@@ -259,20 +278,22 @@ pub(crate) fn run_watched(
     mut progress: impl FnMut(f64, Phase),
     mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
-    let mut sensors = Sensors::new(&trial.disturbance, trial.interface, trial.seed, &task.start);
+    let mut sensors = Sensors::new(&trial.disturbance, trial.interface, trial.seed, task);
     let mut world = plant(trial.sim, task, &trial.disturbance)?;
     let jump = jump(task, reference)?;
     let mut workspace = landing::Workspace::new();
-    let mut settings = Settings::a1(feet(), MOTORS, task.start.joints);
+    let robot = task.robot;
+    let build = robot.build(&task.start);
+    let mut settings = Settings::new(&build, robot.feet, robot.drives(), task.start.joints);
     for measure in trial.without {
         measure.leave(&mut settings);
     }
     let delayed = !trial.without.contains(&Measure::Delay);
-    let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&ROBOT, settings, &mut workspace);
+    let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
     sensors.begin(-HOLD, &world);
-    let mut drive = Drive::new(&trial);
+    let mut drive = Drive::new(&trial, robot);
     let mut run = Run::new(task, world.plant().tick());
     let end = reference.touchdown + SETTLE + 0.5;
     let (mut k, mut node) = (0_u64, 0);
@@ -299,8 +320,14 @@ pub(crate) fn run_watched(
         }
         let planned = sample(&jump.plan, t, node);
         node = planned.node;
-        run.samples
-            .push(record(&world, machine.phase(), &jump.plan, &planned, t));
+        run.samples.push(record(
+            &robot,
+            &world,
+            machine.phase(),
+            &jump.plan,
+            &planned,
+            t,
+        ));
         for i in 0..RATIO {
             let now = t + f64::from(i) * world.plant().tick();
             let (asked, speeds) = drive.step(&mut machine, (&mut world, &mut sensors), now)?;
@@ -323,6 +350,7 @@ pub(crate) fn run_watched(
 }
 
 fn record(
+    robot: &Quadruped,
     world: &World,
     phase: Phase,
     plan: &Plan<'_, f64, JOINTS, FOOT_COUNT>,
@@ -338,7 +366,7 @@ fn record(
         orientation: so3::quat::from_rotation(&q.base.rotation),
         velocity_w: q.base.rotation * v.base.linear,
         omega_b: v.base.angular,
-        com: kinematics::com(&q),
+        com: robot.com(&q),
         joints: q.joints,
         joint_velocities: v.joints,
         torques: *world.plant().delivered(),

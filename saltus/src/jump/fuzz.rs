@@ -4,11 +4,11 @@
 
 use super::execute::{HOLD, Run, Trial, run_watched};
 use super::plant::Sim;
-use super::reference::{Reference, build};
 use super::sensors::Told;
-use super::task::Task;
 use a1_model::MOTORS;
 use jump_control::{Fault, Phase};
+use jump_planner::reference::{Reference, build};
+use jump_planner::task::Task;
 use proptest::prelude::{Just, ProptestConfig, prop_assert, prop_assert_eq, prop_oneof, proptest};
 use std::sync::OnceLock;
 

@@ -2,11 +2,12 @@
 
 use super::execute::{Run, SETTLE, Trial};
 use super::log::Sample;
-use super::reference::{Reference, heading_matrix};
-use super::task::{SrbPlan, Task};
-use super::{FOOT_COUNT, JOINTS, State, feet, kinematics, state};
+use super::{FOOT_COUNT, JOINTS, State, state};
 use crate::verdict::{FALLEN, Failure, Flight, Stand, Verdict};
 use jump_control::Phase;
+use jump_planner::reference::{Reference, heading_matrix};
+use jump_planner::robot::Quadruped;
+use jump_planner::task::{SrbPlan, Task};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::Transform;
 use serde_json::{Value, json};
@@ -36,13 +37,18 @@ fn between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
 }
 
 /// Middle of the feet, world axes.
-fn middle_of_feet(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Vector3<f64> {
+fn middle_of_feet(
+    robot: &Quadruped,
+    base: &Transform<f64>,
+    joints: &[f64; JOINTS],
+) -> Vector3<f64> {
     let q = State {
         base: *base,
         joints: *joints,
     };
-    let poses = kinematics::poses(&q);
-    let sum: Vector3<f64> = feet()
+    let poses = robot.poses(&q);
+    let sum: Vector3<f64> = robot
+        .feet
         .iter()
         .map(|foot| poses.frame(foot).translation)
         .sum();
@@ -50,14 +56,14 @@ fn middle_of_feet(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Vector3<f64>
 }
 
 /// Beside the plan at its touchdown; `None` for a run that ended before.
-fn flight(reference: &Reference, samples: &[Sample]) -> Option<Flight> {
+fn flight(robot: &Quadruped, reference: &Reference, samples: &[Sample]) -> Option<Flight> {
     let sample = samples.iter().find(|s| s.time >= reference.touchdown)?;
     let (q, _) = state(reference.nodes.last()?);
     let pairs = sample.joints.iter().zip(&q.joints);
     let joints = pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()));
     Some(Flight {
         time: sample.time,
-        position: (sample.com - kinematics::com(&q)).norm(),
+        position: (sample.com - robot.com(&q)).norm(),
         rotation: between(&q.base.rotation, &sample.orientation.to_rotation_matrix()),
         joints: joints.to_degrees(),
     })
@@ -70,10 +76,10 @@ fn stand(task: &Task, run: &Run, time: f64) -> Option<Stand> {
     let turned = heading_matrix(task.heading);
     let rotation = sample.orientation.to_rotation_matrix();
     // The goal is where the start's base goes; its feet turn with its heading.
-    let first = middle_of_feet(&start.base, &start.joints) - start.base.translation;
+    let first = middle_of_feet(&task.robot, &start.base, &start.joints) - start.base.translation;
     let goal = start.base.translation + task.goal;
     let here = Transform::new(rotation, sample.position);
-    let feet = middle_of_feet(&here, &sample.joints) - (goal + turned * first);
+    let feet = middle_of_feet(&task.robot, &here, &sample.joints) - (goal + turned * first);
     let heading = |r: &Rotation3<f64>| {
         let ahead = r * Vector3::x();
         so3::math::atan2(ahead.y, ahead.x)
@@ -126,7 +132,7 @@ impl Judged {
         let turned = |s: &Sample| between(&task.rot_goal, &s.orientation.to_rotation_matrix());
         Self {
             verdict: Verdict::new(
-                flight(reference, &run.samples),
+                flight(&task.robot, reference, &run.samples),
                 stand,
                 run.hardware.found(allowed),
                 gravest,
@@ -217,12 +223,12 @@ fn plan_json(plan: Option<&SrbPlan>, reference: &Reference) -> Value {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
-    use crate::jump::{OWNERS, kinematics};
+    use crate::jump::OWNERS;
     use jump_control::Phase;
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Transform};
 
-    fn sample(q: &State, time: f64) -> Sample {
+    fn sample(task: &Task, q: &State, time: f64) -> Sample {
         Sample {
             time,
             phase: Phase::Stand,
@@ -230,7 +236,7 @@ mod tests {
             orientation: so3::quat::from_rotation(&q.base.rotation),
             velocity_w: Vector3::zeros(),
             omega_b: Vector3::zeros(),
-            com: kinematics::com(q),
+            com: task.robot.com(q),
             joints: q.joints,
             joint_velocities: [0.0; 12],
             torques: [0.0; 12],
@@ -249,7 +255,7 @@ mod tests {
         run.final_phase = Phase::Stand;
         let mut there = task.start;
         there.base.translation += task.goal;
-        run.samples.push(sample(&there, SETTLE));
+        run.samples.push(sample(&task, &there, SETTLE));
         let good = stand(&task, &run, SETTLE).unwrap();
         assert!(good.feet < 1e-12 && good.height < 1e-12 && good.upright);
         // Legs turned at the hips, base where it was: the feet move aside.
@@ -257,7 +263,7 @@ mod tests {
             joints: core::array::from_fn(|i| there.joints[i] + if i % 3 == 0 { 0.4 } else { 0.0 }),
             ..there
         };
-        run.samples = vec![sample(&leaning, SETTLE)];
+        run.samples = vec![sample(&task, &leaning, SETTLE)];
         let bad = stand(&task, &run, SETTLE).unwrap();
         assert!((leaning.base.translation - there.base.translation).norm() < 1e-12);
         assert!(bad.feet > 0.09, "{}", bad.feet);
@@ -266,13 +272,13 @@ mod tests {
     #[test]
     fn the_middle_of_the_feet_moves_with_the_base() {
         let task = Task::load("a1/lateral").unwrap();
-        let here = middle_of_feet(&task.start.base, &task.start.joints);
+        let here = middle_of_feet(&task.robot, &task.start.base, &task.start.joints);
         let shift = Vector3::new(0.1, -0.2, 0.3);
         let base = Transform::new(
             task.start.base.rotation,
             task.start.base.translation + shift,
         );
-        let there = middle_of_feet(&base, &task.start.joints);
+        let there = middle_of_feet(&task.robot, &base, &task.start.joints);
         assert!((there - here - shift).norm() < 1e-12);
     }
 }

@@ -3,8 +3,9 @@
 use super::{FOOT_COUNT, JOINTS, OWNERS};
 use crate::log::Log;
 use jump_control::Phase;
+use jump_planner::robot::Quadruped;
+use jump_planner::stored::joint_name;
 use nalgebra::{UnitQuaternion, Vector3};
-use rbd_core::Model;
 
 /// One sample.
 #[derive(Clone, Debug)]
@@ -25,27 +26,29 @@ pub(crate) struct Sample {
     pub(crate) planned_forces_w: [Vector3<f64>; FOOT_COUNT],
 }
 
-/// Short names of the feet.
-pub(crate) const FEET_NAMES: [&str; FOOT_COUNT] = ["FL", "FR", "RL", "RR"];
+/// Short names of the feet: the places of their legs.
+pub(crate) fn foot_names(robot: &Quadruped) -> [&'static str; FOOT_COUNT] {
+    core::array::from_fn(|leg| robot.place(leg))
+}
 
 /// Short joint names: `FL_hip` and so on.
-pub(crate) fn joint_names() -> [String; JOINTS] {
-    Model::<f64, JOINTS>::joint_names(&super::ROBOT).map(|name| name.replace("_joint", ""))
+pub(crate) fn joint_names(robot: &Quadruped) -> [String; JOINTS] {
+    core::array::from_fn(|i| joint_name(robot, i))
 }
 
 /// The samples as a table.
-pub(crate) fn table(samples: &[Sample]) -> Log {
+pub(crate) fn table(robot: &Quadruped, samples: &[Sample]) -> Log {
     let own = [
         "x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz", "com_x",
         "com_y", "com_z",
     ];
     let mut columns = own.map(str::to_owned).to_vec();
-    let joints = joint_names();
+    let joints = joint_names(robot);
     for kind in ["q", "qd", "tau", "q_plan"] {
         columns.extend(joints.iter().map(|name| format!("{kind}_{name}")));
     }
     for kind in ["f", "f_plan"] {
-        for foot in FEET_NAMES {
+        for foot in foot_names(robot) {
             columns.extend(["x", "y", "z"].map(|axis| format!("{kind}_{foot}_{axis}")));
         }
     }

@@ -1,13 +1,13 @@
 //! What makes an execution robust; a study can do without each of them, which shows what it is worth.
 
-use super::planned::Planner;
-use super::reference::Reference;
-use super::task::Task;
-use super::whole_body::FRICTION_SMOOTHING;
-use super::{FOOT_COUNT, JOINTS, Node, ROBOT};
-use a1_model::a1;
+use super::{FOOT_COUNT, JOINTS, Node};
 use jump_machine::Settings;
-use rbd_core::{Tree, joint_friction};
+use jump_planner::planned::Planner;
+use jump_planner::reference::Reference;
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
+use jump_planner::whole_body::FRICTION_SMOOTHING;
+use rbd_core::{Model, Tree, joint_friction};
 
 /// One measure against disturbances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
@@ -97,7 +97,7 @@ impl Measure {
             if planner != Planner::WholeBody {
                 return Err("only whole-body plans can do without drives".into());
             }
-            forget_drives(&mut reference.nodes);
+            forget_drives(&task.robot, &mut reference.nodes);
         }
         Ok(reference)
     }
@@ -125,15 +125,15 @@ impl Measure {
 
 /// Takes the torques that turn rotors and overcome joint friction out of a whole-body plan, whose accelerations are the
 /// differences of its nodes' velocities.
-fn forget_drives(nodes: &mut [Node]) {
-    let rotors = Tree::<f64, JOINTS>::bodies(&ROBOT).map(|body| body.rotor_inertia);
+fn forget_drives(robot: &Quadruped, nodes: &mut [Node]) {
+    let rotors = Tree::<f64, JOINTS>::bodies(robot).map(|body| body.rotor_inertia);
     let mut rest = nodes;
     while let [node, after @ ..] = rest {
         let Some(next) = after.first() else { return };
         let (now, then) = (node.joint_velocities, next.joint_velocities);
         let dt = next.time - node.time;
         let middle = core::array::from_fn(|i| 0.5 * (now[i] + then[i]));
-        let lost = joint_friction(&a1::LIMITS, &middle, FRICTION_SMOOTHING);
+        let lost = joint_friction(Model::limits(robot), &middle, FRICTION_SMOOTHING);
         for (i, torque) in node.torques.iter_mut().enumerate() {
             *torque += lost[i] - rotors[i] * (then[i] - now[i]) / dt;
         }
@@ -145,10 +145,12 @@ fn forget_drives(nodes: &mut [Node]) {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{Measure, forget_drives};
-    use crate::jump::whole_body::FRICTION_SMOOTHING;
-    use crate::jump::{JOINTS, Node, ROBOT, State, Velocity};
+    use crate::jump::{JOINTS, Node, State};
     use a1_model::{A1, a1};
     use clap::ValueEnum;
+    use jump_planner::Velocity;
+    use jump_planner::robot::Quadruped;
+    use jump_planner::whole_body::FRICTION_SMOOTHING;
     use rbd_core::{Posture, joint_friction, rnea};
 
     #[test]
@@ -164,6 +166,7 @@ mod tests {
     #[test]
     fn a_plan_without_drives_has_the_torques_of_a_robot_without_them() {
         const DT: f64 = 0.005;
+        let robot = Quadruped::a1().unwrap();
         let speeds = |k: usize| core::array::from_fn(|i| 0.3 * (i as f64 - 5.0) + 0.1 * k as f64);
         let accelerations: [f64; JOINTS] = [0.1 / DT; JOINTS];
         let middle = speeds(0).map(|speed: f64| speed + 0.05);
@@ -176,7 +179,7 @@ mod tests {
             ..Velocity::ZERO
         };
         let (v, a) = (joints_only(middle), joints_only(accelerations));
-        let with = rnea(&ROBOT, &Posture::new(&ROBOT, &q), &v, &a).joints;
+        let with = rnea(&robot, &Posture::new(&robot, &q), &v, &a).joints;
         let lost = joint_friction(&a1::LIMITS, &middle, FRICTION_SMOOTHING);
         let mut nodes = [0, 1].map(|k| Node {
             time: DT * k as f64,
@@ -184,7 +187,7 @@ mod tests {
             ..Node::ZERO
         });
         nodes[0].torques = core::array::from_fn(|i| with[i] - lost[i]);
-        forget_drives(&mut nodes);
+        forget_drives(&robot, &mut nodes);
         let without = rnea(&A1, &Posture::new(&A1, &q), &v, &a).joints;
         for i in 0..JOINTS {
             assert!((nodes[0].torques[i] - without[i]).abs() < 1e-9, "joint {i}");

@@ -1,18 +1,15 @@
 //! The simulated robot: which simulator, in which world.
 
 use super::sensors::World;
-use super::task::Task;
-use super::{JOINTS, OWNERS, ROBOT};
+use super::{JOINTS, OWNERS};
 use crate::lab::{self, Disturbance, Key};
-use a1_model::{MOTORS, SHAPES, a1};
-use contact_sim::{Block, NativeSimulator, Settings, Terrain};
-use nalgebra::Vector3;
-use rbd_core::Tangent;
+use contact_sim::{NativeSimulator, Settings};
+use jump_planner::robot::{Quadruped, SHAPE_COUNT};
+use jump_planner::task::Task;
+use jump_planner::terrain::terrain;
+use rbd_core::{Model, Tangent};
 
-/// How far a box reaches from the middle of a robot on it, m.
-const AROUND: f64 = 0.6;
-
-/// A simulator of A1.
+/// A simulator of a quadruped.
 type Plant = lab::Plant<JOINTS, OWNERS>;
 
 /// The simulators.
@@ -35,14 +32,14 @@ impl Sim {
 }
 
 /// Ground, motors and joint losses of the plant.
-fn settings(disturbance: &Disturbance) -> Settings<f64, JOINTS> {
-    let limits = a1::LIMITS.map(|mut limits| {
+fn settings(robot: &Quadruped, disturbance: &Disturbance) -> Settings<f64, JOINTS> {
+    let limits = Model::limits(robot).map(|mut limits| {
         limits.friction = disturbance
             .set_to(Key::JointFriction)
             .unwrap_or(limits.friction);
         limits
     });
-    let mut settings = Settings::new(&limits, &MOTORS);
+    let mut settings = Settings::new(&limits, &robot.drives());
     settings.contact.friction = disturbance.get(Key::Friction);
     settings.contact.time_constant = disturbance.seconds(Key::Ground);
     settings
@@ -53,8 +50,13 @@ pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<
     let mut plant: Plant = match sim {
         Sim::Native => {
             let terrain = terrain(task, height_error(disturbance));
-            let robot = lab::robot(disturbance, &ROBOT)?;
-            let native = NativeSimulator::new(robot, SHAPES, terrain, settings(disturbance));
+            let robot = lab::robot(disturbance, &task.robot)?;
+            let native = NativeSimulator::new(
+                robot,
+                task.robot.shapes,
+                terrain,
+                settings(&task.robot, disturbance),
+            );
             Box::new(native.colliding(pairs(task)))
         }
         Sim::Mujoco => mujoco(task, disturbance)?,
@@ -71,8 +73,8 @@ pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<
 }
 
 /// Shapes that touch each other: those that do not where the robot stands.
-fn pairs(task: &Task) -> [u64; SHAPES.len()] {
-    contact_sim::self_contacts(&ROBOT, &SHAPES, &task.start)
+fn pairs(task: &Task) -> [u64; SHAPE_COUNT] {
+    contact_sim::self_contacts(&task.robot, &task.robot.shapes, &task.start)
 }
 
 /// MuJoCo, with the same shapes.
@@ -80,10 +82,10 @@ fn pairs(task: &Task) -> [u64; SHAPES.len()] {
 fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
     use contact_sim::{Geom, MujocoSimulator};
 
-    let geoms = SHAPES.map(Geom::Swept);
-    let mut settings = settings(disturbance);
+    let geoms = task.robot.shapes.map(Geom::Swept);
+    let mut settings = settings(&task.robot, disturbance);
     settings.substeps = 1;
-    let robot = lab::robot(disturbance, &ROBOT)?;
+    let robot = lab::robot(disturbance, &task.robot)?;
     let terrain = terrain(task, height_error(disturbance));
     let sim = MujocoSimulator::new(&robot, (&geoms, &pairs(task)), &terrain, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
@@ -101,93 +103,4 @@ pub(crate) const NO_MUJOCO: &str = "this build has no MuJoCo: use `cargo xtask m
 /// By how much the landing's ground is higher than known, m.
 fn height_error(disturbance: &Disturbance) -> f64 {
     disturbance.get(Key::GroundHeight)
-}
-
-/// The world of a task, whose landing is `higher` than known, m. The robot starts at height zero: on the floor, with or without a box
-/// to jump onto, or on a box with the floor below. Without a box start and landing are on one floor, which [`lab::Ground`] moves.
-pub(crate) fn terrain(task: &Task, higher: f64) -> Terrain<f64> {
-    let Some(mut edge) = task.edge.filter(|edge| edge.drop != 0.0) else {
-        return Terrain::FLAT;
-    };
-    let onto = edge.drop < 0.0;
-    edge.drop -= higher;
-    // Around where the robot stands, or lands.
-    let middle = if onto { task.goal } else { Vector3::zeros() };
-    over_edge(
-        onto,
-        (edge.axis, edge.sign, edge.distance),
-        edge.drop,
-        &middle,
-        AROUND,
-    )
-}
-
-/// A floor, and a block that reaches so far `around` a middle and is cut at an edge: (axis across it, side of the landing, distance from the
-/// origin). The robot stands at height zero and lands `drop` below; `onto` the block, or off it.
-pub(crate) fn over_edge(
-    onto: bool,
-    (axis, side, distance): (usize, f64, f64),
-    drop: f64,
-    middle: &Vector3<f64>,
-    around: f64,
-) -> Terrain<f64> {
-    let floor = f64::min(-drop, 0.0);
-    let mut lower = [middle.x - around, middle.y - around, floor];
-    let mut upper = [middle.x + around, middle.y + around, f64::max(-drop, 0.0)];
-    let cut = side * distance;
-    if onto == (side > 0.0) {
-        lower[axis] = cut;
-    } else {
-        upper[axis] = cut;
-    }
-    Terrain {
-        floor,
-        block: Some(Block { lower, upper }),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::terrain;
-    use crate::jump::task::Task;
-    use contact_sim::Terrain;
-    use nalgebra::Vector3;
-
-    /// Height of the probes over the ground, m.
-    const GAP: f64 = 5e-4;
-
-    /// Off and onto boxes, over all four edges: the robot stands on the ground at zero and lands on ground at the height of its goal, and
-    /// between them is the edge.
-    #[test]
-    fn the_robot_stands_and_lands_on_the_ground() {
-        let mut task = Task::load("a1/lateral-down").unwrap();
-        for drop in [0.3, -0.3] {
-            for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-                let edge = task.problem.edge.as_mut().unwrap();
-                (edge.drop, edge.axis, edge.sign) = (drop, axis, sign);
-                let distance = edge.distance;
-                task.edge = task.problem.edge;
-                task.goal = Vector3::new(0.1, -0.1, -drop);
-                task.goal[axis] = 0.7 * sign;
-                let terrain = terrain(&task, 0.0);
-                let mut beside = Vector3::zeros();
-                beside[axis] = sign * (distance - 1e-3);
-                let mut beyond = Vector3::zeros();
-                beyond[axis] = sign * (distance + 1e-3);
-                for (place, wanted) in [
-                    (Vector3::zeros(), 0.0),
-                    (beside, 0.0),
-                    (beyond, -drop),
-                    (task.goal, -drop),
-                ] {
-                    let probe = place.xy().push(wanted + GAP);
-                    let found = terrain.touch(&probe, 0.0).depth;
-                    assert!((found + GAP).abs() < 1e-12, "{drop} {axis} {sign} {place}");
-                }
-            }
-        }
-        task.edge.as_mut().unwrap().drop = 0.0;
-        assert_eq!(terrain(&task, 0.0), Terrain::FLAT);
-    }
 }

@@ -1,16 +1,15 @@
 //! The report: one HTML file with the jump in 3D and its plots, no network needed.
 
 use super::execute::Run;
-use super::kinematics::poses;
-use super::log::{FEET_NAMES, Sample, joint_names};
-use super::planned::Origin;
-use super::reference::Reference;
-use super::task::Task;
-use super::{FOOT_COUNT, JOINTS, State, feet};
+use super::log::{Sample, foot_names, joint_names};
+use super::{FOOT_COUNT, JOINTS, State};
 use crate::log::Log;
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
-use a1_model::MOTORS;
+use jump_planner::planned::Origin;
+use jump_planner::reference::Reference;
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
 use nalgebra::Vector3;
 use rbd_core::Transform;
 use serde_json::{Value, json};
@@ -33,40 +32,40 @@ pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]
          the table). The plan is {legs}."
     );
     let data = json!({
-        "frames": frames(&run.samples),
+        "frames": frames(&task.robot, &run.samples),
         "scene": scene(task),
         "phases": phases(&run.samples),
         "table": lines(table),
         "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
-        "plots": plots(&run.samples, reference),
+        "plots": plots(&task.robot, &run.samples, reference),
     });
     page(&title, &intro, &data)
 }
 
 /// Hip, thigh, calf and foot of each leg.
-fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
+fn limbs(robot: &Quadruped, s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
     let q = State {
         base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
         joints: s.joints,
     };
-    let (poses, feet) = (poses(&q), feet());
+    let poses = robot.poses(&q);
     core::array::from_fn(|leg| {
         let link = |i: usize| poses.bodies[3 * leg + i].translation;
         [
             link(0),
             link(1),
             link(2),
-            poses.frame(&feet[leg]).translation,
+            poses.frame(&robot.feet[leg]).translation,
         ]
     })
 }
 
 /// The run as MCAP.
 pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String> {
-    let terrain = super::plant::terrain(task, 0.0);
+    let terrain = jump_planner::terrain::terrain(task, 0.0);
     let scene = Scene {
-        trunk: a1_model::shapes::TRUNK,
-        foot_radius: a1_model::FOOT_RADIUS,
+        trunk: task.robot.trunk(),
+        foot_radius: task.robot.foot_radius,
         floor: terrain.floor,
         block: terrain.block.map(|block| [block.lower, block.upper]),
     };
@@ -75,14 +74,14 @@ pub(crate) fn mcap(task: &Task, run: &Run, log: &Log) -> Result<Vec<u8>, String>
         Frame {
             position: s.position,
             orientation: s.orientation,
-            limbs: limbs(s),
+            limbs: limbs(&task.robot, s),
             forces_w: core::array::from_fn(|foot| s.forces_w[foot]),
         }
     })
 }
 
 /// Poses of the links and forces, for the animation.
-fn frames(samples: &[Sample]) -> Value {
+fn frames(robot: &Quadruped, samples: &[Sample]) -> Value {
     let kept: Vec<&Sample> = samples.iter().step_by(FRAME).collect();
     let each = |f: &dyn Fn(&Sample) -> Value| kept.iter().map(|s| f(s)).collect::<Vec<_>>();
     json!({
@@ -91,18 +90,18 @@ fn frames(samples: &[Sample]) -> Value {
         "position": each(&|s| vector(&s.position)),
         "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
         "com": each(&|s| vector(&s.com)),
-        "points": each(&|s| json!(limbs(s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
+        "points": each(&|s| json!(limbs(robot, s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&|s| json!(s.forces_w[..FOOT_COUNT].iter().map(vector).collect::<Vec<_>>())),
     })
 }
 
 fn scene(task: &Task) -> Value {
-    let terrain = super::plant::terrain(task, 0.0);
+    let terrain = jump_planner::terrain::terrain(task, 0.0);
     json!({
         "floor": terrain.floor,
         "block": terrain.block.map(|block| [block.lower, block.upper]),
-        "foot_radius": a1_model::FOOT_RADIUS,
-        "trunk": a1_model::shapes::TRUNK,
+        "foot_radius": task.robot.foot_radius,
+        "trunk": task.robot.trunk(),
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })
@@ -123,7 +122,7 @@ fn phases(samples: &[Sample]) -> Vec<Value> {
         .collect()
 }
 
-fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
+fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Value> {
     let axes = ["x", "y", "z"];
     let mut out = vec![
         plot(
@@ -155,7 +154,9 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
                 .collect(),
         ),
     ];
-    let names = joint_names();
+    let names = joint_names(robot);
+    let motors = robot.drives();
+    let fastest = motors[0].no_load_speed;
     for (i, kind) in ["Hip", "Thigh", "Calf"].iter().enumerate() {
         let mut series: Vec<Value> = (0..FOOT_COUNT)
             .map(|leg| {
@@ -165,7 +166,7 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
                 })
             })
             .collect();
-        let limit = MOTORS[i].torque;
+        let limit = motors[i].torque;
         series.push(curve("limit", LIMIT, true, samples, move |_| limit));
         series.push(curve("-limit", LIMIT, true, samples, move |_| -limit));
         out.push(plot(&format!("{kind} torques"), "N m", series));
@@ -174,8 +175,8 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
         (2, "Contact forces, normal"),
         (1, "Contact forces, sideways (y)"),
     ] {
-        let series = FEET_NAMES
-            .iter()
+        let series = foot_names(robot)
+            .into_iter()
             .enumerate()
             .flat_map(|(leg, name)| {
                 let planned = move |s: &Sample| s.planned_forces_w[leg][axis];
@@ -212,9 +213,7 @@ fn plots(samples: &[Sample], reference: &Reference) -> Vec<Value> {
         "rad/s",
         vec![
             curve("speed", COLORS[0], false, samples, speed),
-            curve("no-load speed", LIMIT, true, samples, |_| {
-                MOTORS[0].no_load_speed
-            }),
+            curve("no-load speed", LIMIT, true, samples, move |_| fastest),
         ],
     ));
     out

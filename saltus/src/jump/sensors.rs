@@ -1,12 +1,13 @@
 //! What the controller is told: encoders, foot sensors, an IMU, and the base as `state-est` makes it of them; never the truth. In a
 //! nominal run the sensors are without error.
 
-use super::{FOOT_COUNT, JOINTS, OWNERS, ROBOT, State, feet};
+use super::{FOOT_COUNT, JOINTS, OWNERS};
 use crate::lab::{Disturbance, Encoders, FootSensors, Ground, Interface, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};
-use a1_model::FOOT_RADIUS;
 use jump_control::Measurement;
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
 use state_est::{Foot, Status};
 
 /// What arrives at 1 kHz.
@@ -26,6 +27,7 @@ pub(crate) struct Sensors {
     noise: Noise,
     encoders: Encoders<JOINTS>,
     feet: FootSensors<FOOT_COUNT>,
+    robot: Quadruped,
     observer: Observer<JOINTS, FOOT_COUNT, 6>,
     link: Link<Told>,
     /// Largest error of the base's place and of its tilt and heading since the start: m, rad.
@@ -37,14 +39,15 @@ impl Sensors {
         disturbance: &Disturbance,
         interface: Interface,
         seed: u64,
-        start: &State,
+        task: &Task,
     ) -> Self {
         let mut noise = Noise::new(seed.wrapping_add(0x5eed), 1.0);
-        let balls = feet().map(|frame| Foot {
+        let robot = task.robot;
+        let balls = robot.feet.map(|frame| Foot {
             frame,
-            radius: FOOT_RADIUS,
+            radius: robot.foot_radius,
         });
-        let observer = Observer::new(&ROBOT, balls, disturbance, start, &mut noise);
+        let observer = Observer::new(&robot, balls, disturbance, &task.start, &mut noise);
         let (share, least) = interface.measuring();
         Self {
             encoders: Encoders::new(disturbance, &mut noise),
@@ -52,6 +55,7 @@ impl Sensors {
             link: Link::new(disturbance, share, least, seed.wrapping_add(0x11e7)),
             noise,
             observer,
+            robot,
             worst: [0.0; 2],
         }
     }
@@ -88,7 +92,9 @@ impl Sensors {
             evidence: foot_forces.map(|f| (f / LOADED).min(1.0)),
         };
         let (q, v) = (world.configuration(), world.velocity());
-        let estimate = self.observer.step(&ROBOT, &q, v, &legs, &mut self.noise);
+        let estimate = self
+            .observer
+            .step(&self.robot, &q, v, &legs, &mut self.noise);
         let turn = so3::log(&(estimate.base.rotation * q.base.rotation.inverse()));
         let place = (estimate.base.translation - q.base.translation).norm();
         self.worst = [self.worst[0].max(place), self.worst[1].max(turn.norm())];

@@ -1,13 +1,12 @@
 //! A jump in one picture: poses side by side, seen along the axis about which the body turns.
 
+use super::State;
 use super::execute::Run;
-use super::kinematics::poses;
 use super::log::Sample;
-use super::task::Task;
-use super::{FOOT_COUNT, State, feet};
 use crate::report::COLORS;
-use a1_model::shapes::TRUNK as TRUNK_SIZE;
 use core::fmt::Write;
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
 use nalgebra::Vector3;
 use rbd_core::Transform;
 
@@ -31,7 +30,7 @@ pub(crate) fn svg(task: &Task, run: &Run, takeoff: f64) -> String {
         })
         .collect();
     let across = across(task);
-    let floor = super::plant::terrain(task, 0.0).floor;
+    let floor = jump_planner::terrain::terrain(task, 0.0).floor;
     let top = shown.iter().map(|s| s.position.z).fold(0.0, f64::max) + 0.35;
     let [width, height] = [POSES as f64 * APART * SCALE, (top - floor + 0.25) * SCALE];
     let mut out = format!(
@@ -44,7 +43,7 @@ pub(crate) fn svg(task: &Task, run: &Run, takeoff: f64) -> String {
             let x = middle + across.dot(&(p - sample.position));
             [x * SCALE, (top - p.z) * SCALE]
         };
-        draw(&mut out, sample, place);
+        draw(&task.robot, &mut out, sample, place);
         let _ = writeln!(
             out,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#57606a\">{:.2} s</text>",
@@ -74,7 +73,12 @@ fn across(task: &Task) -> Vector3<f64> {
 }
 
 /// Trunk and legs.
-fn draw(out: &mut String, sample: &Sample, place: impl Fn(&Vector3<f64>) -> [f64; 2]) {
+fn draw(
+    robot: &Quadruped,
+    out: &mut String,
+    sample: &Sample,
+    place: impl Fn(&Vector3<f64>) -> [f64; 2],
+) {
     let q = State {
         base: Transform::new(sample.orientation.to_rotation_matrix(), sample.position),
         joints: sample.joints,
@@ -93,9 +97,10 @@ fn draw(out: &mut String, sample: &Sample, place: impl Fn(&Vector3<f64>) -> [f64
             corners.join("L")
         );
     };
+    let trunk = robot.trunk();
     let corner = |i: usize| {
         let side = |axis: usize| {
-            let half = 0.5 * TRUNK_SIZE[axis];
+            let half = 0.5 * trunk[axis];
             if (i >> axis) & 1 == 0 { half } else { -half }
         };
         sample.position + sample.orientation * Vector3::new(side(0), side(1), side(2))
@@ -108,11 +113,10 @@ fn draw(out: &mut String, sample: &Sample, place: impl Fn(&Vector3<f64>) -> [f64
             }
         }
     }
-    let kinematics = poses(&q);
-    let feet = feet();
-    for leg in 0..FOOT_COUNT {
+    let kinematics = robot.poses(&q);
+    for (leg, (foot, color)) in robot.feet.iter().zip(COLORS).enumerate() {
         let link = |i: usize| kinematics.bodies[3 * leg + i].translation;
-        let foot = kinematics.frame(&feet[leg]).translation;
-        path(&[link(0), link(1), link(2), foot], COLORS[leg], 3.0);
+        let foot = kinematics.frame(foot).translation;
+        path(&[link(0), link(1), link(2), foot], color, 3.0);
     }
 }

@@ -1,7 +1,7 @@
 //! What the numbers of a problem file may be: nothing is computed, and no memory asked for, before each was looked at and named.
 
 use super::{Constants, FEET, Task};
-use crate::range::Range::{self, Above, From};
+use jump_planner::range::Range::{self, Above, From};
 use nalgebra::{Cholesky, Matrix3, Vector3};
 
 /// Most contact phases of a task.

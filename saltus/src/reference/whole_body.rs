@@ -1,8 +1,8 @@
 //! The whole-body reference problem of a task, from a solution of its SRB problem.
 
 use super::{FEET, File};
-use crate::track::Track;
 use a1_model::{A1Reference, a1_reference::frame};
+use jump_planner::track::Track;
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 use wb_opt::{

@@ -1,9 +1,9 @@
 //! III of paper A: timings found on the whole body directly, against the two stages.
 
 use super::Row;
-use crate::jump::task::Task;
-use crate::jump::whole_body::{self, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
+use jump_planner::task::Task;
+use jump_planner::whole_body::{self, Timing, WholeBodyPlan};
 use ocp_solver::Status;
 use std::time::Instant;
 

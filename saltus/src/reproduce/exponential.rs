@@ -1,8 +1,8 @@
 //! Remark 1 of paper A: the exponential to degree 4 in place of the exact one.
 
 use super::Row;
-use crate::jump::task::{SrbPlan, Task};
 use core::hint::black_box;
+use jump_planner::task::{SrbPlan, Task};
 use nalgebra::Vector3;
 use srb_opt::Exponential;
 use std::time::Instant;

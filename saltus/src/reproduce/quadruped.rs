@@ -1,18 +1,18 @@
 //! Paper A: the jumps of A1.
 
 use super::{Row, direct, exponential, write_report};
-use crate::jump::answer::Answer;
-use crate::jump::bounds::impossible;
 use crate::jump::execute::{self, Run};
 use crate::jump::judge::Judged;
 use crate::jump::log::Sample;
-use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
-use crate::jump::reference::Reference;
-use crate::jump::task::{SrbPlan, Task};
-use crate::jump::whole_body::{self, Timing};
 use crate::jump::{FOOT_COUNT, report};
 use core::ops::ControlFlow;
+use jump_planner::answer::Answer;
+use jump_planner::bounds::impossible;
+use jump_planner::planned::Planner;
+use jump_planner::reference::Reference;
+use jump_planner::task::{SrbPlan, Task};
+use jump_planner::whole_body::{self, Timing};
 use ocp_solver::Status;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,9 +1,8 @@
 //! From a plan to torques: sampler, Cartesian PD, joint PD, slew, phases, watch, scales, profiles.
 
 use jump_control::{
-    CartesianGains, CartesianPd, ComProfile, Curve, Event, JointCommand, JointGains, Measurement,
-    MinimumJerk, Node, Phase, Plan, Reference, Scales, Slew, Torques, Watch, next_phase, sample,
-    takeoff_speed,
+    CartesianPd, ComProfile, Curve, Event, JointCommand, Measurement, MinimumJerk, Node, Phase,
+    Plan, Reference, Scales, Slew, Torques, Watch, next_phase, sample, takeoff_speed,
 };
 use rbd_core::Tree;
 
@@ -65,17 +64,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     on.call("Watch::fault", (&watch, &measured), |(w, m)| {
         w.fault(m).is_some()
     });
-    let pd = CartesianPd {
-        feet: robot.feet,
-        gains: CartesianGains {
-            stiffness: [T::of(200.0); 3],
-            damping: [T::of(5.0); 3],
-        },
-        joint_gains: [JointGains {
-            stiffness: T::of(60.0),
-            damping: T::of(1.5),
-        }; 12],
-    };
+    let pd = CartesianPd::new(&robot.build, robot.feet);
     let input = (&pd, &robot.model, &measured, &reference);
     let command = on.call("CartesianPd::command", input, |(pd, m, x, r)| {
         pd.command(m, x, r, r)

@@ -41,7 +41,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
 ) {
     let stream = &mut Stream::new(5);
     let Robot { model, q, v, .. } = robot;
-    let detector = Detector::new(robot.feet);
+    let detector = Detector::new(&robot.build, robot.feet);
     let mut contact = DetectorState::new();
     for force in [0.0, 40.0, 40.0, 3.0] {
         let torques: [T; 12] = stream.array(10.0);
@@ -51,14 +51,14 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
             (state.contacts, state.faulty)
         });
     }
-    let posture = PreLanding::new(robot.feet, q.joints);
+    let posture = PreLanding::new(&robot.build, robot.feet, q.joints);
     let up: Vector3<T> = vector(stream, 1.0);
     on.call("PreLanding::joints", (&posture, up), |(p, up)| {
         p.joints(model, &up, &v.base.linear)
     });
 
     let limits = robot.motors.map(|motor| motor.torque);
-    let landing = Landing::<T, 12, 4>::new(robot.feet, Settings::a1(), limits);
+    let landing = Landing::<T, 12, 4>::new(robot.feet, Settings::new(&robot.build), limits);
     let target = Target {
         height: T::of(0.25),
         ..Target::LEVEL

@@ -7,9 +7,11 @@ mod plant;
 mod programs;
 mod wholebody;
 
-use a1_model::A1Geared;
+use a1_model::{A1Geared, BUILD};
 use icub_model::Icub23Geared;
-use rbd_core::{Configuration, Frame, JointLimits, Model, Motion, Motor, Tangent, Transform};
+use rbd_core::{
+    Build, Configuration, Frame, JointLimits, Model, Motion, Motor, Tangent, Transform,
+};
 
 use crate::inputs::Stream;
 use crate::{Real, Recorder, Subject};
@@ -27,6 +29,8 @@ where
     let on = &mut Subject::<T, R>::new(recorder);
     on.name = "dense-qp";
     programs::run(on);
+    on.name = "rbd-core";
+    similarity(on);
     let robot = Robot::a1();
     on.name = "jump-control";
     jumping::run(on, &robot);
@@ -36,6 +40,33 @@ where
     plant::run(on, &robot);
     #[cfg(feature = "introduce_panic")]
     crate::introduced::run(recorder);
+}
+
+/// Every quantity of a robot that is not of the reference's size.
+fn similarity<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
+    let build = Build {
+        mass: T::of(30.0),
+        leg_length: T::of(0.7),
+        ..BUILD.cast()
+    };
+    on.call("Build", &build, |b| {
+        [
+            b.length(0.1),
+            b.area(1e-3),
+            b.time(0.1),
+            b.rate(20.0),
+            b.rate_squared(120.0),
+            b.speed(0.2),
+            b.force(15.0),
+            b.torque(1e4),
+            b.stiffness(200.0),
+            b.damping(5.0),
+            b.joint_stiffness(60.0),
+            b.joint_damping(2.0),
+            b.per_force_squared(1.0),
+            b.per_torque_squared(30.0),
+        ]
+    });
 }
 
 /// The whole-body programs on iCub.
@@ -58,6 +89,7 @@ pub fn planner<T: Real, R: Recorder>(recorder: &mut R) {
 /// A robot with its tables and a state near standing.
 struct Robot<T: Real, M, const N: usize, const F: usize> {
     model: M,
+    build: Build<T>,
     feet: [Frame<T>; F],
     limits: [JointLimits<T>; N],
     motors: [Motor<T>; N],
@@ -75,6 +107,7 @@ where
         let mut stream = Stream::new(12);
         Self {
             model: A1Geared,
+            build: BUILD.cast(),
             feet: core::array::from_fn(foot),
             limits: *A1Geared.limits(),
             motors: motors(&A1Geared),

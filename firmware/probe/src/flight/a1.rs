@@ -1,6 +1,6 @@
 //! A1 jumps: joint PD at 10 kHz, Cartesian PD and landing at 1 kHz, from a plan in flash.
 
-use a1_model::A1Geared;
+use a1_model::{A1Geared, BUILD};
 use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
 use jump_control::{Measurement, Plan, Torques};
 use jump_machine::{Inputs, Jump, Machine, Tick, Work};
@@ -170,7 +170,8 @@ where
     A1Geared: Model<T, 12>,
 {
     let motors = crate::control::motors(&A1Geared);
-    jump_machine::Settings::a1(feet(), motors, plan::LANDING.map(T::of))
+    let build = BUILD.cast();
+    jump_machine::Settings::new(&build, feet(), motors, plan::LANDING.map(T::of))
 }
 
 /// The double backflip; `None` if the plan in flash is refused.
@@ -319,7 +320,7 @@ fn balls<T: Real>(feet: &[Frame<T>; 4]) -> [Shape<T>; BALLS] {
 fn wild<T: Real, R: Recorder, M: Model<T, 12>>(recorder: &mut R, model: &M, feet: &[Frame<T>; 4]) {
     let motors = crate::control::motors(model);
     let torques = motors.map(|motor| motor.torque);
-    let landing = Landing::<T, 12, 4>::new(*feet, landing::Settings::a1(), torques);
+    let landing = Landing::<T, 12, 4>::new(*feet, landing::Settings::new(&BUILD.cast()), torques);
     let mut workspace = Workspace::new();
     let mut limbs = Limbs::ZERO;
     let stream = &mut Stream::new(2026);

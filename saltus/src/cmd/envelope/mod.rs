@@ -7,12 +7,13 @@ use super::failure::Failure;
 use super::folder::check_new;
 use super::interrupt;
 use super::output::Output;
+use crate::cmd::output::planners;
 use crate::jump::envelope::{Counts, table};
 use crate::jump::measure::Measure;
-use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
-use crate::jump::task::Task;
 use crate::lab::{Interface, PlantArgument};
+use jump_planner::planned::Planner;
+use jump_planner::task::Task;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,7 +37,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "native")]
     sim: Sim,
     /// How the legs are planned along the single rigid body's motion.
-    #[arg(long, default_value = "whole-body")]
+    #[arg(long, default_value = "whole-body", value_parser = planners())]
     planner: Planner,
     /// What differs from the plan in every run, instead of the lab of the run's seed; as in `saltus run`.
     #[arg(long)]

@@ -1,6 +1,6 @@
 //! A whole-body plan as JSON, for checkers in other languages (`tests/peers/wb_audit.py`).
 
-use crate::jump::whole_body::{self, Interval, WholeBodyPlan};
+use jump_planner::whole_body::{self, Interval, WholeBodyPlan};
 use serde_json::{Value, json};
 use wb_opt::BASE;
 

@@ -8,10 +8,10 @@ mod whole_body;
 use super::failure::Failure;
 use super::folder::{check_file, describe, write_file};
 use super::output::Output;
-use crate::range::Range;
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
+use jump_planner::range::Range;
 use ocp_solver::{Barrier, Progress, Solution};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -46,9 +46,6 @@ pub(crate) struct Args {
     /// New folder for the plan: plan.bin, the container that controllers read, and plan.json.
     #[arg(long, requires = "task")]
     out: Option<PathBuf>,
-    /// Leave the feedback gains out of the container: they take seven eighths of it.
-    #[arg(long, requires = "out")]
-    no_gains: bool,
     /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).
     #[arg(long)]
     reference: Option<String>,
@@ -176,7 +173,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
 }
 
 fn read(path: &Path) -> Result<String, String> {
-    crate::file::read_text(path).map_err(|error| describe(path, &error))
+    jump_planner::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {

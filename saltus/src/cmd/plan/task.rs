@@ -4,15 +4,13 @@
 
 use super::Args;
 use super::layout::layout;
-use crate::audit::Audit;
 use crate::cmd::failure::{Failure, brief};
 use crate::cmd::folder::{check_new, publish, write_file};
-use crate::jump::answer::Answer;
-use crate::jump::bounds::impossible;
-use crate::jump::task::{SrbPlan, Task};
-use crate::jump::whole_body::{self, Timing, WholeBodyPlan};
+use core::ops::ControlFlow;
 use indicatif::ProgressBar;
-use ocp_solver::{Progress, Settings, Status};
+use jump_planner::audit::Audit;
+use jump_planner::task::Task;
+use jump_planner::{Outcome, Step, Timing};
 use serde_json::{Value, json};
 use std::process::ExitCode;
 
@@ -20,11 +18,7 @@ use std::process::ExitCode;
 #[derive(Default)]
 struct Report {
     task: Option<Task>,
-    srb: Option<SrbPlan>,
-    whole_body: Option<(WholeBodyPlan, f64)>,
-    bytes: Vec<u8>,
-    audit: Option<Audit>,
-    answer: Option<Answer>,
+    found: Outcome,
 }
 
 /// Runs the command.
@@ -41,7 +35,7 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
         report.print(name);
     }
     match result {
-        Ok(()) if report.answer.is_none() => ExitCode::SUCCESS,
+        Ok(()) if report.found.answer.is_none() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::from(2),
         Err(failure) => failure.tell(false),
     }
@@ -57,58 +51,37 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         task.fix_timing(timing)?;
     }
     let task = report.task.insert(task);
-    if let Some(proof) = impossible(task) {
-        report.answer = Some(Answer::proven(proof));
-        return Ok(());
-    }
-    let observe = |stage: &str, progress: &Progress<f64>| {
+    let timing = if args.direct {
+        Timing::Free
+    } else {
+        Timing::Given
+    };
+    report.found = jump_planner::plan(task, timing, |step, progress| {
+        let stage = match step {
+            Step::Body => "body",
+            Step::WholeBody => "whole body",
+            Step::Relaxations => "looking for what would have to change",
+        };
+        let Some(progress) = progress else {
+            bar.set_message(stage);
+            return ControlFlow::Continue(());
+        };
         bar.set_message(format!(
             "{stage}: iteration {}, violation {:.1e}",
             progress.iteration, progress.residual.primal
         ));
         args.observe(progress)
-    };
-    let (guess, timing);
-    let srb = if args.direct {
-        (guess, timing) = (task.guess()?, Timing::Free);
-        &guess
-    } else {
-        let srb = task.attempt(&Settings::new(), |progress| observe("body", progress))?;
-        timing = Timing::Given;
-        report.srb.insert(srb)
-    };
-    if !args.direct && srb.status != Status::Solved {
-        bar.set_message("looking for what would have to change");
-        report.answer = Some(Answer::no_body_plan(task, srb));
-        return Ok(());
-    }
-    let gains = !args.no_gains;
-    let whole = whole_body::audited(task, srb, timing, gains, |p| observe("whole body", p))?;
-    report.bytes = whole.bytes;
-    let (plan, _) = report.whole_body.insert((whole.plan, whole.wall_ms));
-    let Some(audit) = whole.audit else {
-        bar.set_message("looking for what would have to change");
-        report.answer = Some(Answer::no_whole_body_plan(task, srb, plan));
-        return Ok(());
-    };
-    let audit = report.audit.insert(audit);
-    if !audit.passes() {
-        report.answer = Some(Answer {
-            status: "AuditFailed",
-            because: audit.complaint(),
-            relaxations: Vec::new(),
-        });
-    }
+    })?;
     Ok(())
 }
 
 /// Writes what was asked for.
 fn write(args: &Args, report: &Report) -> Result<(), Failure> {
-    let (Some(task), Some((plan, _))) = (&report.task, &report.whole_body) else {
+    let (Some(task), Some(plan)) = (&report.task, &report.found.whole_body) else {
         return Ok(());
     };
     // What is no plan must not lie there like one.
-    if report.answer.is_some() {
+    if report.found.answer.is_some() {
         return Ok(());
     }
     if let Some(path) = &args.solution {
@@ -118,12 +91,12 @@ fn write(args: &Args, report: &Report) -> Result<(), Failure> {
         return Ok(());
     };
     let mut json = report.json(&task.name, None);
-    if let Some(audit) = &report.audit {
+    if let Some(audit) = &report.found.audit {
         json["audit"] = audit.details(&task.robot);
     }
     let text = format!("{json:#}\n");
     let files = [
-        ("plan.bin", report.bytes.as_slice()),
+        ("plan.bin", report.found.bytes.as_slice()),
         ("plan.json", text.as_bytes()),
     ];
     publish(Some(folder), &task.name, &files).map(|_| ())
@@ -131,7 +104,7 @@ fn write(args: &Args, report: &Report) -> Result<(), Failure> {
 
 impl Report {
     fn status(&self) -> &'static str {
-        match (&self.answer, &self.audit) {
+        match (&self.found.answer, &self.found.audit) {
             (Some(answer), _) => answer.status,
             (None, Some(_)) => "Solved",
             (None, None) => "Error",
@@ -145,14 +118,14 @@ impl Report {
         };
         let phases = task.problem.used_phases().iter();
         let names = phases.map(|phase| task.phase_name(&phase.contacts));
-        if let Some((plan, _)) = &self.whole_body {
+        if let Some(plan) = &self.found.whole_body {
             let durations = plan
                 .phases
                 .iter()
                 .map(|phase| phase.dt * phase.intervals as f64);
             return names.zip(durations).collect();
         }
-        let first = self.srb.as_ref().and_then(|srb| srb.stages.first());
+        let first = self.found.srb.as_ref().and_then(|srb| srb.stages.first());
         let durations = first.map(|stage| stage.state.durations);
         names.zip(durations.into_iter().flatten()).collect()
     }
@@ -164,21 +137,21 @@ impl Report {
             "task": name,
             "status": self.status(),
             "phases": self.phases().iter().map(phase).collect::<Vec<_>>(),
-            "srb": self.srb.as_ref().map(|plan| json!({
+            "srb": self.found.srb.as_ref().map(|plan| json!({
                 "wall_ms": plan.wall_ms,
                 "iterations": plan.iterations,
                 "cost": plan.cost,
                 "max_violation": plan.max_violation,
             })),
-            "whole_body": self.whole_body.as_ref().map(|(plan, wall_ms)| json!({
-                "wall_ms": wall_ms,
+            "whole_body": self.found.whole_body.as_ref().map(|plan| json!({
+                "wall_ms": self.found.wall_ms,
                 "iterations": plan.outcome.iterations,
                 "cost": plan.judged.cost,
                 "max_violation": plan.judged.max_violation,
             })),
-            "audit": self.audit.as_ref().map(Audit::json),
+            "audit": self.found.audit.as_ref().map(Audit::json),
         });
-        if let Some(answer) = &self.answer {
+        if let Some(answer) = &self.found.answer {
             report["answer"] = answer.json();
         }
         if let Some(error) = error {
@@ -196,7 +169,7 @@ impl Report {
         if !phases.is_empty() {
             say!("  phases      {}", phases.join(", "));
         }
-        if let Some(plan) = &self.srb {
+        if let Some(plan) = &self.found.srb {
             say!(
                 "  body        {:.1} ms, {} iterations, cost {:.4}, violation {:.1e}",
                 plan.wall_ms,
@@ -205,19 +178,20 @@ impl Report {
                 plan.max_violation
             );
         }
-        if let Some((plan, wall_ms)) = &self.whole_body {
+        if let Some(plan) = &self.found.whole_body {
             say!(
-                "  whole body  {wall_ms:.0} ms, {} iterations, cost {:.4}, violation {:.1e}, peak torque {:.1} N m",
+                "  whole body  {:.0} ms, {} iterations, cost {:.4}, violation {:.1e}, peak torque {:.1} N m",
+                self.found.wall_ms,
                 plan.outcome.iterations,
                 plan.judged.cost,
                 plan.judged.max_violation,
                 plan.judged.peak_effort
             );
         }
-        if let Some(audit) = &self.audit {
+        if let Some(audit) = &self.found.audit {
             say!("  audit       {}", audit.summary());
         }
-        if let Some(answer) = &self.answer {
+        if let Some(answer) = &self.found.answer {
             say!("{}", answer.text());
         }
     }

@@ -6,11 +6,12 @@ mod quadruped;
 use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
+use super::output::planners;
 use crate::humanoid as icub;
-use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Interface, Lab, PlantArgument};
 use crate::log::Log;
+use jump_planner::planned::Planner;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -31,8 +32,14 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
     /// Quadruped tasks: how the legs are planned along the single rigid body's motion [default: whole-body].
-    #[arg(long)]
+    #[arg(long, value_parser = planners())]
     planner: Option<Planner>,
+    /// Quadruped tasks: jump with the robot of this URDF instead of the task's.
+    #[arg(long)]
+    robot: Option<PathBuf>,
+    /// Lock joints of that robot at a position, rad or m.
+    #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
+    lock: Vec<String>,
     /// Humanoid tasks: height to gain in flight, m [default: 0.04].
     #[arg(long, allow_negative_numbers = true, value_parser = height)]
     height: Option<f64>,
@@ -118,6 +125,7 @@ impl Args {
     fn refuse_quadruped_options(&self) -> Result<(), Failure> {
         let options = [
             ("--planner", self.planner.is_some()),
+            ("--robot", self.robot.is_some()),
             ("--task", self.task.is_some()),
             ("--programs", self.programs.is_some()),
             ("--interface", self.interface != Interface::Torque),

@@ -1,22 +1,23 @@
 //! A jump of paper A: planned, or read from a container, and executed.
 
 use super::{Args, Files, code};
-use crate::audit::check_values;
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{check_file, check_new, describe, write_file};
-use crate::jump::answer::Answer;
-use crate::jump::bounds::impossible;
 use crate::jump::execute::Trial;
 use crate::jump::judge::Judged;
-use crate::jump::planned::{Origin, Planner};
 use crate::jump::programs::Programs;
-use crate::jump::reference::Reference;
-use crate::jump::task::{SrbPlan, Task};
-use crate::jump::{execute, log, report, stored, strip};
+use crate::jump::{execute, log, report, strip};
 use crate::lab::Lab;
 use crate::report::Line;
-use crate::robot::Quadruped;
 use indicatif::ProgressBar;
+use jump_planner::answer::Answer;
+use jump_planner::audit::check_values;
+use jump_planner::bounds::impossible;
+use jump_planner::planned::{Origin, Planner};
+use jump_planner::reference::Reference;
+use jump_planner::robot::Quadruped;
+use jump_planner::stored;
+use jump_planner::task::{SrbPlan, Task};
 use serde_json::json;
 use std::path::Path;
 use std::process::ExitCode;
@@ -39,11 +40,11 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         if args.planner.is_some() {
             return Err("--planner is for tasks: a stored plan is executed as it is".into());
         }
-        read(path, args.task.as_deref())?
+        read(path, args)?
     } else if args.task.is_some() {
         return Err("--task is for stored plans: give the task alone".into());
     } else {
-        let task = Task::load(&args.what)?;
+        let task = Task::load_for(&args.what, args.robot.as_deref(), &args.lock)?;
         if let Some(proof) = impossible(&task) {
             bar.finish_and_clear();
             return Ok(refuse(args, &task, &Answer::proven(proof)));
@@ -84,7 +85,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
             say!("{name:18} {value}");
         }
     }
-    let log = log::table(&run.samples);
+    let log = log::table(&task.robot, &run.samples);
     let files = Files {
         task: &task.name,
         mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
@@ -115,14 +116,18 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
 }
 
 /// Reads a stored plan, and the task by which its run is judged.
-fn read(path: &Path, task: Option<&str>) -> Result<Made, String> {
-    let bytes = crate::file::read(path).map_err(|error| describe(path, &error))?;
+fn read(path: &Path, args: &Args) -> Result<Made, String> {
+    let bytes = jump_planner::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let robot = Quadruped::a1().map_err(|error| show(&error))?;
+    let robot = args
+        .robot
+        .as_deref()
+        .map_or_else(Quadruped::a1, |urdf| Quadruped::from_urdf(urdf, &args.lock));
+    let robot = robot.map_err(|error| show(&error))?;
     let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
     check_values(&robot, &plan).map_err(|error| show(&error))?;
-    let name = task.unwrap_or(plan.header().task);
-    let task = Task::load(name).map_err(|error| {
+    let name = args.task.as_deref().unwrap_or(plan.header().task);
+    let task = Task::load_for(name, args.robot.as_deref(), &args.lock).map_err(|error| {
         show(&format!(
             "its task cannot be read, give it with --task: {error}"
         ))
@@ -195,7 +200,7 @@ fn table(
 /// What was planned, for people.
 fn plan_lines(made: &Made) -> [Line; 2] {
     let Made { srb, reference, .. } = made;
-    let limit = a1_model::MOTORS[0].torque;
+    let limit = made.task.robot.drives()[0].torque;
     let body = srb.as_ref().map_or_else(
         || format!("stored, phases {:.3?} s", reference.durations),
         |plan| {

@@ -2,16 +2,16 @@
 
 use crate::cmd::expected::Found;
 use crate::humanoid;
-use crate::jump::answer::Answer;
-use crate::jump::bounds::impossible;
 use crate::jump::execute::{self, Trial};
 use crate::jump::judge::Judged;
-use crate::jump::planned::Planner;
 use crate::jump::plant::Sim;
-use crate::jump::reference::Reference;
-use crate::jump::task::Task;
 use crate::lab::{Interface, Lab, PlantArgument};
 use crate::verdict::{TARGET, Verdict};
+use jump_planner::answer::Answer;
+use jump_planner::bounds::impossible;
+use jump_planner::planned::Planner;
+use jump_planner::reference::Reference;
+use jump_planner::task::Task;
 use rbd_core::Transform;
 use serde_json::{Value, json};
 

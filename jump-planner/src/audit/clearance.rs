@@ -1,0 +1,87 @@
+//! Whether the robot, with the shapes of all its links, passes through the ground, a box or itself.
+
+use super::Held;
+use crate::robot::{JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, State};
+use crate::terrain::over_edge;
+use contact_sim::{Terrain, gaps, self_contacts};
+use jump_control::container::GroundStep;
+use nalgebra::Vector3;
+use rbd_core::Kinematics;
+
+/// How far a box reaches, m: beyond everything.
+const FAR: f64 = 10.0;
+/// What ends the names of these margins.
+const KINDS: [&str; 2] = ["to the ground", "to the robot"];
+
+/// The shapes of a robot in the world of a plan.
+pub(crate) struct Clearance {
+    robot: Quadruped,
+    pairs: [u64; SHAPE_COUNT],
+    terrain: Terrain<f64>,
+}
+
+impl Clearance {
+    /// Shapes that touch where the robot `start`s may touch always.
+    pub(crate) fn new(robot: &Quadruped, ground: Option<GroundStep>, start: &State) -> Self {
+        let terrain = ground.map_or(Terrain::FLAT, |step| {
+            let edge = (
+                usize::from(step.axis),
+                f64::from(step.side),
+                f64::from(step.distance),
+            );
+            over_edge(
+                step.drop < 0.0,
+                edge,
+                f64::from(step.drop),
+                &Vector3::zeros(),
+                FAR,
+            )
+        });
+        Self {
+            robot: *robot,
+            pairs: self_contacts(robot, &robot.shapes, start),
+            terrain,
+        }
+    }
+
+    /// Names of the margins: of every link to the ground and to the rest of the robot.
+    pub(crate) fn names(&self) -> impl Iterator<Item = String> + use<> {
+        self.robot
+            .owners
+            .into_iter()
+            .flat_map(|owner| KINDS.map(|kind| format!("{owner} {kind}")))
+    }
+
+    /// The smallest gaps in the order of the names, m. Feet that stand touch the ground, and so may all in the last interval.
+    pub(crate) fn gaps(
+        &self,
+        kinematics: &Kinematics<f64, JOINTS>,
+        held: &Held,
+    ) -> impl Iterator<Item = f64> + use<> {
+        let mut found = [[f64::INFINITY; 2]; OWNER_COUNT];
+        gaps(
+            kinematics,
+            &self.robot.shapes,
+            &self.pairs,
+            &self.terrain,
+            |i, other, gap| {
+                let owner = self.robot.shapes[i].owner;
+                match other {
+                    None if owner < LEGS && (held.contacts[owner] || held.last) => {}
+                    None => found[owner][0] = f64::min(found[owner][0], gap),
+                    Some(j) => {
+                        for owner in [owner, self.robot.shapes[j].owner] {
+                            found[owner][1] = f64::min(found[owner][1], gap);
+                        }
+                    }
+                }
+            },
+        );
+        found.into_iter().flatten()
+    }
+}
+
+/// Whether a margin is one of these.
+pub(crate) fn is_clearance(name: &str) -> bool {
+    KINDS.iter().any(|kind| name.ends_with(kind))
+}

@@ -1,0 +1,148 @@
+//! Every limit, in every step.
+
+use super::clearance::Clearance;
+use super::{Held, Margin};
+use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use crate::stored::joint_name;
+use jump_control::container::{GroundStep, Header};
+use nalgebra::Vector3;
+use rbd_core::{Link, Model, Motor};
+
+use super::forward::Velocity;
+
+/// Share of its torque below its limit at which a joint counts as saturated.
+const SATURATED: f64 = 1e-3;
+
+/// Watches the limits of a robot. Ranges: of a joint's position, its limits; of its speed and torque, the largest; of forces, the
+/// largest planned normal force of a foot (times friction); of heights and gaps, the leg. In the last interval feet come down, so that their
+/// height is no limit there.
+pub(crate) struct Limits<'a> {
+    robot: &'a Quadruped,
+    motors: Option<&'a [Motor<f64>; JOINTS]>,
+    ground: Option<GroundStep>,
+    clearance: Clearance,
+    friction: f64,
+    force_range: f64,
+    names: Vec<String>,
+    pub(crate) saturation: [f64; JOINTS],
+    pub(crate) any_saturation: f64,
+    /// The smallest of each limit so far, by its name's index.
+    pub(crate) margins: Vec<Margin>,
+}
+
+impl<'a> Limits<'a> {
+    pub(crate) fn new(robot: &'a Quadruped, header: &Header<'_>, start: &State) -> Self {
+        let clearance = Clearance::new(robot, header.ground, start);
+        let names = (0..JOINTS).map(|i| joint_name(robot, i));
+        let names = names.flat_map(|joint| {
+            ["position", "speed", "torque"].map(|limit| format!("{joint} {limit}"))
+        });
+        let feet = (0..LEGS).flat_map(|leg| {
+            ["friction", "normal force", "foot height", "knee height"]
+                .map(|limit| format!("{} {limit}", robot.place(leg)))
+        });
+        Self {
+            robot,
+            motors: Model::motors(robot),
+            ground: header.ground,
+            friction: f64::from(header.margins.friction),
+            force_range: f64::from(header.margins.max_force),
+            names: names
+                .chain(feet)
+                .chain(["trunk height".to_owned()])
+                .chain(clearance.names())
+                .collect(),
+            clearance,
+            saturation: [0.0; JOINTS],
+            any_saturation: 0.0,
+            margins: Vec::new(),
+        }
+    }
+
+    /// Looks at the state after a step that began at `time`.
+    pub(crate) fn check(
+        &mut self,
+        time: f64,
+        h: f64,
+        q: &State,
+        v: &Velocity,
+        held: &Held,
+        forces_w: &[Vector3<f64>; LEGS],
+    ) {
+        let mut values = Vec::with_capacity(self.names.len());
+        let mut saturated = false;
+        for (i, limit) in Model::limits(self.robot).iter().enumerate() {
+            let inside = f64::min(q.joints[i] - limit.lower, limit.upper - q.joints[i]);
+            values.push(inside / (limit.upper - limit.lower));
+            let speed = v.joints[i];
+            values.push(1.0 - speed.abs() / limit.speed);
+            let range = self.motors.map_or([-limit.effort, limit.effort], |motors| {
+                motors[i].torque_range(speed)
+            });
+            let torque = held.torques[i];
+            let spare = f64::min(torque - range[0], range[1] - torque) / limit.effort;
+            values.push(spare);
+            if spare <= SATURATED {
+                self.saturation[i] += h;
+                saturated = true;
+            }
+        }
+        if saturated {
+            self.any_saturation += h;
+        }
+        let kinematics = self.robot.poses(q);
+        for (leg, f) in forces_w.iter().enumerate() {
+            if held.contacts[leg] {
+                let side = f.xy().norm();
+                values.push((self.friction * f.z - side) / (self.friction * self.force_range));
+                values.push(f.z / self.force_range);
+                values.push(f64::NAN);
+            } else {
+                values.extend([f64::NAN; 2]);
+                let foot = kinematics.frame(&self.robot.feet[leg]).translation;
+                let height = self.height(&foot) - self.robot.foot_radius / self.robot.leg_length;
+                values.push(if held.last { f64::NAN } else { height });
+            }
+            values.push(self.height(&kinematics.link(Link::Joint(3 * leg + 2)).translation));
+        }
+        let corners = self
+            .robot
+            .corners
+            .iter()
+            .map(|c| self.height(&q.base.point(c)));
+        values.push(corners.fold(f64::INFINITY, f64::min));
+        let gaps = self.clearance.gaps(&kinematics, held);
+        values.extend(gaps.map(|gap| gap / self.robot.leg_length));
+        self.remember(time + h, &values);
+    }
+
+    /// Height of a point over the ground in legs.
+    fn height(&self, point: &Vector3<f64>) -> f64 {
+        let ground = self.ground.map_or(0.0, |step| {
+            let across = if step.axis == 0 { point.x } else { point.y };
+            if f64::from(step.side) * across > f64::from(step.distance) {
+                -f64::from(step.drop)
+            } else {
+                0.0
+            }
+        });
+        (point.z - ground) / self.robot.leg_length
+    }
+
+    /// Keeps the smallest value of each limit; limits that do not hold now are NaN, those without bounds infinite.
+    fn remember(&mut self, time: f64, values: &[f64]) {
+        if self.margins.is_empty() {
+            let empty = |name: &String| Margin {
+                name: name.clone(),
+                value: f64::INFINITY,
+                time,
+            };
+            self.margins = self.names.iter().map(empty).collect();
+        }
+        for (margin, value) in self.margins.iter_mut().zip(values) {
+            if *value < margin.value {
+                (margin.value, margin.time) = (*value, time);
+            }
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Whether a plan is one: an independent check of a stored plan.
+//!
+//! The planner's rows hold at the middle of its intervals, in its own transcription. Here the robot moves by the forward dynamics of
+//! `rbd-core` instead, in steps of 0.1 ms under the plan's torques as they are held, with the feet that stand rolling on their balls,
+//! and every limit is looked at in every step. Two integrations:
+//!
+//! - the flight, from the planned take-off to the touchdown in one piece: nothing corrects it, as nothing can in the air;
+//! - every interval from its own node, for the limits: an open-loop stance on two feet is unstable, and what is asked is whether a robot
+//!   that is on the plan keeps its limits between nodes.
+
+mod clearance;
+mod forward;
+mod limits;
+mod values;
+
+use crate::robot::{JOINTS, LEGS, Quadruped, State};
+use crate::stored::Stored;
+use clearance::is_clearance;
+use forward::{Forward, Velocity};
+use jump_control::container::PlanNode;
+use limits::Limits;
+use nalgebra::Vector3;
+use rbd_core::difference;
+use serde_json::{Value, json};
+pub use values::check as check_values;
+
+/// Step of the integration, s.
+const STEP: f64 = 1e-4;
+/// Largest orientation error after the flight, rad.
+const ORIENTATION: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// Largest position error after the flight, m.
+const POSITION: f64 = 0.01;
+/// Largest difference of an integrated interval from the next node, m or rad, and m/s or rad/s: transcriptions differ by a tenth of that.
+const DEFECT: [f64; 2] = [5e-3, 0.5];
+/// Largest difference of a force from that of the robot on its feet in the middle of the interval, as a share of the largest normal force.
+const FORCE: f64 = 0.02;
+/// How far a limit may be exceeded between nodes, as a share of its range.
+const BEYOND: f64 = 0.01;
+
+/// The smallest distance from one limit over the whole plan.
+#[derive(Clone, Debug)]
+pub struct Margin {
+    /// Which limit, of which joint or foot.
+    pub name: String,
+    /// Distance as a share of the limit's range; negative beyond it.
+    pub value: f64,
+    /// When, s.
+    pub time: f64,
+}
+
+/// What an audit found.
+#[derive(Clone, Debug)]
+pub struct Audit {
+    /// Angle between the planned and the integrated base at touchdown, rad.
+    pub flight_orientation_error: f64,
+    /// Distance between them, m.
+    pub flight_position_error: f64,
+    /// Time for which each joint's torque is at its limit, s.
+    pub saturation: [f64; JOINTS],
+    /// Time for which any joint's is, s.
+    pub any_saturation: f64,
+    /// Largest difference of an integrated interval from the next node: base or joint position, m or rad, and velocity.
+    pub defect: [f64; 2],
+    /// Largest difference of a stored force from that of the robot under the stored torques, as a share of the largest normal force.
+    pub force_error: f64,
+    /// All limits, the worst first.
+    pub margins: Vec<Margin>,
+    /// What heights and gaps are shares of, m.
+    leg_length: f64,
+}
+
+impl Audit {
+    /// Audits a stored plan of this robot.
+    ///
+    /// # Errors
+    /// A plan without nodes, without a flight, or with an interval that is none.
+    pub fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
+        let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
+        let takeoff = f64::from(plan.header().takeoff);
+        let mut forward = Forward::new(robot);
+        let start = nodes.first().map(|node| state(node).0).ok_or("no nodes")?;
+        let mut limits = Limits::new(robot, plan.header(), &start);
+        let mut defect = [0.0, 0.0];
+        let mut force_error: f64 = 0.0;
+        let force_range = f64::from(plan.header().margins.max_force);
+        let mut flight = None;
+        let last = nodes.len().saturating_sub(2);
+        for (k, pair) in nodes.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            let mut held = Held::of(plan, from, f64::from(to.time - from.time))?;
+            held.last = k == last;
+            let (mut q, mut v) = state(from);
+            let time = f64::from(from.time);
+            for i in 0..held.steps {
+                let at = time + i as f64 * held.h;
+                let forces_w = forward.step(&mut q, &mut v, &held.torques, &held.contacts, held.h);
+                limits.check(at, held.h, &q, &v, &held, &forces_w);
+                if i == held.steps / 2 {
+                    let told = from.forces_w.0.map(|f| Vector3::from(f.map(f64::from)));
+                    let gaps = told
+                        .iter()
+                        .zip(&forces_w)
+                        .map(|(a, b)| (a - b).amax() / force_range);
+                    force_error = gaps.fold(force_error, f64::max);
+                }
+            }
+            let (end, end_v) = state(to);
+            let miss = difference(&end, &q);
+            let largest = |x: &Velocity| {
+                let parts = x.base.to_array();
+                let parts = parts.iter().chain(&x.joints);
+                parts.fold(0.0, |most: f64, x| most.max(x.abs()))
+            };
+            defect[0] = f64::max(defect[0], largest(&miss));
+            defect[1] = f64::max(defect[1], largest(&(v - end_v)));
+            // Half a step earlier: times are stored in single precision.
+            if time >= takeoff - 0.5 * STEP {
+                let (q, v) = flight.get_or_insert_with(|| state(from));
+                for _ in 0..held.steps {
+                    forward.step(q, v, &held.torques, &held.contacts, held.h);
+                }
+            }
+        }
+        let (landed, _) = flight.ok_or("the plan has no flight")?;
+        let end = nodes.last().map(|node| state(node).0).ok_or("no nodes")?;
+        let turn = end.base.rotation.inverse() * landed.base.rotation;
+        let mut margins = limits.margins;
+        margins.retain(|margin| margin.value.is_finite());
+        margins.sort_by(|a, b| a.value.total_cmp(&b.value));
+        Ok(Self {
+            flight_orientation_error: so3::log(&turn).norm(),
+            flight_position_error: (end.base.translation - landed.base.translation).norm(),
+            saturation: limits.saturation,
+            any_saturation: limits.any_saturation,
+            defect,
+            force_error,
+            margins,
+            leg_length: robot.leg_length,
+        })
+    }
+
+    /// Whether the plan may be called solved.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.is_a_motion() && self.margins.iter().all(|margin| margin.value >= -BEYOND)
+    }
+
+    /// Whether the robot could move so if its links passed through the ground and each other. A plan that only fails there is worth a
+    /// simulation, which shows what comes of it.
+    #[must_use]
+    pub fn is_a_motion(&self) -> bool {
+        let mut inner = self.margins.iter().filter(|m| !is_clearance(&m.name));
+        self.flight_orientation_error <= ORIENTATION
+            && self.flight_position_error <= POSITION
+            && self.agrees()
+            && inner.all(|margin| margin.value >= -BEYOND)
+    }
+
+    /// Whether the nodes are those of one motion, and the forces those that move it.
+    fn agrees(&self) -> bool {
+        self.defect[0] <= DEFECT[0] && self.defect[1] <= DEFECT[1] && self.force_error <= FORCE
+    }
+
+    /// What was found, in a line.
+    pub fn summary(&self) -> String {
+        let worst = self.margins.first().map_or_else(String::new, |m| {
+            format!(
+                ", worst margin {} {:.4} at {:.3} s",
+                m.name, m.value, m.time
+            )
+        });
+        format!(
+            "flight error {:.2} deg and {:.1} mm, torque saturation {:.1} ms{worst}",
+            self.flight_orientation_error.to_degrees(),
+            self.flight_position_error * 1e3,
+            self.any_saturation * 1e3
+        )
+    }
+
+    /// Why the plan does not pass.
+    #[must_use]
+    pub fn complaint(&self) -> String {
+        let mut told = Vec::new();
+        // Not <=: NaN is no agreement either.
+        if !(self.flight_orientation_error <= ORIENTATION && self.flight_position_error <= POSITION)
+        {
+            told.push(format!(
+                "the flight ends {:.2} deg and {:.1} mm off",
+                self.flight_orientation_error.to_degrees(),
+                self.flight_position_error * 1e3
+            ));
+        }
+        if !self.agrees() {
+            told.push(format!(
+                "nodes and forces are not those of one motion: they differ by {:.1e} m or rad, {:.1e} m/s or rad/s and {:.0} % of the largest force",
+                self.defect[0],
+                self.defect[1],
+                100.0 * self.force_error
+            ));
+        }
+        let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
+        told.extend(beyond.map(|m| {
+            if is_clearance(&m.name) {
+                let deep = -1e3 * m.value * self.leg_length;
+                let through = m.name.replace(" to ", " passes through ");
+                return format!("{through} by {deep:.0} mm at {:.3} s", m.time);
+            }
+            format!(
+                "{} exceeds its limit by {:.1} % of its range at {:.3} s",
+                m.name,
+                -100.0 * m.value,
+                m.time
+            )
+        }));
+        told.join("; ")
+    }
+
+    /// The object of `--json`.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        json!({
+            "flight_orientation_error_deg": self.flight_orientation_error.to_degrees(),
+            "flight_position_error_m": self.flight_position_error,
+            "torque_saturation_ms": self.any_saturation * 1e3,
+            "worst_margin": self.margins.first().map(|m| json!({ "name": m.name, "value": m.value })),
+        })
+    }
+
+    /// Everything that was found.
+    #[must_use]
+    pub fn details(&self, robot: &Quadruped) -> Value {
+        let mut details = self.json();
+        let names = (0..JOINTS).map(|i| crate::stored::joint_name(robot, i));
+        let saturation = names.zip(self.saturation.map(|t| json!(t * 1e3)));
+        details["torque_saturation_by_joint_ms"] = Value::Object(saturation.collect());
+        details["interval_defect"] = json!({
+            "position": self.defect[0],
+            "velocity": self.defect[1],
+        });
+        details["force_error"] = json!(self.force_error);
+        let row = |m: &Margin| json!({ "name": m.name, "value": m.value, "time_s": m.time });
+        details["margins"] = self.margins.iter().map(row).collect();
+        details
+    }
+}
+
+/// What is held over an interval.
+struct Held {
+    torques: [f64; JOINTS],
+    contacts: [bool; LEGS],
+    steps: usize,
+    /// Length of a step, s.
+    h: f64,
+    /// Whether the plan ends with this interval.
+    last: bool,
+}
+
+impl Held {
+    fn of(plan: &Stored<'_>, node: &PlanNode<JOINTS, LEGS>, dt: f64) -> Result<Self, String> {
+        let header = plan.header();
+        let phases = header.phases.get(..usize::from(header.phase_count));
+        let phase = phases.and_then(|phases| phases.get(usize::from(node.phase)));
+        let bits = phase
+            .ok_or("a node is in a phase that there is not")?
+            .contacts;
+        if !(dt > 0.0 && dt < 1.0) {
+            return Err(format!("an interval of {dt} s"));
+        }
+        let steps = (dt / STEP).round().max(1.0);
+        Ok(Self {
+            torques: node.torques.0.map(f64::from),
+            contacts: core::array::from_fn(|i| (bits >> i) & 1 == 1),
+            steps: steps as usize,
+            h: dt / steps,
+            last: false,
+        })
+    }
+}
+
+/// Configuration and velocity at a node.
+fn state(node: &PlanNode<JOINTS, LEGS>) -> (State, Velocity) {
+    crate::state(&node.node())
+}

@@ -1,0 +1,49 @@
+#![doc = include_str!("../README.md")]
+
+pub mod answer;
+pub mod audit;
+pub mod bounds;
+pub mod file;
+mod pace;
+mod plan;
+pub mod planned;
+pub mod range;
+pub mod reference;
+pub mod robot;
+mod setup;
+pub mod stored;
+pub mod task;
+pub mod terrain;
+pub mod track;
+pub mod whole_body;
+
+pub use plan::{Outcome, Step, plan};
+pub use whole_body::Timing;
+
+use rbd_core::{Configuration, Tangent};
+
+/// Joints of the robot.
+pub const JOINTS: usize = 12;
+/// Its feet.
+pub const FOOT_COUNT: usize = 4;
+
+/// Where a quadruped is.
+pub type State = Configuration<f64, JOINTS>;
+/// How it moves.
+pub type Velocity = Tangent<f64, JOINTS>;
+/// A node of its plan.
+pub type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;
+
+/// Configuration and velocity at a node.
+#[must_use]
+pub fn state(node: &Node) -> (State, Velocity) {
+    let q = State {
+        base: node.base,
+        joints: node.joints,
+    };
+    let v = Velocity {
+        base: node.base_velocity,
+        joints: node.joint_velocities,
+    };
+    (q, v)
+}

@@ -1,0 +1,336 @@
+//! A quadruped from a URDF.
+//!
+//! Required: a floating base with exactly twelve joints, four legs of three revolute joints that hang from the base, one leg per quadrant
+//! around the base (x forwards, y to the left), effort and speed limits. The foot of a leg is the frame on its last link that is farthest
+//! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else the foot is a point. The trunk is the
+//! largest box in the `<collision>` of the base, else the box between the hips.
+
+use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
+use a1_model::{OWNERS, SHAPES};
+use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
+use nalgebra::Vector3;
+use rbd_core::{
+    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, TableError, TableModel, Transform,
+    forward_kinematics,
+};
+use roxmltree::{Document, Node};
+use std::path::Path;
+
+/// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
+const SEED_LEG: f64 = 0.65;
+/// Joint positions that are tried per joint.
+const SEED_STEPS: usize = 25;
+/// How far the sides of a trunk without a box are inside of the hips' joints, as a share of the leg: half a hip and half a thigh.
+const LEG_ROOM: f64 = 0.1;
+/// Half height of a trunk without a box, as a share of the leg.
+const TRUNK_HEIGHT: f64 = 0.14;
+
+/// Why a robot cannot be planned for.
+#[derive(Debug, thiserror::Error)]
+pub enum RobotError {
+    /// The file cannot be read.
+    #[error("{0}")]
+    File(#[from] std::io::Error),
+    /// The URDF is not a robot.
+    #[error("{0}")]
+    Import(#[from] ImportError),
+    /// Its tables are no model.
+    #[error("{0}")]
+    Table(#[from] TableError),
+    /// The URDF is not XML.
+    #[error("{0}")]
+    Xml(#[from] roxmltree::Error),
+    /// Not twelve joints.
+    #[error(
+        "a quadruped has 12 movable joints, this robot has {count}: {names}; lock those that are no leg's with --lock JOINT=VALUE"
+    )]
+    Joints {
+        /// Movable joints.
+        count: usize,
+        /// Their names.
+        names: String,
+    },
+    /// The joints are not four legs of three.
+    #[error(
+        "joint {0} does not belong to a leg: four legs of three revolute joints must hang from the base"
+    )]
+    NotALeg(String),
+    /// Two legs in one quadrant.
+    #[error(
+        "no leg stands at {0}: legs must be in four quadrants around the base, x forwards and y to the left"
+    )]
+    Quadrant(&'static str),
+    /// A joint without a limit that a plan can keep to.
+    #[error("joint {joint}: its {what} limit {value}: a quadruped's joints have limits above 0")]
+    Limit {
+        /// The joint.
+        joint: String,
+        /// Which limit.
+        what: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A joint that has no place to be.
+    #[error("joint {joint}: its range is {lower} to {upper}: the first must be below the second")]
+    Range {
+        /// The joint.
+        joint: String,
+        /// Its lower limit.
+        lower: f64,
+        /// Its upper limit.
+        upper: f64,
+    },
+    /// No posture stands.
+    #[error("no standing posture: leg {0} cannot reach below its hip within its joint limits")]
+    Posture(&'static str),
+}
+
+impl Quadruped {
+    /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
+    ///
+    /// # Errors
+    /// [`RobotError`] names what is missing and where.
+    pub fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
+        let text = crate::file::read_text(path)?;
+        let locks = locks.iter().map(|lock| parse_lock(lock));
+        let mut options = Options {
+            base: BaseKind::Floating,
+            locks: locks.collect::<Result<_, _>>()?,
+            ..Options::default()
+        };
+        let imported = match Robot::from_urdf(&text, &options) {
+            // Simplified moments of inertia are common, and a plan needs only those of the whole robot.
+            Err(ImportError::UnphysicalInertia { .. }) => {
+                options.inertia = InertiaPolicy::AsWritten;
+                Robot::from_urdf(&text, &options)?
+            }
+            other => other?,
+        };
+        Self::of(&imported, &text)
+    }
+
+    fn of(robot: &Robot, text: &str) -> Result<Self, RobotError> {
+        let names = || robot.joints.iter().map(|joint| joint.name.as_str());
+        if robot.joints.len() != JOINTS {
+            return Err(RobotError::Joints {
+                count: robot.joints.len(),
+                names: names().collect::<Vec<_>>().join(", "),
+            });
+        }
+        for (i, body) in robot.bodies.iter().enumerate() {
+            let parent = match i % 3 {
+                0 => Link::Base,
+                _ => Link::Joint(i - 1),
+            };
+            if body.parent != parent || !body.kind.is_revolute() {
+                return Err(RobotError::NotALeg(robot.joints[i].name.clone()));
+            }
+        }
+        robot.joints.iter().try_for_each(check_limits)?;
+        let table: TableModel<f64, JOINTS> = robot.model()?;
+        let document = Document::parse(text)?;
+        let mut feet = [Frame::IDENTITY; LEGS];
+        let mut foot_radius = 0.0;
+        for (leg, foot) in feet.iter_mut().enumerate() {
+            let last = Link::Joint(3 * leg + 2);
+            let reach = |frame: &Frame<f64>| Vector3::from(frame.offset).norm();
+            let tips = robot.frames.iter().filter(|f| f.frame.link == last);
+            let tip = tips
+                .max_by(|a, b| reach(&a.frame).total_cmp(&reach(&b.frame)))
+                .ok_or_else(|| RobotError::NotALeg(robot.joints[3 * leg + 2].name.clone()))?;
+            *foot = tip.frame;
+            if let Some((radius, centre)) = ball(&document, &tip.name) {
+                foot_radius = radius;
+                foot.offset = tip.frame.placement().point(&centre).into();
+            }
+            foot.rotation = Frame::IDENTITY.rotation;
+        }
+        // Where joints and feet are with all joints at zero: frames of links need not be parallel to the base's.
+        let mut zero: Kinematics<f64, JOINTS> = Kinematics::IDENTITY;
+        forward_kinematics(&table, &Posture::new(&table, &State::NEUTRAL), &mut zero);
+        let joint = |i: usize| zero.link(Link::Joint(i)).translation;
+        let foot = |leg: usize| zero.frame(&feet[leg]).translation;
+        let hips = core::array::from_fn(|leg| {
+            let second = joint(3 * leg + 1);
+            Vector3::new(second.x, foot(leg).y, second.z)
+        });
+        let planar = |v: Vector3<f64>| so3::math::hypot(v.x, v.z);
+        let length = |leg: usize| {
+            let knee = joint(3 * leg + 2);
+            planar(knee - joint(3 * leg + 1)) + planar(foot(leg) - knee)
+        };
+        let leg_length = (0..LEGS).map(length).fold(f64::INFINITY, f64::min);
+        let limits: [JointLimits<f64>; JOINTS] = core::array::from_fn(|i| robot.joints[i].limits);
+        let strongest = limits
+            .iter()
+            .fold(0.0, |m, limit| f64::max(m, limit.effort));
+        let mut data = Data {
+            name: leaked(&robot.name),
+            table,
+            limits,
+            motors: None,
+            joint_names: core::array::from_fn(|i| leaked(&robot.joints[i].name)),
+            legs: quadrants(&hips)?,
+            feet,
+            foot_radius,
+            hips,
+            leg_length,
+            corners: trunk(&document, robot, leg_length),
+            shapes: SHAPES,
+            owners: OWNERS,
+            budgets: hardware::budgets(strongest),
+            seed: [0.0; JOINTS],
+        };
+        data.seed = seed(&data)?;
+        data.shapes = hardware::shapes(&data);
+        data.owners = hardware::owners(&Self::leak(data.clone()));
+        Ok(Self::leak(data))
+    }
+}
+
+/// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.
+fn check_limits(joint: &JointInfo) -> Result<(), RobotError> {
+    let limits = &joint.limits;
+    for (what, value) in [("effort", limits.effort), ("velocity", limits.speed)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(RobotError::Limit {
+                joint: joint.name.clone(),
+                what,
+                value,
+            });
+        }
+    }
+    let (lower, upper) = (limits.lower, limits.upper);
+    if lower < upper {
+        return Ok(());
+    }
+    Err(RobotError::Range {
+        joint: joint.name.clone(),
+        lower,
+        upper,
+    })
+}
+
+/// Names of a robot live as long as the robot, which lives as long as the program.
+pub(crate) fn leaked(name: &str) -> &'static str {
+    Box::leak(name.to_owned().into_boxed_str())
+}
+
+/// The leg at each of [`PLACES`].
+fn quadrants(hips: &[Vector3<f64>; LEGS]) -> Result<[usize; LEGS], RobotError> {
+    let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let mut legs = [0; LEGS];
+    for ((slot, (x, y)), place) in legs.iter_mut().zip(signs).zip(PLACES) {
+        let stands = |hip: &Vector3<f64>| hip.x * x > 0.0 && hip.y * y > 0.0;
+        *slot = hips
+            .iter()
+            .position(stands)
+            .ok_or(RobotError::Quadrant(place))?;
+    }
+    Ok(legs)
+}
+
+/// Joints that put every foot best under its hip, knees behind where both ways are possible.
+fn seed(data: &Data) -> Result<[f64; JOINTS], RobotError> {
+    let grid = |limit: &JointLimits<f64>, i: usize| {
+        let (low, high) = (limit.lower.max(-2.8), limit.upper.min(2.8));
+        low + (high - low) * i as f64 / (SEED_STEPS - 1) as f64
+    };
+    let robot = Quadruped::leak(data.clone());
+    let mut best = [0.0; JOINTS];
+    for leg in 0..LEGS {
+        let target = data.hips[leg] - Vector3::z() * (SEED_LEG * data.leg_length);
+        let mut least = f64::INFINITY;
+        for i in 0..SEED_STEPS * SEED_STEPS {
+            let mut q = State {
+                base: Transform::IDENTITY,
+                joints: [0.0; JOINTS],
+            };
+            let first = &data.limits[3 * leg];
+            q.joints[3 * leg] = 0.0_f64.clamp(first.lower, first.upper);
+            q.joints[3 * leg + 1] = grid(&data.limits[3 * leg + 1], i / SEED_STEPS);
+            q.joints[3 * leg + 2] = grid(&data.limits[3 * leg + 2], i % SEED_STEPS);
+            let kinematics: Kinematics<f64, JOINTS> = robot.poses(&q);
+            let miss = (kinematics.frame(&data.feet[leg]).translation - target).norm();
+            let knee = kinematics.link(Link::Joint(3 * leg + 2)).translation;
+            let ahead = (knee.x - data.hips[leg].x).max(0.0);
+            let cost = miss + ahead;
+            if cost < least {
+                least = cost;
+                best[3 * leg..3 * leg + 3].copy_from_slice(&q.joints[3 * leg..3 * leg + 3]);
+            }
+        }
+        if least > data.leg_length {
+            return Err(RobotError::Posture(robot.place(leg)));
+        }
+    }
+    Ok(best)
+}
+
+/// Vector of an attribute such as `xyz="0 0 1"`; zero without it.
+fn vector(node: Option<Node<'_, '_>>, name: &str) -> Vector3<f64> {
+    let text = node.and_then(|node| node.attribute(name)).unwrap_or("");
+    let numbers = text.split_whitespace().filter_map(|x| x.parse().ok());
+    Vector3::from_iterator(numbers.chain([0.0; 3]).take(3))
+}
+
+/// Shapes in the collision elements of a link, with the centre of each in the link's frame, m.
+fn shapes<'a>(
+    document: &'a Document<'a>,
+    link: &'a str,
+) -> impl Iterator<Item = (Node<'a, 'a>, Vector3<f64>)> {
+    let is_link = move |node: &Node<'_, '_>| {
+        node.has_tag_name("link") && node.attribute("name") == Some(link)
+    };
+    let links = document.root_element().children().filter(is_link);
+    let collisions = links.flat_map(|link| link.children());
+    let collisions = collisions.filter(|node| node.has_tag_name("collision"));
+    collisions.filter_map(|collision| {
+        let child = |name: &'static str| collision.children().find(|n| n.has_tag_name(name));
+        let shape = child("geometry")?.children().find(Node::is_element)?;
+        Some((shape, vector(child("origin"), "xyz")))
+    })
+}
+
+/// Radius and centre of the ball of a foot, in the frame of its link, m.
+fn ball(document: &Document<'_>, link: &str) -> Option<(f64, Vector3<f64>)> {
+    shapes(document, link).find_map(|(shape, centre)| {
+        let radius: f64 = shape.attribute("radius")?.parse().ok()?;
+        let ok = shape.has_tag_name("sphere") && radius > 0.0 && radius.is_finite();
+        ok.then_some((radius, centre))
+    })
+}
+
+/// Corners of the trunk, base axes, m.
+fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f64>; 8] {
+    let offsets = robot
+        .bodies
+        .iter()
+        .step_by(3)
+        .map(|b| Vector3::from(b.offset));
+    let hips = offsets.fold(Vector3::zeros(), |most: Vector3<f64>, o| most.sup(&o.abs()));
+    // Narrower than the hips by the room that legs take.
+    let wide = f64::max(hips.y - LEG_ROOM * leg_length, 0.5 * hips.y);
+    let mut half = Vector3::new(hips.x, wide, TRUNK_HEIGHT * leg_length);
+    let mut pose = Transform::IDENTITY;
+    let mut largest = 0.0;
+    for frame in robot.frames.iter().filter(|f| f.frame.link == Link::Base) {
+        for (shape, centre) in shapes(document, &frame.name) {
+            let size = vector(Some(shape), "size");
+            if shape.has_tag_name("box") && size.product() > largest {
+                largest = size.product();
+                half = size * 0.5;
+                pose = frame.frame.placement();
+                pose.translation = pose.point(&centre);
+            }
+        }
+    }
+    core::array::from_fn(|i| {
+        let sign = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
+        pose.point(&Vector3::new(
+            half.x * sign(2),
+            half.y * sign(1),
+            half.z * sign(0),
+        ))
+    })
+}

@@ -1,0 +1,289 @@
+//! The whole-body problem of a task along a motion of the rigid body: the geared A1 on rolling ball feet, with margins.
+
+use super::reference::heading_matrix;
+use super::task::{SrbPlan, Task};
+use super::{FOOT_COUNT, JOINTS};
+use crate::track::Track;
+use nalgebra::Vector3;
+use rbd_core::Transform;
+use srb_opt::Edge;
+use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
+
+/// Coordinates of the robot.
+pub const N: usize = BASE + JOINTS;
+pub(crate) const NX: usize = 2 * N;
+pub(crate) const NU: usize = N + 3 * FOOT_COUNT;
+/// Sides of a friction pyramid.
+const SIDES: usize = 8;
+/// Trunk corners and knees.
+const CLEARANCES: usize = 12;
+pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES, true);
+
+/// Longest interval in contact, s. At twice the length the audit finds limits exceeded between nodes.
+const CONTACT_DT: f64 = 0.005;
+/// Longest interval in flight, s: no forces change, but the turn must be right.
+const FLIGHT_DT: f64 = 0.005;
+/// Time before touchdown in which the legs rest in the landing posture, s.
+pub const POSED: f64 = 0.05;
+/// How much farther than it is a box edge is taken to be at most, m; that of a box to jump onto, nearer.
+const EDGE_MARGIN: f64 = 0.12;
+/// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
+const ONTO_SHARE: f64 = 0.35;
+/// Height over the ground that feet keep on their way onto a box, m.
+const ONTO_RISE: f64 = 0.03;
+/// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
+/// largest.
+const CONE_SHARE: f64 = 0.95;
+/// How far a ball may roll from where it stood, per axis, m.
+const ROLL: f64 = 0.03;
+const KNEE_CLEARANCE: f64 = 0.03;
+/// Least normal force of a foot that stands, in weights of the robot.
+const LEAST_FORCE: f64 = 0.04;
+/// Speed at which planned Coulomb friction of the joints fades, rad/s.
+pub const FRICTION_SMOOTHING: f64 = 0.3;
+/// How far from its goal the base may be at the touchdown: m, and rad.
+pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
+
+/// What the problem borrows, and the guess that comes with it.
+pub(crate) struct Setup<'a> {
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    track: Track<Transform<f64>>,
+    pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
+    /// Times of the nodes, s.
+    pub(crate) times: Vec<f64>,
+    /// References of the nodes and of the intervals.
+    pub(crate) nodes: Vec<Pose<f64, N>>,
+    reference: Vec<Pose<f64, N>>,
+    clearances: Vec<Clearance<f64>>,
+    goal: Pose<f64, N>,
+    landing_intervals: usize,
+}
+
+fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
+    Pose {
+        q: core::array::from_fn(|i| match i {
+            0..3 => base.translation[i],
+            3..BASE => 0.0,
+            _ => joints[i - BASE],
+        }),
+        rot_wc: base.rotation,
+    }
+}
+
+/// Times of the nodes of phases, s.
+pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
+    let mut times = vec![0.0];
+    for phase in phases {
+        let begin = times[times.len() - 1];
+        times.extend((1..=phase.intervals).map(|i| begin + phase.dt * i as f64));
+    }
+    times
+}
+
+impl<'a> Setup<'a> {
+    /// On intervals of a share of their usual length.
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, share: f64) -> Result<Self, String> {
+        let rigid = &task.problem;
+        let landing_joints = task.robot.landing_joints(&task.start)?;
+        let mut phases = Vec::new();
+        for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
+            let longest = if phase.contacts.contains(&true) {
+                CONTACT_DT
+            } else {
+                FLIGHT_DT
+            };
+            let intervals = (duration / (share * longest)).ceil().max(1.0);
+            phases.push(Phase {
+                contacts: phase.contacts,
+                intervals: intervals as usize,
+                dt: duration / intervals,
+            });
+        }
+        let track = track(task, srb);
+        let times = times(&phases);
+        let flight = phases.last().map_or(0, |phase| phase.intervals);
+        let take_off = times.len() - 1 - flight;
+        let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
+        for (k, time) in times.iter().enumerate() {
+            let joints = if k <= take_off {
+                &task.start.joints
+            } else {
+                &landing_joints
+            };
+            nodes.push(pose(&track.at(*time), joints));
+        }
+        let moved = rigid.goal_w - rigid.start_w;
+        let goal = Transform::new(
+            so3::exp(&(rigid.axis * rigid.angle)),
+            task.start.base.translation + moved,
+        );
+        let middle = |pair: &[Pose<f64, N>]| {
+            let turn = so3::Geodesic::shortest(&pair[0].rot_wc, &pair[1].rot_wc);
+            Pose {
+                q: core::array::from_fn(|i| 0.5 * (pair[0].q[i] + pair[1].q[i])),
+                rot_wc: turn.at(0.5),
+            }
+        };
+        Ok(Self {
+            task,
+            srb,
+            track,
+            reference: nodes.windows(2).map(middle).collect(),
+            phases,
+            times,
+            nodes,
+            clearances: clearances(task),
+            goal: pose(&goal, &landing_joints),
+            landing_intervals: (POSED / (share * FLIGHT_DT)) as usize,
+        })
+    }
+
+    /// The problem, with all the torque there is.
+    pub(crate) fn problem(&self) -> Problem<'_, f64, N, FOOT_COUNT> {
+        let task = self.task;
+        let rigid = &task.problem;
+        let cone = CONE_SHARE * rigid.friction / task.limits.friction_share;
+        let mut problem = Problem {
+            robot: Robot::on_free_base(&task.robot),
+            feet: core::array::from_fn(|i| Foot {
+                point: Robot::<f64, N>::point(&task.robot.feet[i]),
+                pos_wf: rigid.feet[i].pos_wf + Vector3::new(0.0, 0.0, task.robot.foot_radius),
+                radius: task.robot.foot_radius,
+            }),
+            clearances: &self.clearances,
+            // A foot that grazes the edge of a box turns the robot over.
+            swing_height: task.robot.foot_radius,
+            swing_rise: if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
+                ONTO_RISE
+            } else {
+                0.0
+            },
+            edge: cautious(task),
+            phases: &self.phases,
+            reference: &self.reference,
+            start: pose(&task.start.base, &task.start.joints),
+            goal: self.goal,
+            goal_tolerance: GOAL_TOLERANCE,
+            least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
+            landing_intervals: self.landing_intervals,
+            friction_smoothing: FRICTION_SMOOTHING,
+            friction: Friction::within_cone(rigid.friction, cone),
+            drift: ROLL,
+            weights: Weights {
+                position: task.weights.position,
+                effort: task.weights.torque,
+                goal: task.weights.goal,
+            },
+        };
+        let robot = &mut problem.robot;
+        for (motor, limit) in robot.motors.iter_mut().zip(&mut robot.limits) {
+            match motor {
+                Some(motor) => {
+                    motor.corner_speed *= task.limits.speed_share;
+                    motor.no_load_speed *= task.limits.speed_share;
+                }
+                None => limit.speed *= task.limits.speed_share,
+            }
+        }
+        problem
+    }
+
+    /// Force of the rigid body's motion on a foot at a node, world, N.
+    pub(crate) fn force(&self, k: usize, foot: usize) -> Vector3<f64> {
+        let k = self.track.interval(self.times[k]);
+        let stage = &self.srb.stages[k];
+        let sample = self.task.problem.sample(k, &stage.state, &stage.control);
+        sample.forces_w[foot]
+    }
+}
+
+/// The edge of the task's box, moved so that feet in the air keep away from it, but neither to the feet that stand nor to where they land.
+fn cautious(task: &Task) -> Option<Edge<f64>> {
+    let mut edge = task.problem.edge?;
+    let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
+    let turn = heading_matrix(task.heading);
+    let feet = task.problem.feet.map(|foot| foot.pos_wf);
+    let landed = feet.map(|foot| across(task.goal + turn * foot));
+    let stand = feet
+        .map(across)
+        .into_iter()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let land = landed.into_iter().fold(f64::INFINITY, f64::min);
+    edge.distance += if edge.drop < 0.0 {
+        -EDGE_MARGIN.min(ONTO_SHARE * -stand.min(0.0))
+    } else {
+        EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0))
+    };
+    Some(edge)
+}
+
+/// Corners of the trunk, and knees.
+fn clearances(task: &Task) -> Vec<Clearance<f64>> {
+    let com_b = task.robot.com(&task.start) - task.start.base.translation;
+    let corner = |corner: &Vector3<f64>| Clearance {
+        point: Point {
+            link: BASE - 1,
+            // The single rigid body's corners are seen from its centre of mass.
+            offset_l: corner + com_b,
+        },
+        height: task.problem.clearance,
+    };
+    let knee = |leg: usize| Clearance {
+        point: Point {
+            link: BASE + 3 * leg + 2,
+            offset_l: Vector3::zeros(),
+        },
+        height: KNEE_CLEARANCE,
+    };
+    let corners = task.problem.corners.iter().map(corner);
+    corners.chain((0..FOOT_COUNT).map(knee)).collect()
+}
+
+fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
+    let state = srb.stages.first().map(|stage| stage.state.durations);
+    state.into_iter().flatten()
+}
+
+/// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
+fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
+    let com_b = task.robot.com(&task.start) - task.start.base.translation;
+    let mut time = 0.0;
+    let mut times = Vec::new();
+    for (k, stage) in srb.stages.iter().enumerate() {
+        times.push(time);
+        if let Some((i, phase)) = task.problem.phase_of(k) {
+            time += stage.state.durations[i] / phase.intervals as f64;
+        }
+    }
+    let states = srb.stages.iter().map(|stage| &stage.state);
+    let poses = states.map(|state| (state.pos_w - state.rot_wb * com_b, state.rot_wb));
+    Track::new(times, poses)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{EDGE_MARGIN, cautious};
+    use crate::task::Task;
+
+    /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
+    fn moved(aside: f64, drop: f64) -> f64 {
+        let mut task = Task::load("a1/lateral-down").unwrap();
+        task.goal.y = aside;
+        task.problem.edge.as_mut().unwrap().drop = drop;
+        cautious(&task).unwrap().distance - task.problem.edge.unwrap().distance
+    }
+
+    #[test]
+    fn edges_are_moved_away_from_feet_in_the_air_and_not_into_others() {
+        assert!((moved(0.5, 0.3) - EDGE_MARGIN).abs() < 1e-12);
+        // The right feet land 0.13 m right of the goal, the edge is 0.18 m left of the start.
+        let near = moved(0.4, 0.3);
+        assert!(near > 0.01 && near < 0.04, "{near}");
+        assert_eq!(moved(0.32, 0.3), 0.0);
+        // Onto a box: towards the left feet, 0.05 m before it, and not as far as they are.
+        let onto = moved(0.5, -0.3);
+        assert!(onto < -0.01 && onto > -0.03, "{onto}");
+    }
+}

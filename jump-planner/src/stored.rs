@@ -1,0 +1,214 @@
+//! A whole-body plan as a container, and back.
+
+use super::planned::{Origin, node, peaks};
+use super::reference::{Reference, standing};
+use super::task::Task;
+use super::whole_body::{Interval, POSED, WholeBodyPlan};
+use super::{FOOT_COUNT, JOINTS, Node};
+use crate::robot::Quadruped;
+use jump_control::Torques;
+use jump_control::container::{
+    Container, ContainerError, GroundStep, Header, MOST_PHASES, Margins, NodeGains, PlanNode,
+    PlanPhase, Row, model_hash, write,
+};
+use rbd_core::{Configuration, Model, Tangent};
+use wb_opt::{BASE, Phase};
+
+/// A plan's container, for a quadruped.
+pub type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
+
+/// Bytes of the header and of everything else that is not a node.
+const OVERHEAD: usize = 1024;
+/// Joint angles that differ by less are the same posture: what single precision leaves, and more, rad.
+const SAME_POSTURE: f64 = 1e-4;
+
+/// The container of a plan, with its feedback gains or without; its nodes begin with the posture in which the robot waits.
+///
+/// # Errors
+/// More nodes or a longer name than a container takes.
+pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<u8>, String> {
+    let robot = &task.robot;
+    let mut nodes = vec![record(robot, 0, &standing(task)?)];
+    let mut gains = vec![NodeGains::default()];
+    let contacts = plan.phases.iter().enumerate();
+    let phase_of = contacts.flat_map(|(i, phase)| core::iter::repeat_n(i as u8, phase.intervals));
+    for (interval, phase) in plan.intervals.iter().zip(phase_of) {
+        let at = node(interval.start, &interval.state, Some(interval));
+        nodes.push(record(robot, phase, &at));
+        gains.push(feedback(interval));
+    }
+    let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
+    let touchdown: f64 = plan.phases.iter().map(duration).sum();
+    let last = plan.phases.len().saturating_sub(1) as u8;
+    let end = node(touchdown, &plan.end, None);
+    nodes.push(record(robot, last, &end));
+    gains.push(NodeGains::default());
+    let takeoff: f64 = plan
+        .phases
+        .iter()
+        .take_while(|phase| phase.contacts.contains(&true))
+        .map(duration)
+        .sum();
+    let mut phases = [PlanPhase::default(); MOST_PHASES];
+    for (slot, phase) in phases.iter_mut().zip(&plan.phases) {
+        let bits = phase.contacts.iter().enumerate();
+        *slot = PlanPhase {
+            contacts: bits.fold(0, |bits, (i, on)| bits | (u8::from(*on) << i)),
+            duration: duration(phase) as f32,
+        };
+    }
+    let header = Header {
+        task: &task.name,
+        robot: robot.name,
+        torques: Torques::Hold,
+        takeoff: takeoff as f32,
+        posing: (touchdown - POSED) as f32,
+        touchdown: touchdown as f32,
+        phase_count: plan.phases.len() as u8,
+        phases,
+        ground: ground(task),
+        margins: Margins {
+            friction: task.limits.friction as f32,
+            friction_share: task.limits.friction_share as f32,
+            max_force: task.problem.max_force as f32,
+            torque_share: plan.torque_share as f32,
+            speed_share: task.limits.speed_share as f32,
+            weight: (task.problem.mass * task.problem.gravity) as f32,
+        },
+        nodes: 0,
+        has_gains: with_gains,
+    };
+    if !with_gains {
+        gains.clear();
+    }
+    let bytes = Stored::NODE_BYTES + Stored::GAIN_BYTES;
+    let mut out = vec![0; OVERHEAD + task.name.len() + nodes.len() * bytes];
+    let length =
+        write(&mut out, hash(robot), &header, &nodes, &gains).map_err(|e| e.to_string())?;
+    out.truncate(length);
+    Ok(out)
+}
+
+fn ground(task: &Task) -> Option<GroundStep> {
+    task.edge.map(|edge| GroundStep {
+        drop: edge.drop as f32,
+        axis: edge.axis as u8,
+        side: edge.sign as i8,
+        distance: edge.distance as f32,
+    })
+}
+
+/// A stored plan as the controller follows it, with the task that it is judged by.
+///
+/// # Errors
+/// A sentence: of another box, or from another posture.
+pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
+    let header = plan.header();
+    if header.ground != ground(task) {
+        return Err(format!(
+            "the plan is for another box than task {}: plan again",
+            task.name
+        ));
+    }
+    let nodes: Vec<Node> = plan.nodes().map(|node| node.node()).collect();
+    let gap = |node: &Node| {
+        let pairs = node.joints.iter().zip(&task.start.joints);
+        pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+    };
+    // Not `>`: what is not a number is no start either.
+    if !nodes.first().is_some_and(|node| gap(node) <= SAME_POSTURE) {
+        return Err(format!(
+            "the plan begins in another posture than task {}: plan again",
+            task.name
+        ));
+    }
+    let takeoff = f64::from(header.takeoff);
+    let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
+    let phases = header.phases.iter().take(header.phase_count.into());
+    Ok(Reference {
+        takeoff,
+        posing: f64::from(header.posing),
+        touchdown: f64::from(header.touchdown),
+        landing_joints: task.robot.landing_joints(&task.start)?,
+        durations: phases.map(|phase| f64::from(phase.duration)).collect(),
+        peak_torque,
+        peak_friction,
+        base_residual: f64::NAN,
+        origin: Origin::Stored,
+        nodes,
+    })
+}
+
+/// Opens a container for a robot.
+///
+/// # Errors
+/// [`ContainerError`] says why the bytes are no plan for this robot.
+pub fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, ContainerError> {
+    Container::open(bytes, hash(robot))
+}
+
+fn hash(robot: &Quadruped) -> u64 {
+    model_hash::<f64, _, JOINTS>(robot)
+}
+
+fn record(robot: &Quadruped, phase: u8, node: &Node) -> PlanNode<JOINTS, FOOT_COUNT> {
+    let single = |x: [f64; 3]| x.map(|x| x as f32);
+    let q = Configuration {
+        base: node.base,
+        joints: node.joints,
+    };
+    let legs_only = Tangent {
+        joints: node.joint_velocities,
+        ..Tangent::ZERO
+    };
+    let kinematics = robot.poses(&q);
+    let to_base = node.base.rotation.inverse();
+    let mut feet_b = [[0.0; 3]; FOOT_COUNT];
+    let mut foot_velocities_b = feet_b;
+    for (leg, frame) in robot.feet.iter().enumerate() {
+        let foot_w = kinematics.frame(frame).translation - node.base.translation;
+        feet_b[leg] = single((to_base * foot_w - robot.hips[leg]).into());
+        let velocity_w = robot.jacobian(&kinematics, frame).mul(&legs_only).linear;
+        foot_velocities_b[leg] = single((to_base * velocity_w).into());
+    }
+    let quat_wb = so3::quat::to_xyzw(&so3::quat::from_rotation(&node.base.rotation));
+    PlanNode {
+        phase,
+        time: node.time as f32,
+        position_w: single(node.base.translation.into()),
+        rotation_wb: quat_wb.map(|x| x as f32),
+        velocity_b: node.base_velocity.to_array().map(|x| x as f32),
+        joints: Row(node.joints.map(|x| x as f32)),
+        joint_velocities: Row(node.joint_velocities.map(|x| x as f32)),
+        torques: Row(node.torques.map(|x| x as f32)),
+        forces_w: Row(node.forces_w.map(|f| single(f.into()))),
+        feet_b: Row(feet_b),
+        foot_velocities_b: Row(foot_velocities_b),
+    }
+}
+
+fn feedback(interval: &Interval) -> NodeGains<JOINTS> {
+    let gains = &interval.gains;
+    let base = |rows: &[[f64; super::whole_body::N]; super::whole_body::N]| {
+        Row(core::array::from_fn(|i| {
+            core::array::from_fn(|k| rows[BASE + i][k] as f32)
+        }))
+    };
+    let joints = |rows: &[[f64; super::whole_body::N]; super::whole_body::N]| {
+        Row(core::array::from_fn(|i| {
+            Row(core::array::from_fn(|k| rows[BASE + i][BASE + k] as f32))
+        }))
+    };
+    NodeGains {
+        by_base: base(&gains.effort_by_q),
+        by_joints: joints(&gains.effort_by_q),
+        by_base_rates: base(&gains.effort_by_v),
+        by_joint_rates: joints(&gains.effort_by_v),
+    }
+}
+
+/// Name of a robot's joint, without the word every joint has.
+#[must_use]
+pub fn joint_name(robot: &Quadruped, i: usize) -> String {
+    Model::joint_names(robot)[i].replace("_joint", "")
+}
