@@ -67,6 +67,27 @@ fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Draw) -> Box<Qp<
     q
 }
 
+/// Warm from the answer: the same point at once.
+fn assert_remembered<const N: usize, const M: usize>(
+    kind: Kind,
+    q: &Qp<f64, N, M>,
+    x: &[f64; N],
+    w: &mut Workspace<f64, N, M>,
+    label: &str,
+) {
+    let again = solve_warm(&q.problem(), &Settings::default(), w).unwrap();
+    assert_eq!(again.status, Status::Solved, "{label} warm");
+    let residual = again.residual;
+    assert!(residual.max() <= 1e-8, "{label} warm: {residual:?}");
+    if kind == Kind::Regular || kind == Kind::Equalities {
+        let iterations = again.iterations;
+        assert!(iterations <= 3, "{label} warm {iterations}");
+        let gaps = again.x.iter().zip(x).map(|(a, b)| (a - b).abs());
+        let off = gaps.fold(0., f64::max);
+        assert!(off < 1e-8, "{label}: warm off by {off}");
+    }
+}
+
 fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
     each::<N, M>(count as u32, seed, |mut r| {
         let mut w = Box::new(Workspace::<f64, N, M>::new());
@@ -100,30 +121,8 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
                             .fold(0., f64::max);
                     assert!(off < 1e-4, "{label}: x off by {off}");
                 }
-                // Warm from the answer: the same point at once.
                 let x = *s.x;
-                let cold = s.iterations;
-                let again = solve_warm(&p, &settings, &mut w).unwrap();
-                assert_eq!(again.status, Status::Solved, "{label} warm");
-                assert!(
-                    again.residual.max() <= 1e-8,
-                    "{label} warm: {:?}",
-                    again.residual
-                );
-                if kind == Kind::Regular || kind == Kind::Equalities {
-                    assert!(
-                        again.iterations <= 3,
-                        "{label} warm {} {cold}",
-                        again.iterations
-                    );
-                    let off = again
-                        .x
-                        .iter()
-                        .zip(&x)
-                        .map(|(a, b)| (a - b).abs())
-                        .fold(0., f64::max);
-                    assert!(off < 1e-8, "{label}: warm off by {off}");
-                }
+                assert_remembered(kind, &q, &x, &mut w, &label);
             }
             SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
                 assert_eq!(s.status, Status::Infeasible, "{label}");
