@@ -18,8 +18,6 @@ use std::path::Path;
 
 /// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
 const SEED_LEG: f64 = 0.65;
-/// Deviation of a joint's axis from a coordinate axis that is taken for rounding.
-const AXIS_ROUNDING: f64 = 1e-9;
 /// Joint positions that are tried per joint.
 const SEED_STEPS: usize = 25;
 /// How far the sides of a trunk without a box are inside of the hips' joints, as a share of the leg: half a hip and half a thigh.
@@ -98,8 +96,6 @@ impl Quadruped {
         let mut options = Options {
             base: BaseKind::Floating,
             locks: locks.collect::<Result<_, _>>()?,
-            // A plan does not feel what eleven digits of π leave, and aligned joints are planned for in half of the time.
-            axis_rounding: AXIS_ROUNDING,
             ..Options::default()
         };
         let imported = match Robot::from_urdf(&text, &options) {
