@@ -165,6 +165,8 @@ impl Judged {
             "sim": trial.sim.name(),
             "seed": trial.seed,
             "interface": trial.interface.to_string(),
+            "robot": task.robot.name,
+            "placeholders": task.robot.placeholders(),
             "plant": trial.disturbance.json(),
             "on_target": verdict.on_target(),
             "verdict": verdict.json(),
