@@ -145,10 +145,7 @@ fn fault<const N: usize, const F: usize>(
         (all(&node.joint_velocities), "joint velocities"),
         (finite(&node.torques), "torques"),
         (finite(forces), "forces"),
-        (
-            last || node.forces_w.iter().enumerate().all(push),
-            "forces",
-        ),
+        (last || node.forces_w.iter().enumerate().all(push), "forces"),
         (all(node.feet_b.as_flattened()), "feet"),
         (
             all(node.foot_velocities_b.as_flattened()),

@@ -123,8 +123,7 @@ impl<'a, const N: usize> Header<'a, N> {
 
     /// None where there is a name that is none, or a rule for torques that nobody knows.
     pub(super) const fn read(from: &mut Reader<'a>) -> Option<Self> {
-        let (Some(task), Some(robot)) =
-            (from.text::<LONGEST_TASK>(), from.text::<LONGEST_ROBOT>())
+        let (Some(task), Some(robot)) = (from.text::<LONGEST_TASK>(), from.text::<LONGEST_ROBOT>())
         else {
             return None;
         };

@@ -130,13 +130,7 @@ fn what_may_be_missing_is_read_as_missing() {
     };
     let stored = written(&other, &[]);
     let container = (Container::open(&stored, ROBOT) as Opened<'_>).unwrap();
-    assert_eq!(
-        *container.header(),
-        Header {
-            nodes: 0,
-            ..other
-        }
-    );
+    assert_eq!(*container.header(), Header { nodes: 0, ..other });
     assert_eq!(container.nodes().count(), 0);
 }
 
@@ -144,7 +138,11 @@ fn what_may_be_missing_is_read_as_missing() {
 #[test]
 #[ignore = "writes a file"]
 fn the_golden_is_written() {
-    std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hop.bin"), bytes()).unwrap();
+    std::fs::write(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hop.bin"),
+        bytes(),
+    )
+    .unwrap();
 }
 
 /// The bytes of this version are those that it had when the golden file was written, and stand where the table says.
@@ -292,8 +290,18 @@ fn values_that_cannot_be_are_named() {
         (460, nan, None, "goal"),
         (472, 1e3_f32.to_le_bytes(), None, "goal"),
         (476, nan, None, "landing posture"),
-        (at + 20, 0.601_f32.to_le_bytes(), Some(0), "rotation of the base"),
-        (at + 48, (-0.6_f32).to_le_bytes(), Some(0), "rotation of the base"),
+        (
+            at + 20,
+            0.601_f32.to_le_bytes(),
+            Some(0),
+            "rotation of the base",
+        ),
+        (
+            at + 48,
+            (-0.6_f32).to_le_bytes(),
+            Some(0),
+            "rotation of the base",
+        ),
         (at + 80 + 24, 90_f32.to_le_bytes(), Some(0), "forces"),
     ];
     for (at, bytes_there, node, what) in cases {

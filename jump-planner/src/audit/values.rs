@@ -33,11 +33,7 @@ pub fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
 fn joints(robot: &Quadruped, node: &PlanNode<JOINTS, 4>, share: f64) -> Option<String> {
     let limits: &[JointLimits<f64>; JOINTS] = Model::limits(robot);
     limits.iter().enumerate().find_map(|(i, limit)| {
-        let [q, v, torque] = [
-            node.joints[i],
-            node.joint_velocities[i],
-            node.torques[i],
-        ];
+        let [q, v, torque] = [node.joints[i], node.joint_velocities[i], node.torques[i]];
         let [q, v, torque] = [q, v, torque].map(f64::from);
         let checks = [
             (
