@@ -1,5 +1,5 @@
 //! The CRC-32 of Ethernet and zip (ISO-HDLC): reflected polynomial 0xEDB88320, begun and ended with all bits inverted. It detects every
-//! burst of up to 32 bits. A table per byte: bit by bit, the compiler would take too long over a plan.
+//! burst of up to 32 bits. A table spares compiler and controller eight steps per byte.
 
 /// What each value of a byte does to the remainder.
 static TABLE: [u32; 256] = table();

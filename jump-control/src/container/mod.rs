@@ -1,6 +1,6 @@
 //! A plan as bytes: what a planner writes, what is audited, and what a controller flies, from a file, from memory or from flash; without
 //! allocation. There is no other format. Numbers are little-endian, at fixed places, in single precision: 10⁻⁷ of a joint's range is far
-//! below what an encoder tells. Unused bytes are zero.
+//! below what an encoder tells. Unused bytes are written as zero.
 //!
 //! | byte | type | content |
 //! |---|---|---|
