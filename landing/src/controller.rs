@@ -40,6 +40,18 @@ impl<T: Scalar, const N: usize, const F: usize> Workspace<T, N, F> {
             forces: Forces::new(),
         }
     }
+
+    /// Forces of the ground on the feet that the last tick with a program commanded, world axes, N; zero on feet in the air.
+    #[must_use]
+    pub fn forces_w(&self) -> [Vector3<T>; F] {
+        let mut forces_w = self.forces.inside();
+        for (force_w, on) in forces_w.iter_mut().zip(&self.forces.on) {
+            if !on {
+                *force_w = Vector3::zeros();
+            }
+        }
+        forces_w
+    }
 }
 
 impl<T: Scalar, const N: usize, const F: usize> Default for Workspace<T, N, F> {

@@ -85,6 +85,11 @@ impl<T: Scalar, const N: usize, const F: usize> Forces<T, N, F> {
                 Outcome::Failed(Status::Numerical)
             }
         };
+        (self.inside(), outcome)
+    }
+
+    /// The last iterate, brought inside all limits.
+    pub(crate) fn inside(&self) -> [Vector3<T>; F] {
         let mut forces = self.forces;
         for (foot, force) in forces.iter_mut().enumerate() {
             if !force.iter().all(|x| x.is_finite_number()) {
@@ -92,7 +97,7 @@ impl<T: Scalar, const N: usize, const F: usize> Forces<T, N, F> {
             }
             self.limits.shorten(foot, force);
         }
-        (forces, outcome)
+        forces
     }
 
     /// The rows of the last tick as they are now.

@@ -1,6 +1,7 @@
 //! What a URDF does not say of a robot's hardware, by rules that it does say enough for.
 
 use super::{Data, JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, Shapes, State};
+use crate::stored::joint_name;
 use a1_model::BUILD;
 use nalgebra::Vector3;
 use rbd_core::{Budgets, Build, Link, Model, Motor, Shape, Tree};
@@ -66,23 +67,19 @@ impl Quadruped {
     pub fn placeholders(&self) -> Vec<String> {
         let scale = self.mass() * 9.81 * self.leg_length;
         let limits: &[_; JOINTS] = Model::limits(self);
-        let names = Model::<f64, JOINTS>::joint_names(self);
-        let mut told = Vec::new();
-        for (limit, name) in limits.iter().zip(names) {
-            if limit.effort > NO_MOTOR * scale {
-                told.push(format!(
-                    "joint {name}: an effort limit of {} N m is a placeholder (the robot's weight on its leg is {scale:.1} N m)",
-                    limit.effort
-                ));
-            }
-            if limit.speed > NO_GEAR {
-                told.push(format!(
-                    "joint {name}: a velocity limit of {} rad/s is a placeholder",
-                    limit.speed
-                ));
-            }
-        }
-        told
+        let named = |what: &str, unit: &str, of: &dyn Fn(usize) -> f64, most: f64| {
+            let beyond: Vec<usize> = (0..JOINTS).filter(|i| of(*i) > most).collect();
+            let first = *beyond.first()?;
+            Some(format!(
+                "{what} limits of {} joints ({}: {} {unit}) are placeholders: no motor of this robot gives more than {most:.0} {unit}",
+                beyond.len(),
+                joint_name(self, first),
+                of(first),
+            ))
+        };
+        let effort = named("effort", "N m", &|i| limits[i].effort, NO_MOTOR * scale);
+        let speed = named("velocity", "rad/s", &|i| limits[i].speed, NO_GEAR);
+        effort.into_iter().chain(speed).collect()
     }
 }
 

@@ -45,7 +45,7 @@ pub struct Data {
     pub legs: [usize; LEGS],
     /// Centres of the balls of the feet.
     pub feet: [Frame<f64>; LEGS],
-    /// Radius of the balls, m; 0 for points.
+    /// Radius of the balls, m.
     pub foot_radius: f64,
     /// Middle of each foot's workspace at the height of its hip: where the foot hangs with the hip's first joint at zero,
     /// base axes, m.

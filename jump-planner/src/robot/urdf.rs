@@ -2,7 +2,7 @@
 //!
 //! Required: a floating base with exactly twelve joints, four legs of three revolute joints that hang from the base, one leg per quadrant
 //! around the base (x forwards, y to the left), effort and speed limits. The foot of a leg is the frame on its last link that is farthest
-//! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else the foot is a point. The trunk is the
+//! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else 1 mm. The trunk is the
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
 use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
@@ -18,6 +18,8 @@ use std::path::Path;
 
 /// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
 const SEED_LEG: f64 = 0.65;
+/// Radius of a foot without a ball, m: simulators do not feel points.
+const POINT: f64 = 1e-3;
 /// Joint positions that are tried per joint.
 const SEED_STEPS: usize = 25;
 /// How far the sides of a trunk without a box are inside of the hips' joints, as a share of the leg: half a hip and half a thigh.
@@ -130,7 +132,7 @@ impl Quadruped {
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
         let mut feet = [Frame::IDENTITY; LEGS];
-        let mut foot_radius = 0.0;
+        let mut foot_radius = POINT;
         for (leg, foot) in feet.iter_mut().enumerate() {
             let last = Link::Joint(3 * leg + 2);
             let reach = |frame: &Frame<f64>| Vector3::from(frame.offset).norm();

@@ -4,6 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use jump_planner::planned::Planner;
+use jump_planner::robot::Quadruped;
 
 /// Options of every command that prints a result.
 #[derive(clap::Args, Clone, Copy)]
@@ -17,6 +18,15 @@ pub(crate) struct Output {
 }
 
 impl Output {
+    /// Names limits of a robot that are none.
+    pub(crate) fn warn_of(self, robot: &Quadruped) {
+        if !self.quiet {
+            for placeholder in robot.placeholders() {
+                tell!("saltus: warning: {}: {placeholder}", robot.name);
+            }
+        }
+    }
+
     /// Whether text for people is wanted.
     pub(crate) fn is_text(self) -> bool {
         !self.json && !self.quiet

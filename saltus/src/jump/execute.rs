@@ -312,7 +312,9 @@ pub(crate) fn run_watched(
         }
         let tick = machine.tick(t, heard.as_ref());
         run.count(&tick);
+        let mut commanded_forces_w = [Vector3::zeros(); FOOT_COUNT];
         if let Work::Landing(Outcome::Solved(_) | Outcome::Failed(_)) = tick.work {
+            commanded_forces_w = machine.workspace().forces_w();
             watch(machine.workspace());
         }
         if k.is_multiple_of(trial.interface.period_ms()) {
@@ -320,14 +322,10 @@ pub(crate) fn run_watched(
         }
         let planned = sample(&jump.plan, t, node);
         node = planned.node;
-        run.samples.push(record(
-            &robot,
-            &world,
-            machine.phase(),
-            &jump.plan,
-            &planned,
-            t,
-        ));
+        run.samples.push(Sample {
+            commanded_forces_w,
+            ..record(&robot, &world, machine.phase(), &jump.plan, &planned, t)
+        });
         for i in 0..RATIO {
             let now = t + f64::from(i) * world.plant().tick();
             let (asked, speeds) = drive.step(&mut machine, (&mut world, &mut sensors), now)?;
@@ -374,5 +372,6 @@ fn record(
         planned_position: node.map_or_else(Vector3::zeros, |n| n.base.translation),
         planned_joints: planned.joints,
         planned_forces_w: node.map_or([Vector3::zeros(); FOOT_COUNT], |n| n.forces_w),
+        commanded_forces_w: [Vector3::zeros(); FOOT_COUNT],
     }
 }

@@ -26,7 +26,7 @@ pub(crate) struct Judged {
 }
 
 /// Tilt of the body, degrees.
-fn tilt(s: &Sample) -> f64 {
+pub(crate) fn tilt(s: &Sample) -> f64 {
     let up = s.orientation * Vector3::z();
     so3::math::atan2(so3::math::hypot(up.x, up.y), up.z).to_degrees()
 }
@@ -165,6 +165,8 @@ impl Judged {
             "sim": trial.sim.name(),
             "seed": trial.seed,
             "interface": trial.interface.to_string(),
+            "robot": task.robot.name,
+            "placeholders": task.robot.placeholders(),
             "plant": trial.disturbance.json(),
             "on_target": verdict.on_target(),
             "verdict": verdict.json(),
@@ -244,6 +246,7 @@ mod tests {
             planned_position: Vector3::zeros(),
             planned_joints: [0.0; 12],
             planned_forces_w: [Vector3::zeros(); 4],
+            commanded_forces_w: [Vector3::zeros(); 4],
         }
     }
 

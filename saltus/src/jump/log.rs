@@ -24,6 +24,8 @@ pub(crate) struct Sample {
     pub(crate) planned_position: Vector3<f64>,
     pub(crate) planned_joints: [f64; JOINTS],
     pub(crate) planned_forces_w: [Vector3<f64>; FOOT_COUNT],
+    /// What the landing's quadratic program commanded in this millisecond; zero where there was none.
+    pub(crate) commanded_forces_w: [Vector3<f64>; FOOT_COUNT],
 }
 
 /// Short names of the feet: the places of their legs.
@@ -47,7 +49,7 @@ pub(crate) fn table(robot: &Quadruped, samples: &[Sample]) -> Log {
     for kind in ["q", "qd", "tau", "q_plan"] {
         columns.extend(joints.iter().map(|name| format!("{kind}_{name}")));
     }
-    for kind in ["f", "f_plan"] {
+    for kind in ["f", "f_plan", "f_command"] {
         for foot in foot_names(robot) {
             columns.extend(["x", "y", "z"].map(|axis| format!("{kind}_{foot}_{axis}")));
         }
@@ -65,7 +67,8 @@ pub(crate) fn table(robot: &Quadruped, samples: &[Sample]) -> Log {
             .chain(&s.torques)
             .chain(&s.planned_joints)
             .chain(s.forces_w.iter().take(FOOT_COUNT).flat_map(|f| f.iter()))
-            .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()));
+            .chain(s.planned_forces_w.iter().flat_map(|f| f.iter()))
+            .chain(s.commanded_forces_w.iter().flat_map(|f| f.iter()));
         (s.time, s.phase, numbers.copied().collect())
     });
     Log::new(columns, rows)

@@ -11,7 +11,7 @@ use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use nalgebra::Vector3;
-use rbd_core::Transform;
+use rbd_core::{Link, Transform};
 use serde_json::{Value, json};
 
 /// The report's text.
@@ -44,11 +44,7 @@ pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]
 
 /// Hip, thigh, calf and foot of each leg.
 fn limbs(robot: &Quadruped, s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
-    let q = State {
-        base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
-        joints: s.joints,
-    };
-    let poses = robot.poses(&q);
+    let poses = robot.poses(&state(s));
     core::array::from_fn(|leg| {
         let link = |i: usize| poses.bodies[3 * leg + i].translation;
         [
@@ -58,6 +54,23 @@ fn limbs(robot: &Quadruped, s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
             poses.frame(&robot.feet[leg]).translation,
         ]
     })
+}
+
+/// Orientations of the links, as x, y, z, w.
+fn turns(robot: &Quadruped, s: &Sample) -> [Value; JOINTS] {
+    let poses = robot.poses(&state(s));
+    core::array::from_fn(|i| {
+        let turn = so3::quat::from_rotation(&poses.bodies[i].rotation);
+        json!(so3::quat::to_xyzw(&turn).map(|x| round(x, 4)))
+    })
+}
+
+/// Where the robot is.
+fn state(s: &Sample) -> State {
+    State {
+        base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
+        joints: s.joints,
+    }
 }
 
 /// The run as MCAP.
@@ -90,6 +103,7 @@ fn frames(robot: &Quadruped, samples: &[Sample]) -> Value {
         "position": each(&|s| vector(&s.position)),
         "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
         "com": each(&|s| vector(&s.com)),
+        "turns": each(&|s| json!(turns(robot, s))),
         "points": each(&|s| json!(limbs(robot, s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&|s| json!(s.forces_w[..FOOT_COUNT].iter().map(vector).collect::<Vec<_>>())),
     })
@@ -102,6 +116,12 @@ fn scene(task: &Task) -> Value {
         "block": terrain.block.map(|block| [block.lower, block.upper]),
         "foot_radius": task.robot.foot_radius,
         "trunk": task.robot.trunk(),
+        "shapes": task.robot.shapes.map(|shape| json!({
+            "link": if let Link::Joint(i) = shape.link { json!(i) } else { json!(-1) },
+            "from": shape.from,
+            "to": shape.to,
+            "radius": shape.radius,
+        })),
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })
@@ -179,12 +199,21 @@ fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Va
             .into_iter()
             .enumerate()
             .flat_map(|(leg, name)| {
-                let planned = move |s: &Sample| s.planned_forces_w[leg][axis];
+                // In the air and before it the plan, on the ground again what the landing's program commands.
+                let wanted = move |s: &Sample| {
+                    s.planned_forces_w[leg][axis] + s.commanded_forces_w[leg][axis]
+                };
                 [
                     curve(name, COLORS[leg], false, samples, move |s| {
                         s.forces_w[leg][axis]
                     }),
-                    curve(&format!("{name} plan"), COLORS[leg], true, samples, planned),
+                    curve(
+                        &format!("{name} command"),
+                        COLORS[leg],
+                        true,
+                        samples,
+                        wanted,
+                    ),
                 ]
             })
             .collect();

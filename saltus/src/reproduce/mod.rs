@@ -5,6 +5,7 @@ mod exponential;
 pub(crate) mod humanoid;
 pub(crate) mod page;
 pub(crate) mod quadruped;
+mod touchdown;
 
 use crate::cmd::expected::Found;
 use crate::jump::plant::Sim;

@@ -1,11 +1,11 @@
 //! Paper A: the jumps of A1.
 
+use super::touchdown;
 use super::{Row, direct, exponential, write_report};
 use crate::jump::execute::{self, Run};
 use crate::jump::judge::Judged;
-use crate::jump::log::Sample;
 use crate::jump::plant::Sim;
-use crate::jump::{FOOT_COUNT, report};
+use crate::jump::report;
 use core::ops::ControlFlow;
 use jump_planner::answer::Answer;
 use jump_planner::bounds::impossible;
@@ -70,12 +70,12 @@ const TABLE: [Tabled; 7] = [
 const SHOWN: [(&str, &str, &str); 5] = [
     (
         "a1/diagonal",
-        "Fig. 9, 10: diagonal jump",
+        "Fig. 9: diagonal jump",
         "tracked accurately, landing handles the impact",
     ),
     (
         "a1/barrel-roll-box",
-        "Fig. 1, 11: barrel roll off 0.4 m",
+        "Fig. 1: barrel roll off 0.4 m",
         "recovers position and orientation",
     ),
     (
@@ -175,13 +175,25 @@ pub(crate) fn rows(
                 .and_then(|planned| fly(planned, sim, folder, "").map(|flown| (planned, flown)));
             match flown {
                 Ok((planned, (run, judged))) => {
-                    if name == "a1/double-backflip" {
-                        rows.push(swing_legs(&planned.reference, &run, &judged, sim));
+                    match name {
+                        "a1/double-backflip" => {
+                            rows.push(touchdown::swing_legs(
+                                &planned.reference,
+                                &run,
+                                &judged,
+                                sim,
+                            ));
+                        }
+                        "a1/diagonal" => rows.push(touchdown::tracked(&planned.task, &run, sim)),
+                        "a1/barrel-roll-box" => {
+                            rows.push(touchdown::recovered(&planned.task, &run, sim));
+                        }
+                        _ => {}
                     }
                     rows.push(row.ours(
                         format!(
                             "joints within {:.1}° of the plan before contact; {}",
-                            tracking(&run),
+                            touchdown::tracking(&run),
                             outcome(&judged)
                         ),
                         judged.verdict.on_target(),
@@ -456,51 +468,7 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
     }
 }
 
-/// Remark 2: feet that land at different times.
-fn swing_legs(reference: &Reference, run: &Run, judged: &Judged, sim: Sim) -> Row {
-    let after = run
-        .samples
-        .iter()
-        .filter(|s| s.time > reference.takeoff + 0.1);
-    let lands = |foot: usize| {
-        after
-            .clone()
-            .find(|s| s.forces_w[foot].norm() > 1.0)
-            .map(|s| s.time)
-    };
-    let times: Vec<f64> = (0..FOOT_COUNT).filter_map(lands).collect();
-    let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-    let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Row::new(
-        'A',
-        "Remark 2: legs in the air wait in their posture while others have landed, double backflip",
-        "feet do not land at once",
-    )
-    .simulated(sim)
-    .ours(
-        format!(
-            "{} feet land within {:.0} ms; {}",
-            times.len(),
-            (last - first) * 1e3,
-            outcome(judged)
-        ),
-        judged.verdict.stands() && times.len() == FOOT_COUNT,
-        "holds when all feet land and the robot stays upright",
-    )
-}
-
-/// Largest error of a joint between take-off's start and the first contact, degrees.
-fn tracking(run: &Run) -> f64 {
-    let end = run.first_contact.unwrap_or(f64::INFINITY);
-    let jump = run.samples.iter().filter(|s| s.time >= 0.0 && s.time < end);
-    let error = |s: &Sample| {
-        let pairs = s.joints.iter().zip(&s.planned_joints);
-        pairs.fold(0.0, |m, (q, plan)| f64::max(m, (q - plan).abs()))
-    };
-    jump.map(error).fold(0.0, f64::max).to_degrees()
-}
-
-fn outcome(judged: &Judged) -> String {
+pub(super) fn outcome(judged: &Judged) -> String {
     let verdict = &judged.verdict;
     let end = verdict.stand.map_or("no touchdown".to_owned(), |stand| {
         let up = if stand.upright { "upright" } else { "fallen" };

@@ -51,6 +51,7 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         task.fix_timing(timing)?;
     }
     let task = report.task.insert(task);
+    args.output.warn_of(&task.robot);
     let timing = if args.direct {
         Timing::Free
     } else {

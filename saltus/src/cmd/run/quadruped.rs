@@ -45,6 +45,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         return Err("--task is for stored plans: give the task alone".into());
     } else {
         let task = Task::load_for(&args.what, args.robot.as_deref(), &args.lock)?;
+        args.output.warn_of(&task.robot);
         if let Some(proof) = impossible(&task) {
             bar.finish_and_clear();
             return Ok(refuse(args, &task, &Answer::proven(proof)));

@@ -1,0 +1,63 @@
+//! A quadruped from its URDF jumps as the built-in one does: with its own motors, shapes and gains, in both simulators.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("robot-{name}"));
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// The text of A1's URDF, which says nothing of motors but effort and speed.
+fn urdf() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/a1.urdf");
+    fs::read_to_string(path).unwrap()
+}
+
+fn run(folder: &Path, task: &str, sim: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["run", task, "--robot", "robot.urdf", "--sim", sim])
+        .args(["--json", "--out", &format!("{sim}-out")])
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn a_robot_from_its_urdf_is_on_target() {
+    let folder = folder("jumps");
+    fs::write(folder.join("robot.urdf"), urdf()).unwrap();
+    let sims: &[&str] = if cfg!(feature = "mujoco") {
+        &["native", "mujoco"]
+    } else {
+        &["native"]
+    };
+    for sim in sims {
+        let output = run(&folder, "a1/spin-90", sim);
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(json["on_target"], true, "{sim}: {}", json["verdict"]);
+        assert_eq!(json["placeholders"], serde_json::json!([]));
+        assert!(folder.join(format!("{sim}-out/report.html")).exists());
+    }
+}
+
+/// A limit of effort that no motor of this size has is told, before anything is planned with it.
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn a_placeholder_for_a_limit_is_named() {
+    let folder = folder("placeholder");
+    let strong = urdf().replace("effort=\"33.5\"", "effort=\"1000\"");
+    fs::write(folder.join("robot.urdf"), strong).unwrap();
+    let output = run(&folder, "a1/lateral", "native");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("1000 N m") && said.contains("placeholders"),
+        "{said}"
+    );
+}
