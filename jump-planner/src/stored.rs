@@ -197,8 +197,8 @@ fn record(robot: &Quadruped, phase: u8, node: &Node) -> PlanNode<JOINTS, FOOT_CO
         joint_velocities: node.joint_velocities.map(|x| x as f32),
         torques: node.torques.map(|x| x as f32),
         forces_w: node.forces_w.map(|f| single(f.into())),
-        feet_b: feet_b,
-        foot_velocities_b: foot_velocities_b,
+        feet_b,
+        foot_velocities_b,
     }
 }
 
