@@ -9,7 +9,7 @@ use so3::{Scalar, math};
 use crate::plan::{Node, Plan};
 
 /// What feed-forward torques do between nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Torques {
     /// Constant from a node to the next: for plans with one torque per interval.
     Hold,

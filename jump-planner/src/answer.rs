@@ -345,7 +345,7 @@ fn stronger(task: &Task, srb: &SrbPlan) -> Option<String> {
         joints.enumerate().map(|(i, speed)| (speed.abs(), i))
     });
     let (speed, j) = speeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let bytes = super::stored::store(&strong, &plan, false).ok()?;
+    let bytes = super::stored::store(&strong, &plan).ok()?;
     let stored = super::stored::open(&bytes, &task.robot).ok()?;
     let audit = Audit::of(&task.robot, &stored).ok()?;
     Some(format!(

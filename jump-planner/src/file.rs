@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
-/// Longest file that is read, bytes: a plan with all its gains takes less than one of these 64 MiB.
+/// Longest file that is read, bytes: plans take less than one of these 64 MiB.
 const LONGEST: u64 = 64 << 20;
 
 /// The bytes of a file.

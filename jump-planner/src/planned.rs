@@ -139,7 +139,7 @@ fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
     let clock = Instant::now();
     let plan = whole_body::plan(&light, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
     let solved = solved(task, &plan, clock.elapsed().as_secs_f64() * 1e3)?;
-    let bytes = store(&light, &plan, false)?;
+    let bytes = store(&light, &plan)?;
     follow(task, &light.robot, &bytes, Origin::RigidBody(solved))
 }
 

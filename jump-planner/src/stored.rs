@@ -3,46 +3,42 @@
 use super::planned::{Origin, node, peaks};
 use super::reference::{Reference, standing};
 use super::task::Task;
-use super::whole_body::{Interval, POSED, WholeBodyPlan};
+use super::whole_body::{POSED, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
 use crate::robot::Quadruped;
 use jump_control::Torques;
 use jump_control::container::{
-    Container, ContainerError, GroundStep, Header, MOST_PHASES, Margins, NodeGains, PlanNode,
-    PlanPhase, Row, model_hash, write,
+    Container, ContainerError, GroundStep, Header, LONGEST_TASK, MOST_PHASES, Margins, PlanNode,
+    PlanPhase, model_hash, write,
 };
 use rbd_core::{Configuration, Model, Tangent};
-use wb_opt::{BASE, Phase};
+use std::path::Path;
+use wb_opt::Phase;
 
 /// A plan's container, for a quadruped.
 pub type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
 
-/// Bytes of the header and of everything else that is not a node.
-const OVERHEAD: usize = 1024;
 /// Joint angles that differ by less are the same posture: what single precision leaves, and more, rad.
 const SAME_POSTURE: f64 = 1e-4;
 
-/// The container of a plan, with its feedback gains or without; its nodes begin with the posture in which the robot waits.
+/// The container of a plan; its nodes begin with the posture in which the robot waits.
 ///
 /// # Errors
-/// More nodes or a longer name than a container takes.
-pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<u8>, String> {
+/// More nodes or a longer name than a container takes, or a robot that cannot stand or land.
+pub fn store(task: &Task, plan: &WholeBodyPlan) -> Result<Vec<u8>, String> {
     let robot = &task.robot;
     let mut nodes = vec![record(robot, 0, &standing(task)?)];
-    let mut gains = vec![NodeGains::default()];
     let contacts = plan.phases.iter().enumerate();
     let phase_of = contacts.flat_map(|(i, phase)| core::iter::repeat_n(i as u8, phase.intervals));
     for (interval, phase) in plan.intervals.iter().zip(phase_of) {
         let at = node(interval.start, &interval.state, Some(interval));
         nodes.push(record(robot, phase, &at));
-        gains.push(feedback(interval));
     }
     let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
     let touchdown: f64 = plan.phases.iter().map(duration).sum();
     let last = plan.phases.len().saturating_sub(1) as u8;
     let end = node(touchdown, &plan.end, None);
     nodes.push(record(robot, last, &end));
-    gains.push(NodeGains::default());
     let takeoff: f64 = plan
         .phases
         .iter()
@@ -58,7 +54,7 @@ pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<
         };
     }
     let header = Header {
-        task: &task.name,
+        task: short(&task.name),
         robot: robot.name,
         torques: Torques::Hold,
         takeoff: takeoff as f32,
@@ -75,18 +71,30 @@ pub fn store(task: &Task, plan: &WholeBodyPlan, with_gains: bool) -> Result<Vec<
             speed_share: task.limits.speed_share as f32,
             weight: (task.problem.mass * task.problem.gravity) as f32,
         },
+        goal_w: goal(task).0,
+        heading: goal(task).1,
+        landing_joints: robot.landing_joints(&task.start)?.map(|x| x as f32),
+        // What is written counts them.
         nodes: 0,
-        has_gains: with_gains,
     };
-    if !with_gains {
-        gains.clear();
-    }
-    let bytes = Stored::NODE_BYTES + Stored::GAIN_BYTES;
-    let mut out = vec![0; OVERHEAD + task.name.len() + nodes.len() * bytes];
-    let length =
-        write(&mut out, hash(robot), &header, &nodes, &gains).map_err(|e| e.to_string())?;
-    out.truncate(length);
+    let mut out = vec![0; Stored::size(nodes.len())];
+    write(&mut out, hash(robot), &header, &nodes).map_err(|error| error.to_string())?;
     Ok(out)
+}
+
+/// A task's name as far as there is room: where the path of its file is too long, the file's own name, for which `--task` makes up.
+fn short(name: &str) -> &str {
+    if name.len() <= LONGEST_TASK {
+        return name;
+    }
+    let file = Path::new(name).file_name().and_then(|file| file.to_str());
+    file.unwrap_or(name)
+}
+
+/// Wanted displacement of the base, m, and heading, rad, as they are stored.
+fn goal(task: &Task) -> ([f32; 3], f32) {
+    let goal: [f64; 3] = task.goal.into();
+    (goal.map(|x| x as f32), task.heading as f32)
 }
 
 fn ground(task: &Task) -> Option<GroundStep> {
@@ -101,12 +109,18 @@ fn ground(task: &Task) -> Option<GroundStep> {
 /// A stored plan as the controller follows it, with the task that it is judged by.
 ///
 /// # Errors
-/// A sentence: of another box, or from another posture.
+/// A sentence: of another box, to another goal, or from another posture.
 pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
     let header = plan.header();
     if header.ground != ground(task) {
         return Err(format!(
             "the plan is for another box than task {}: plan again",
+            task.name
+        ));
+    }
+    if (header.goal_w, header.heading) != goal(task) {
+        return Err(format!(
+            "the plan has another goal than task {}: plan again",
             task.name
         ));
     }
@@ -129,7 +143,7 @@ pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
         takeoff,
         posing: f64::from(header.posing),
         touchdown: f64::from(header.touchdown),
-        landing_joints: task.robot.landing_joints(&task.start)?,
+        landing_joints: header.landing_joints.map(f64::from),
         durations: phases.map(|phase| f64::from(phase.duration)).collect(),
         peak_torque,
         peak_friction,
@@ -171,39 +185,20 @@ fn record(robot: &Quadruped, phase: u8, node: &Node) -> PlanNode<JOINTS, FOOT_CO
         let velocity_w = robot.jacobian(&kinematics, frame).mul(&legs_only).linear;
         foot_velocities_b[leg] = single((to_base * velocity_w).into());
     }
-    let quat_wb = so3::quat::to_xyzw(&so3::quat::from_rotation(&node.base.rotation));
+    let rotation = node.base.rotation.matrix();
+    let rows: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|k| rotation[(i, k)]));
     PlanNode {
         phase,
         time: node.time as f32,
         position_w: single(node.base.translation.into()),
-        rotation_wb: quat_wb.map(|x| x as f32),
+        rotation_wb: rows.map(single),
         velocity_b: node.base_velocity.to_array().map(|x| x as f32),
-        joints: Row(node.joints.map(|x| x as f32)),
-        joint_velocities: Row(node.joint_velocities.map(|x| x as f32)),
-        torques: Row(node.torques.map(|x| x as f32)),
-        forces_w: Row(node.forces_w.map(|f| single(f.into()))),
-        feet_b: Row(feet_b),
-        foot_velocities_b: Row(foot_velocities_b),
-    }
-}
-
-fn feedback(interval: &Interval) -> NodeGains<JOINTS> {
-    let gains = &interval.gains;
-    let base = |rows: &[[f64; super::whole_body::N]; super::whole_body::N]| {
-        Row(core::array::from_fn(|i| {
-            core::array::from_fn(|k| rows[BASE + i][k] as f32)
-        }))
-    };
-    let joints = |rows: &[[f64; super::whole_body::N]; super::whole_body::N]| {
-        Row(core::array::from_fn(|i| {
-            Row(core::array::from_fn(|k| rows[BASE + i][BASE + k] as f32))
-        }))
-    };
-    NodeGains {
-        by_base: base(&gains.effort_by_q),
-        by_joints: joints(&gains.effort_by_q),
-        by_base_rates: base(&gains.effort_by_v),
-        by_joint_rates: joints(&gains.effort_by_v),
+        joints: node.joints.map(|x| x as f32),
+        joint_velocities: node.joint_velocities.map(|x| x as f32),
+        torques: node.torques.map(|x| x as f32),
+        forces_w: node.forces_w.map(|f| single(f.into())),
+        feet_b,
+        foot_velocities_b,
     }
 }
 

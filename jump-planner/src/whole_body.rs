@@ -96,7 +96,7 @@ pub fn audited(
         wall_ms += clock.elapsed().as_secs_f64() * 1e3;
         let (mut bytes, mut audit) = (Vec::new(), None);
         if plan.outcome.status == Status::Solved {
-            bytes = store(task, &plan, false)?;
+            bytes = store(task, &plan)?;
             let stored = open(&bytes, &task.robot).map_err(|error| error.to_string())?;
             audit = Some(Audit::of(&task.robot, &stored)?);
         }

@@ -79,7 +79,7 @@ impl Robot {
         Self::of(Urdf::parse(text)?, options.base, options)
     }
 
-    /// Imports the text of an MJCF, its includes resolved by [`mjcf::read`](crate::mjcf::read).
+    /// Imports the text of an MJCF, its includes resolved by [`mjcf::read`].
     ///
     /// The file says whether the base floats: by a free joint, which `options.base` fixed welds to the world.
     ///

@@ -33,6 +33,10 @@ fn folder() -> PathBuf {
         ("nan.toml", goal("nan, 0.3, 0.0")),
         ("far.toml", goal("50.0, 0.3, 0.0")),
         ("short.bin", "SLTS".to_owned()),
+        (
+            "old.bin",
+            "SLTS\u{1}\0\u{c}\u{4}its sixteen bytes".to_owned(),
+        ),
         ("arm.urdf", arm.to_owned()),
         ("urdf.txt", "not XML".to_owned()),
     ] {
@@ -66,6 +70,7 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
         &["run", "short.bin"],
         &["short.bin", "cut off", "copy the plan again"],
     ),
+    (&["run", "old.bin"], &["old.bin", "version 1", "plan again"]),
     (&["run", "urdf.txt"], &["urdf.txt", "cut off"]),
     (
         &["run", "a1/lateral", "--task", "a1/lateral"],
@@ -151,6 +156,10 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     ),
     (&["plan", "--problem", "empty.toml"], &["empty.toml"]),
     (&["verify", "short.bin"], &["short.bin", "cut off"]),
+    (
+        &["verify", "old.bin"],
+        &["old.bin", "version 1", "plan again"],
+    ),
     (&["verify", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["verify", "nowhere"], &["nowhere", "check the path"]),
     (&["import", "folder.urdf"], &["folder.urdf", "give a file"]),

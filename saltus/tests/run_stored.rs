@@ -77,4 +77,13 @@ fn a_stored_plan_jumps_as_the_one_that_was_just_made() {
     assert_eq!(other.status.code(), Some(2));
     let said = String::from_utf8_lossy(&other.stderr);
     assert!(said.contains("plan again"), "{said}");
+
+    // Nor is another task's goal.
+    let nearer = lateral.replace("goal_m = [0.0, 0.3, 0.0]", "goal_m = [0.0, 0.25, 0.0]");
+    assert_ne!(nearer, lateral);
+    std::fs::write(folder.join("nearer.toml"), nearer).unwrap();
+    let other = run(&["run", "plan/plan.bin", "--task", "nearer.toml"]);
+    assert_eq!(other.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&other.stderr);
+    assert!(said.contains("another goal"), "{said}");
 }

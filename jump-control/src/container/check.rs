@@ -2,31 +2,23 @@
 
 use so3::math;
 
-use super::{Container, ContainerError, Header, NodeGains, PlanNode, Row};
+use super::{Container, ContainerError, Header, PlanNode};
 
 /// Farthest place, m, and fastest motion, m/s or rad/s, of any robot this is for.
 const FAR: f32 = 100.0;
-/// How far a quaternion's length may be from 1.
-const UNIT: f32 = 1e-4;
 /// Times that differ by less are the same, s: sums of single-precision durations.
 const SAME_TIME: f32 = 1e-3;
 /// How far a force may be outside its cone, as a share of the largest: solvers stop within their tolerance.
 const CONE: f32 = 5e-3;
 /// Largest normal force in multiples of the one that the rigid body's plan may use: single legs of the whole body come to three.
 const MOST: f32 = 10.0;
-/// Largest gain, N m per m, rad, m/s or rad/s: those of plans that touch many limits at once come to a hundredth of it.
-const GAIN: f32 = 1e10;
-/// How much larger than those of every other node a node's gains may be: they follow a motion that is smooth. Four times is what plans have.
-const LEAP: f32 = 100.0;
-/// Kinds of gains: by the base and by the joints, and by their rates.
-const KINDS: usize = 4;
 
 type Checked = Result<(), ContainerError>;
 
 impl<const N: usize, const F: usize> Container<'_, N, F> {
     /// Looks at every number: all are finite, times increase up to the touchdown, phases follow each other, rotations are rotations, feet on
-    /// the ground push within their cone and feet in the air do not, gains are such as a controller may use. What depends on the robot's
-    /// joints is left to who knows them. Takes as long as reading the container once more.
+    /// the ground push within their cone and feet in the air do not. What depends on the robot's joints is left to who knows them. Takes as
+    /// long as reading the container once more.
     ///
     /// # Errors
     /// [`ContainerError::Value`] names the first number that cannot be.
@@ -53,8 +45,7 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
             before = Some(node);
         }
         let end = before.map_or(f32::NAN, |node| node.time);
-        header(near(end, self.header.touchdown), "time of the last node")?;
-        self.check_gains()
+        header(near(end, self.header.touchdown), "time of the last node")
     }
 
     fn check_header(&self) -> Checked {
@@ -91,75 +82,11 @@ impl<const N: usize, const F: usize> Container<'_, N, F> {
                 && step.drop.abs() <= FAR
                 && step.distance.abs() <= FAR
         });
-        header(step, "ground")
+        header(step, "ground")?;
+        let all = |xs: &[f32]| xs.iter().all(|x| x.abs() <= FAR);
+        header(all(&h.goal_w) && all(&[h.heading]), "goal")?;
+        header(all(&h.landing_joints), "landing posture")
     }
-
-    /// All within bounds, and none that stands alone.
-    fn check_gains(&self) -> Checked {
-        let mut most = [Leader::default(); KINDS];
-        for i in 0..self.header.nodes {
-            let Some(gains) = self.gains(usize::from(i)) else {
-                break;
-            };
-            for (leader, x) in most.iter_mut().zip(largest(&gains)) {
-                if x.is_nan() || x > GAIN {
-                    return Err(ContainerError::Value {
-                        node: Some(i),
-                        what: "gains",
-                    });
-                }
-                leader.meet(i, x);
-            }
-        }
-        let alone = most
-            .iter()
-            .find(|leader| leader.first > LEAP * leader.second);
-        match alone {
-            Some(leader) => Err(ContainerError::Value {
-                node: Some(leader.node),
-                what: "gains",
-            }),
-            None => Ok(()),
-        }
-    }
-}
-
-/// The largest and the second largest value of any node.
-#[derive(Clone, Copy, Default)]
-struct Leader {
-    node: u16,
-    first: f32,
-    second: f32,
-}
-
-impl Leader {
-    fn meet(&mut self, node: u16, x: f32) {
-        if x > self.first {
-            (self.node, self.first, self.second) = (node, x, self.first);
-        } else if x > self.second {
-            self.second = x;
-        }
-    }
-}
-
-/// The largest gain of each kind; NaN where one is.
-fn largest<const N: usize>(gains: &NodeGains<N>) -> [f32; KINDS] {
-    // What is not a number stays.
-    let most = |most: f32, x: &f32| {
-        if x.abs() <= most || most.is_nan() {
-            most
-        } else {
-            x.abs()
-        }
-    };
-    let base = |rows: &[[f32; 6]; N]| rows.as_flattened().iter().fold(0.0, most);
-    let joints = |rows: &[Row<f32, N>; N]| rows.iter().flat_map(|row| &row.0).fold(0.0, most);
-    [
-        base(&gains.by_base.0),
-        joints(&gains.by_joints.0),
-        base(&gains.by_base_rates.0),
-        joints(&gains.by_joint_rates.0),
-    ]
 }
 
 /// Fails where the header, or the nodes as a whole, cannot be.
@@ -189,17 +116,13 @@ fn order<const N: usize, const F: usize>(
 
 /// What is wrong with a node. The last one holds nothing, so its forces are not looked at.
 fn fault<const N: usize, const F: usize>(
-    h: &Header<'_>,
+    h: &Header<'_, N>,
     node: &PlanNode<N, F>,
     last: bool,
 ) -> Option<&'static str> {
     let all = |xs: &[f32]| xs.iter().all(|x| x.abs() <= FAR);
-    let length = node
-        .rotation_wb
-        .iter()
-        .fold(0.0, |sum, x| sum + f64::from(*x) * f64::from(*x));
     let finite = |xs: &[f32]| xs.iter().all(|x| x.is_finite());
-    let forces = node.forces_w.0.as_flattened();
+    let forces = node.forces_w.as_flattened();
     let phase = h
         .phases
         .get(..usize::from(h.phase_count))
@@ -216,22 +139,16 @@ fn fault<const N: usize, const F: usize>(
         ),
         (phase.is_some(), "phase"),
         (all(&node.position_w), "position of the base"),
-        (
-            (math::sqrt(length) - 1.0).abs() <= f64::from(UNIT),
-            "rotation of the base",
-        ),
+        (node.has_rotation(), "rotation of the base"),
         (all(&node.velocity_b), "velocity of the base"),
-        (all(&node.joints.0), "joints"),
-        (all(&node.joint_velocities.0), "joint velocities"),
-        (finite(&node.torques.0), "torques"),
+        (all(&node.joints), "joints"),
+        (all(&node.joint_velocities), "joint velocities"),
+        (finite(&node.torques), "torques"),
         (finite(forces), "forces"),
+        (last || node.forces_w.iter().enumerate().all(push), "forces"),
+        (all(node.feet_b.as_flattened()), "feet"),
         (
-            last || node.forces_w.0.iter().enumerate().all(push),
-            "forces",
-        ),
-        (all(node.feet_b.0.as_flattened()), "feet"),
-        (
-            all(node.foot_velocities_b.0.as_flattened()),
+            all(node.foot_velocities_b.as_flattened()),
             "velocities of the feet",
         ),
     ];
@@ -243,7 +160,7 @@ fn unless((ok, what): (bool, &'static str)) -> Option<&'static str> {
 }
 
 /// Whether a force is one of the ground: within the cone and not too large under a foot that stands, none under another.
-fn pushes(h: &Header<'_>, f: &[f32; 3], stands: bool) -> bool {
+fn pushes<const N: usize>(h: &Header<'_, N>, f: &[f32; 3], stands: bool) -> bool {
     let [x, y, z] = f.map(f64::from);
     let slack = f64::from(CONE * h.margins.max_force);
     let most = f64::from(MOST * h.margins.max_force);

@@ -46,13 +46,41 @@ pub enum ContainerError {
         /// Which value.
         what: &'static str,
     },
+    /// A name is longer than its field.
+    Name {
+        /// Whose: `task` or `robot`.
+        what: &'static str,
+        /// Bytes of the name.
+        given: usize,
+        /// Bytes of the field.
+        room: usize,
+    },
     /// The caller's storage is too short.
     Buffer {
-        /// Elements that are needed, or an upper bound of them.
+        /// Bytes or nodes that are needed.
         needed: usize,
-        /// Elements that there are.
+        /// Those that there are.
         given: usize,
     },
+}
+
+impl ContainerError {
+    /// The reason without its numbers, which the compiler cannot write.
+    #[must_use]
+    pub const fn reason(&self) -> &'static str {
+        match self {
+            Self::TooShort { .. } => "the plan is cut off: copy it again",
+            Self::NotAPlan => "not a plan: it does not begin with SLTS",
+            Self::Version { .. } => "a plan of another version of the format: plan again",
+            Self::Checksum => "the plan is damaged: its checksum does not fit; copy it again",
+            Self::Size { .. } => "a plan for another robot, with other numbers of joints and feet",
+            Self::Robot { .. } => "a plan for another robot of the same size",
+            Self::Header => "the plan's header contradicts its length",
+            Self::Value { what, .. } => what,
+            Self::Name { .. } => "a name is longer than its field",
+            Self::Buffer { .. } => "the storage is too short",
+        }
+    }
 }
 
 impl fmt::Display for ContainerError {
@@ -95,8 +123,12 @@ impl fmt::Display for ContainerError {
                     "damaged, though its checksum fits: {what} cannot be; plan again"
                 )
             }
+            Self::Name { what, given, room } => write!(
+                f,
+                "the {what}'s name has {given} bytes, a plan has room for {room}: shorten it"
+            ),
             Self::Buffer { needed, given } => {
-                write!(f, "storage for {given} elements, {needed} are needed")
+                write!(f, "storage for {given} bytes or nodes, {needed} are needed")
             }
         }
     }

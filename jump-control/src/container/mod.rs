@@ -1,53 +1,84 @@
-//! A plan as bytes: what a planner writes and a controller reads from flash, without allocation.
+//! A plan as bytes: what a planner writes, what is audited, and what a controller flies, from a file, from memory or from flash; without
+//! allocation. There is no other format. Numbers are little-endian, at fixed places, in single precision: 10⁻⁷ of a joint's range is far
+//! below what an encoder tells. Unused bytes are written as zero.
 //!
-//! | bytes | content |
-//! |---|---|
-//! | 4 | `SLTS` |
-//! | 2 | version |
-//! | 1, 1 | joints, feet |
-//! | 8 | [`model_hash`] of the robot |
-//! | 4 | length of the whole container |
-//! | 4 | CRC-32 (ISO-HDLC) of everything but these four bytes |
-//! | | [`Header`] in `postcard` |
-//! | | one [`PlanNode`] per node in `postcard`, all of equal length |
-//! | | one [`NodeGains`] per node in `postcard`, if the header says so |
+//! | byte | type | content |
+//! |---|---|---|
+//! | 0 | 4 bytes | `SLTS` |
+//! | 4 | u16 | version, 2 |
+//! | 6, 7 | u8, u8 | N joints, F feet |
+//! | 8 | u64 | [`model_hash`] of the robot |
+//! | 16 | u32 | length of the whole container |
+//! | 20 | u32 | CRC-32 (ISO-HDLC) of everything but these four bytes |
+//! | 24 | u8, 255 bytes | task: length of the name, name in UTF-8 |
+//! | 280 | u8, 63 bytes | robot: the same |
+//! | 344 | u8 | torques: 0 held from node to node, 1 linear ([`Torques`](crate::Torques)) |
+//! | 345 | u8 | contact phases in use |
+//! | 346 | u16 | nodes |
+//! | 348 | 3 f32 | take-off, posing, touchdown, s |
+//! | 360 | 8 × (u8, 3 zeros, f32) | phases: feet that stand as bits, duration in s |
+//! | 424 | u8, i8, 2 zeros | box: axis across its edge, side of the landing (0 without a box) |
+//! | 428 | 2 f32 | its drop and the distance of its edge, m |
+//! | 436 | 6 f32 | [`Margins`]: friction, its share, largest force in N, shares of torque and speed, weight in N |
+//! | 460 | 3 f32 | goal: displacement of the base, world axes, m |
+//! | 472 | f32 | goal: heading, rad |
+//! | 476 | N f32 | landing posture, rad |
+//! | 476 + 4 N | | the nodes, each of [`PlanNode::BYTES`] = 4 (20 + 3 N + 9 F) |
 //!
-//! Integers of the first rows are little-endian. Numbers are single precision: 10⁻⁷ of a joint's range is far below what an
-//! encoder tells. A container is refused with the reason: not a plan, another version, cut off, damaged (CRC-32 detects every
-//! burst of up to 32 bits), made for a robot of another size, or for another robot. [`Container::check`] looks at the values too.
+//! | byte of a node | type | content |
+//! |---|---|---|
+//! | 0 | u8, 3 zeros | contact phase |
+//! | 4 | f32 | time, s |
+//! | 8 | 3 f32 | position of the base, world, m |
+//! | 20 | 9 f32 | rotation from base to world, by rows |
+//! | 56 | 6 f32 | velocity of the base, linear then angular, base axes, m/s and rad/s |
+//! | 80 | N f32 | joint positions, rad |
+//! | 80 + 4 N | N f32 | joint velocities, rad/s |
+//! | 80 + 8 N | N f32 | torques, N m |
+//! | 80 + 12 N | 3 F f32 | forces of the ground on the feet, world axes, N |
+//! | 80 + 12 (N + F) | 3 F f32 | feet seen from their hips, base axes, m |
+//! | 80 + 12 (N + 2 F) | 3 F f32 | their velocities relative to the base, base axes, m/s |
+//!
+//! A container is refused with the reason: not a plan, another version, cut off, damaged (the CRC detects every burst of up to 32 bits),
+//! made for a robot of another size, or for another robot. [`Container::check`] looks at the values too. [`flash_plan!`](crate::flash_plan)
+//! has the compiler read it.
 
+mod bytes;
 mod check;
+mod crc;
 mod error;
+mod flash;
 mod hash;
 mod record;
-mod row;
+mod write;
 
 pub use error::ContainerError;
 pub use hash::model_hash;
-pub use record::{GroundStep, Header, MOST_PHASES, Margins, NodeGains, PlanNode, PlanPhase};
-pub use row::Row;
+pub use record::{
+    GroundStep, Header, LONGEST_ROBOT, LONGEST_TASK, MOST_PHASES, Margins, PlanNode, PlanPhase,
+};
+pub use write::write;
 
 use crate::plan::Node;
-use crc::{CRC_32_ISO_HDLC, Crc, Digest};
+use bytes::Reader;
+use crc::Crc;
 use so3::Scalar;
 
 /// First bytes of every container.
 pub const MAGIC: [u8; 4] = *b"SLTS";
 /// The version that this code writes and reads.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Bytes before the header.
 pub const PREFIX: usize = 24;
-/// Where the checksum stands.
+/// Where the checksum stands, the last of the prefix.
 const CHECKSUM: usize = 20;
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// A container that was checked: a view of its bytes, for a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug)]
 pub struct Container<'a, const N: usize, const F: usize> {
-    header: Header<'a>,
+    robot: u64,
+    header: Header<'a, N>,
     nodes: &'a [u8],
-    gains: &'a [u8],
 }
 
 impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
@@ -56,102 +87,110 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
     ///
     /// # Errors
     /// [`ContainerError`] says why the bytes are no plan for this robot.
-    pub fn open(bytes: &'a [u8], robot: u64) -> Result<Self, ContainerError> {
-        let prefix: &[u8; PREFIX] = bytes.first_chunk().ok_or(ContainerError::TooShort {
-            needed: PREFIX,
-            given: bytes.len(),
-        })?;
-        let [m0, m1, m2, m3, v0, v1, joints, feet, rest @ ..] = *prefix;
-        let [
-            h0,
-            h1,
-            h2,
-            h3,
-            h4,
-            h5,
-            h6,
-            h7,
-            l0,
-            l1,
-            l2,
-            l3,
-            c0,
-            c1,
-            c2,
-            c3,
-        ] = rest;
-        if [m0, m1, m2, m3] != MAGIC {
+    pub const fn open(bytes: &'a [u8], robot: u64) -> Result<Self, ContainerError> {
+        let plan = match Self::read(bytes) {
+            Ok(plan) => plan,
+            Err(error) => return Err(error),
+        };
+        if plan.robot == robot {
+            Ok(plan)
+        } else {
+            Err(ContainerError::Robot {
+                planned: plan.robot,
+                given: robot,
+            })
+        }
+    }
+
+    /// The same for whichever robot of this size the plan was made, [`Self::robot`].
+    ///
+    /// # Errors
+    /// [`ContainerError`] says why the bytes are no plan.
+    pub const fn read(bytes: &'a [u8]) -> Result<Self, ContainerError> {
+        let given = bytes.len();
+        if given < PREFIX {
+            return Err(ContainerError::TooShort {
+                needed: PREFIX,
+                given,
+            });
+        }
+        let mut from = Reader::new(bytes);
+        if u32::from_le_bytes(from.take()) != u32::from_le_bytes(MAGIC) {
             return Err(ContainerError::NotAPlan);
         }
-        let version = u16::from_le_bytes([v0, v1]);
+        let version = u16::from_le_bytes(from.take());
         if version != VERSION {
             return Err(ContainerError::Version { found: version });
         }
-        let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
-        let whole = bytes.get(..length).ok_or(ContainerError::TooShort {
-            needed: length,
-            given: bytes.len(),
-        })?;
-        if checksum(whole) != Some(u32::from_le_bytes([c0, c1, c2, c3])) {
+        let [joints, feet] = from.take();
+        let robot = u64::from_le_bytes(from.take());
+        let needed = u32::from_le_bytes(from.take()) as usize;
+        let Some((whole, _)) = bytes.split_at_checked(needed) else {
+            return Err(ContainerError::TooShort { needed, given });
+        };
+        if checksum(whole) != u32::from_le_bytes(from.take()) {
             return Err(ContainerError::Checksum);
         }
-        if (usize::from(joints), usize::from(feet)) != (N, F) {
+        if joints as usize != N || feet as usize != F {
             return Err(ContainerError::Size { joints, feet });
         }
-        let planned = u64::from_le_bytes([h0, h1, h2, h3, h4, h5, h6, h7]);
-        if planned != robot {
-            return Err(ContainerError::Robot {
-                planned,
-                given: robot,
-            });
-        }
-        let body = whole.get(PREFIX..).unwrap_or_default();
-        let (header, records): (Header<'a>, _) =
-            postcard::take_from_bytes(body).map_err(|_| ContainerError::Header)?;
-        let count = usize::from(header.nodes);
-        let split = count.saturating_mul(Self::NODE_BYTES);
-        let gain_bytes = if header.has_gains {
-            count.saturating_mul(Self::GAIN_BYTES)
-        } else {
-            0
+        let Some((_, body)) = whole.split_at_checked(PREFIX) else {
+            return Err(ContainerError::Header);
         };
-        if records.len() != split.saturating_add(gain_bytes) {
+        let mut from = Reader::new(body);
+        let Some(header) = Header::read(&mut from) else {
+            return Err(ContainerError::Header);
+        };
+        if whole.len() != Self::size(header.nodes as usize) {
             return Err(ContainerError::Header);
         }
-        let (nodes, gains) = records.split_at_checked(split).unwrap_or_default();
         Ok(Self {
+            robot,
             header,
-            nodes,
-            gains,
+            nodes: from.rest(),
         })
     }
 
-    /// Bytes of a node: phase, time, pose and velocity of the base, joints, torques, and per foot force, place and velocity.
-    pub const NODE_BYTES: usize = 1 + 4 * (1 + 3 + 4 + 6 + 3 * N + 9 * F);
-    /// Bytes of a node's gains.
-    pub const GAIN_BYTES: usize = 4 * N * (12 + 2 * N);
+    /// Bytes of a container with so many nodes.
+    #[must_use]
+    pub const fn size(nodes: usize) -> usize {
+        (PREFIX + Header::<N>::BYTES).saturating_add(nodes.saturating_mul(PlanNode::<N, F>::BYTES))
+    }
+
+    /// The [`model_hash`] of the robot that the plan was made for.
+    #[must_use]
+    pub const fn robot(&self) -> u64 {
+        self.robot
+    }
 
     /// What holds for the whole plan.
     #[must_use]
-    pub const fn header(&self) -> &Header<'a> {
+    pub const fn header(&self) -> &Header<'a, N> {
         &self.header
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        self.header.nodes as usize
     }
 
     /// Node `i`; none beyond the last.
     #[must_use]
-    pub fn node(&self, i: usize) -> Option<PlanNode<N, F>> {
-        record(self.nodes, i, Self::NODE_BYTES)
-    }
-
-    /// Gains of node `i`; none beyond the last, or if the plan has none.
-    #[must_use]
-    pub fn gains(&self, i: usize) -> Option<NodeGains<N>> {
-        record(self.gains, i, Self::GAIN_BYTES)
+    pub const fn node(&self, i: usize) -> Option<PlanNode<N, F>> {
+        let begin = i.saturating_mul(PlanNode::<N, F>::BYTES);
+        let Some((_, rest)) = self.nodes.split_at_checked(begin) else {
+            return None;
+        };
+        if rest.len() < PlanNode::<N, F>::BYTES {
+            return None;
+        }
+        Some(PlanNode::read(&mut Reader::new(rest)))
     }
 
     /// Nodes in order.
     pub fn nodes(&self) -> impl Iterator<Item = PlanNode<N, F>> + '_ {
-        (0..usize::from(self.header.nodes)).map_while(|i| self.node(i))
+        (0..self.count()).map_while(|i| self.node(i))
     }
 
     /// Writes the nodes as the sampler takes them; returns the part of `out` that they fill.
@@ -162,7 +201,7 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
         &self,
         out: &'b mut [Node<T, N, F>],
     ) -> Result<&'b [Node<T, N, F>], ContainerError> {
-        let needed = usize::from(self.header.nodes);
+        let needed = self.count();
         let given = out.len();
         let filled = out
             .get_mut(..needed)
@@ -174,84 +213,17 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
     }
 }
 
-/// Record `i` of a run of records of equal length.
-fn record<'a, R: serde::Deserialize<'a>>(records: &'a [u8], i: usize, bytes: usize) -> Option<R> {
-    let begin = i.checked_mul(bytes)?;
-    let bytes = records.get(begin..begin.checked_add(bytes)?)?;
-    postcard::from_bytes(bytes).ok()
-}
-
 /// CRC of a container without its checksum.
-fn checksum(whole: &[u8]) -> Option<u32> {
-    let mut digest: Digest<'_, u32> = CRC.digest();
-    digest.update(whole.get(..CHECKSUM)?);
-    digest.update(whole.get(PREFIX..)?);
-    Some(digest.finalize())
-}
-
-/// Writes a container into `out` and returns its length. `header.nodes` and `header.has_gains` are set from `nodes` and `gains`;
-/// there must be as many gains as nodes, or none.
-///
-/// # Errors
-/// [`ContainerError::Buffer`] if `out` is too short, [`ContainerError::Header`] for more than 65535 nodes, more than 255 joints or
-/// feet, or another number of gains than nodes.
-pub fn write<const N: usize, const F: usize>(
-    out: &mut [u8],
-    robot: u64,
-    header: &Header<'_>,
-    nodes: &[PlanNode<N, F>],
-    gains: &[NodeGains<N>],
-) -> Result<usize, ContainerError> {
-    let given = out.len();
-    let records = nodes
-        .len()
-        .saturating_mul(Container::<N, F>::NODE_BYTES)
-        .saturating_add(gains.len().saturating_mul(Container::<N, F>::GAIN_BYTES));
-    // Names, and fixed numbers of at most 4 bytes (5 as a varint), take less than this.
-    let names = header.task.len().saturating_add(header.robot.len());
-    let needed = records.saturating_add(names).saturating_add(PREFIX + 512);
-    let too_short = ContainerError::Buffer { needed, given };
-    let header = Header {
-        nodes: u16::try_from(nodes.len()).map_err(|_| ContainerError::Header)?,
-        has_gains: !gains.is_empty(),
-        ..*header
+const fn checksum(whole: &[u8]) -> u32 {
+    let (before, rest) = match whole.split_at_checked(CHECKSUM) {
+        Some(parts) => parts,
+        None => (whole, [].as_slice()),
     };
-    if header.has_gains && gains.len() != nodes.len() {
-        return Err(ContainerError::Header);
-    }
-    let size = |x: usize| u8::try_from(x).map_err(|_| ContainerError::Header);
-    let sizes = [size(N)?, size(F)?];
-    let mut at = PREFIX;
-    put(out, &mut at, &header).ok_or(too_short)?;
-    for node in nodes {
-        put(out, &mut at, node).ok_or(too_short)?;
-    }
-    for node in gains {
-        put(out, &mut at, node).ok_or(too_short)?;
-    }
-    let length = u32::try_from(at).map_err(|_| ContainerError::Header)?;
-    let parts: [&[u8]; 5] = [
-        &MAGIC,
-        &VERSION.to_le_bytes(),
-        &sizes,
-        &robot.to_le_bytes(),
-        &length.to_le_bytes(),
-    ];
-    let bytes = parts.into_iter().flatten();
-    out.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
-    let sum = out.get(..at).and_then(checksum).ok_or(too_short)?;
-    let slots = out.iter_mut().skip(CHECKSUM);
-    slots
-        .zip(sum.to_le_bytes())
-        .for_each(|(to, from)| *to = from);
-    Ok(at)
-}
-
-/// Serialises a value at `at` and moves on.
-fn put<V: serde::Serialize>(out: &mut [u8], at: &mut usize, value: &V) -> Option<()> {
-    let written = postcard::to_slice(value, out.get_mut(*at..)?).ok()?.len();
-    *at = at.checked_add(written)?;
-    Some(())
+    let after = match rest.split_at_checked(PREFIX - CHECKSUM) {
+        Some((_, after)) => after,
+        None => &[],
+    };
+    Crc::START.with(before).with(after).value()
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub(crate) struct Limits<'a> {
 }
 
 impl<'a> Limits<'a> {
-    pub(crate) fn new(robot: &'a Quadruped, header: &Header<'_>, start: &State) -> Self {
+    pub(crate) fn new(robot: &'a Quadruped, header: &Header<'_, JOINTS>, start: &State) -> Self {
         let clearance = Clearance::new(robot, header.ground, start);
         let names = (0..JOINTS).map(|i| joint_name(robot, i));
         let names = names.flat_map(|joint| {

@@ -96,7 +96,7 @@ impl Audit {
                 let forces_w = forward.step(&mut q, &mut v, &held.torques, &held.contacts, held.h);
                 limits.check(at, held.h, &q, &v, &held, &forces_w);
                 if i == held.steps / 2 {
-                    let told = from.forces_w.0.map(|f| Vector3::from(f.map(f64::from)));
+                    let told = from.forces_w.map(|f| Vector3::from(f.map(f64::from)));
                     let gaps = told
                         .iter()
                         .zip(&forces_w)
@@ -268,7 +268,7 @@ impl Held {
         }
         let steps = (dt / STEP).round().max(1.0);
         Ok(Self {
-            torques: node.torques.0.map(f64::from),
+            torques: node.torques.map(f64::from),
             contacts: core::array::from_fn(|i| (bits >> i) & 1 == 1),
             steps: steps as usize,
             h: dt / steps,

@@ -33,11 +33,7 @@ pub fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
 fn joints(robot: &Quadruped, node: &PlanNode<JOINTS, 4>, share: f64) -> Option<String> {
     let limits: &[JointLimits<f64>; JOINTS] = Model::limits(robot);
     limits.iter().enumerate().find_map(|(i, limit)| {
-        let [q, v, torque] = [
-            node.joints.0[i],
-            node.joint_velocities.0[i],
-            node.torques.0[i],
-        ];
+        let [q, v, torque] = [node.joints[i], node.joint_velocities[i], node.torques[i]];
         let [q, v, torque] = [q, v, torque].map(f64::from);
         let checks = [
             (
@@ -73,7 +69,7 @@ fn feet(robot: &Quadruped, node: &PlanNode<JOINTS, 4>) -> Option<String> {
         let foot_w = kinematics.frame(frame).translation - q.base.translation;
         let velocity_w = robot.jacobian(&kinematics, frame).mul(&legs_only).linear;
         let place = to_base * foot_w - robot.hips[leg];
-        let told = [node.feet_b.0[leg], node.foot_velocities_b.0[leg]];
+        let told = [node.feet_b[leg], node.foot_velocities_b[leg]];
         let [told, told_velocity] = told.map(|x| nalgebra::Vector3::from(x.map(f64::from)));
         let near = (told - place).amax() <= FEET[0];
         let moves = (told_velocity - to_base * velocity_w).amax() <= FEET[1];

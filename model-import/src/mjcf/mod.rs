@@ -10,7 +10,7 @@
 //! - Default classes, `childclass`, `<frame>`, `angle`, `eulerseq`, `autolimits`, `settotalmass` and `inertiagrouprange` are
 //!   heeded; `armature` becomes the rotor's inertia, `damping` and `frictionloss` the losses, `actuatorfrcrange` the effort.
 //! - Springs, tendons, equalities, actuators, fluids and gravity other than the crate's are named as
-//!   [`Warning::NotKept`](crate::Warning::NotKept).
+//!   [`Warning::NotKept`].
 //!
 //! `cargo xtask import-check --mjcf` compares mass matrix, bias, centre of mass, momentum and energies with MuJoCo's.
 

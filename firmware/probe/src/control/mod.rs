@@ -3,6 +3,7 @@
 mod jumping;
 mod landing;
 mod planner;
+mod plans;
 mod plant;
 mod programs;
 mod wholebody;
@@ -34,6 +35,7 @@ where
     let robot = Robot::a1();
     on.name = "jump-control";
     jumping::run(on, &robot);
+    plans::run(on, &robot);
     on.name = "landing";
     landing::run(on, &robot);
     on.name = "contact-sim";

@@ -2,10 +2,10 @@
 
 use a1_model::{A1Geared, BUILD};
 use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
-use jump_control::{Measurement, Plan, Torques};
+use jump_control::{Measurement, Plan};
 use jump_machine::{Inputs, Jump, Machine, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 use rbd_core::{
     Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
 };
@@ -171,18 +171,24 @@ where
 {
     let motors = crate::control::motors(&A1Geared);
     let build = BUILD.cast();
-    jump_machine::Settings::new(&build, feet(), motors, plan::LANDING.map(T::of))
+    jump_machine::Settings::new(&build, feet(), motors, landing_joints())
+}
+
+/// The posture in which the robot waits for the ground, rad.
+fn landing_joints<T: Real>() -> [T; 12] {
+    plan::LANDING.map(|x| T::of(f64::from(x)))
 }
 
 /// The double backflip; `None` if the plan in flash is refused.
 #[must_use]
 pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     let [takeoff, posing, touchdown] = plan::TIMES.map(T::of);
+    let torques = plan::PLAN.header().torques;
     Some(Jump {
-        plan: Plan::new(T::nodes(), takeoff, posing, touchdown, Torques::Hold).ok()?,
+        plan: Plan::new(T::nodes(), takeoff, posing, touchdown, torques).ok()?,
         weight: T::of(plan::WEIGHT),
-        rot_goal: Rotation3::identity(),
-        landing_joints: plan::LANDING.map(T::of),
+        rot_goal: so3::exp(&Vector3::new(T::ZERO, T::ZERO, T::of(plan::HEADING))),
+        landing_joints: landing_joints(),
     })
 }
 

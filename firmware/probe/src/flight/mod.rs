@@ -10,7 +10,7 @@ mod plan;
 
 pub use a1::{Flight, HOLD, a1, feet, jump, settings};
 pub use icub::{IcubFlight, IcubPush, icub};
-pub use plan::Planned;
+pub use plan::{BYTES, PLAN, Planned};
 
 use crate::{Label, Numbers, Part, Real, Recorder, canonical_bits};
 

@@ -1,0 +1,85 @@
+//! What the firmware's images fly is what stands in the container, which a planner wrote and an audit can read.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use a1_model::A1Geared;
+use jump_control::Node;
+use jump_control::container::{Container, model_hash};
+use saltus_probe::flight::{BYTES, PLAN, Planned, jump};
+
+type A1<'a> = Container<'a, 12, 4>;
+
+/// The file as it is now, opened as any controller does.
+fn open(bytes: &[u8]) -> A1<'_> {
+    A1::open(bytes, model_hash::<f64, _, 12>(&A1Geared)).unwrap()
+}
+
+#[test]
+fn the_bytes_in_the_image_are_the_files_and_a_plan_for_a1() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../firmware/probe/plans/a1-double-backflip.bin"
+    );
+    assert_eq!(std::fs::read(path).unwrap(), BYTES);
+    let plan = open(BYTES);
+    assert_eq!(plan.check(), Ok(()));
+    assert_eq!(plan.header(), PLAN.header());
+    assert_eq!(
+        (plan.header().task, plan.header().robot),
+        ("a1/double-backflip", "a1")
+    );
+}
+
+/// Node by node, and bit by bit: a number that is equal could still be −0.
+#[test]
+fn the_nodes_that_are_flown_are_the_containers() {
+    let plan = open(BYTES);
+    let double: Vec<_> = plan.nodes().map(|node| node.node::<f64>()).collect();
+    assert_eq!(<f64 as Planned>::nodes(), double);
+    let single: Vec<_> = plan.nodes().map(|node| node.node::<f32>()).collect();
+    assert_eq!(<f32 as Planned>::nodes(), single);
+    for (k, flown) in single.iter().enumerate() {
+        let Node {
+            base,
+            base_velocity: v,
+            ..
+        } = flown;
+        let rows = base.rotation.matrix().transpose();
+        let numbers = [flown.time]
+            .into_iter()
+            .chain(base.translation.iter().copied());
+        let numbers = numbers.chain(rows.iter().copied()).chain(v.to_array());
+        let numbers = numbers.chain(flown.joints).chain(flown.joint_velocities);
+        let forces = flown.forces_w.iter().flatten().copied();
+        let flown: Vec<u32> = numbers
+            .chain(flown.torques)
+            .chain(forces)
+            .map(f32::to_bits)
+            .collect();
+        let words = PLAN_NODE / 4 - 1 - 6 * 4;
+        let at = BYTES.len() - (plan.count() - k) * PLAN_NODE + 4;
+        let there = BYTES[at..]
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|x| u32::from_le_bytes(*x));
+        assert_eq!(there.take(words).collect::<Vec<_>>(), flown, "node {k}");
+    }
+}
+
+/// Bytes of a node of A1: the table in `jump_control::container`.
+const PLAN_NODE: usize = 4 * (20 + 3 * 12 + 9 * 4);
+
+#[test]
+fn the_machine_is_armed_with_what_the_header_says() {
+    let (plan, armed) = (open(BYTES), jump::<f32>().unwrap());
+    let h = plan.header();
+    assert_eq!(
+        [armed.plan.takeoff, armed.plan.posing, armed.plan.touchdown],
+        [h.takeoff, h.posing, h.touchdown]
+    );
+    assert_eq!(armed.plan.torques, h.torques);
+    assert_eq!(armed.weight, h.margins.weight);
+    assert_eq!(armed.landing_joints, h.landing_joints);
+    let turn = so3::log(&armed.rot_goal);
+    assert_eq!([turn.x, turn.y, turn.z], [0.0, 0.0, h.heading]);
+}
