@@ -30,6 +30,9 @@ type Step<'a> = (&'a str, &'a [&'a str]);
 /// With MuJoCo; of the whole workspace, so that what does not use it is not compiled again.
 const JUDGE: &str = "contact-sim/mujoco,saltus/mujoco";
 
+/// Lines of a failed step's output that stand in the error.
+const LAST_LINES: usize = 40;
+
 /// Before the lanes: what is wrong soonest.
 const FIRST: &[Step<'_>] = &[("format", &["fmt", "--all", "--check"])];
 
@@ -167,7 +170,11 @@ fn step(name: &str, arguments: &[&str]) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(&said)?;
     if !status.success() {
-        bail!("ended with {status}");
+        // What other lanes print in the meantime would bury the reason: it is said again at the very end.
+        let text = String::from_utf8_lossy(&said);
+        let lines: Vec<&str> = text.lines().collect();
+        let end = lines[lines.len().saturating_sub(LAST_LINES)..].join("\n");
+        bail!("ended with {status}, after it had said\n{end}");
     }
     writeln!(out, "== {name}: passed in {} s", start.elapsed().as_secs())?;
     Ok(())
