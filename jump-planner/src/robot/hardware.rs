@@ -2,9 +2,8 @@
 
 use super::{Data, JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, Shapes, State};
 use crate::stored::joint_name;
-use a1_model::BUILD;
 use nalgebra::Vector3;
-use rbd_core::{Budgets, Build, Link, Model, Motor, Shape, Tree};
+use rbd_core::{Body, Budgets, Build, Link, Model, Motor, Shape, TableError, TableModel, Tree};
 
 /// Speed at which a motor without data has nothing left, over its speed limit.
 const NO_LOAD: f64 = 1.25;
@@ -44,8 +43,8 @@ impl Quadruped {
     /// Its size, from which the gains of its controllers follow; the inertia is that of the standing robot.
     #[must_use]
     pub fn build(&self, standing: &State) -> Build<f64> {
-        if self.is_a1() {
-            return BUILD;
+        if let Some(build) = self.build {
+            return build;
         }
         let inertia = self.locked_inertia(standing);
         Build {
@@ -99,6 +98,26 @@ pub(crate) fn budgets(strongest: f64) -> Budgets {
     }
 }
 
+/// The same robot, whose joints feel the rotors of these motors.
+pub(crate) fn geared(
+    table: &TableModel<f64, JOINTS>,
+    motors: &[Motor<f64>; JOINTS],
+) -> Result<TableModel<f64, JOINTS>, TableError> {
+    let mut bodies: [Body<f64>; JOINTS] = *table.bodies();
+    for (body, motor) in bodies.iter_mut().zip(motors) {
+        body.rotor_inertia = motor.rotor_inertia;
+    }
+    TableModel::with_any_inertia(table.base_kind(), *table.base(), &bodies)
+}
+
+/// Corners of a box, in the order of `Data::corners`.
+pub(crate) fn corners(size: &Vector3<f64>, centre: &Vector3<f64>) -> [Vector3<f64>; 8] {
+    core::array::from_fn(|i| {
+        let side = |bit: usize| if (i >> bit) & 1 == 0 { 0.5 } else { -0.5 };
+        centre + size.component_mul(&Vector3::new(side(2), side(1), side(0)))
+    })
+}
+
 /// Names of what the forces on the shapes count for.
 pub(crate) fn owners(robot: &Quadruped) -> [&'static str; OWNER_COUNT] {
     core::array::from_fn(|i| {
@@ -120,14 +139,17 @@ pub(crate) fn shapes(data: &Data) -> Shapes {
         out[leg] = Shape::ball(foot.link, foot.offset, data.foot_radius, leg);
         let tip = Vector3::from(foot.offset);
         // Ends inside of the ball, so that the ball touches first.
-        let thin = SHANK * tip.norm();
+        let thin = data.limbs.shank_radius_m.unwrap_or(SHANK * tip.norm());
         let end = tip * (1.0 - f64::max(data.foot_radius, 3.0 * thin) / tip.norm());
         out[LEGS + leg] = limb(3 * leg + 2, &end, thin, LEGS + leg);
         let knee = Vector3::from(bodies[3 * leg + 2].offset);
-        let thick = THIGH * knee.norm();
+        let thick = data.limbs.thigh_radius_m;
+        let thick = thick.unwrap_or(THIGH * knee.norm());
         out[2 * LEGS + leg] = limb(3 * leg + 1, &knee, thick, 2 * LEGS + leg);
         let beside = Vector3::from(bodies[3 * leg + 1].offset);
-        out[3 * LEGS + leg] = limb(3 * leg, &beside, HIP * data.leg_length, 3 * LEGS + leg);
+        let round = data.limbs.hip_radius_m;
+        let round = round.unwrap_or(HIP * data.leg_length);
+        out[3 * LEGS + leg] = limb(3 * leg, &beside, round, 3 * LEGS + leg);
     }
     for (slot, (from, to, radius)) in out[4 * LEGS..].iter_mut().zip(trunk(&data.corners)) {
         *slot = Shape {

@@ -1,17 +1,18 @@
-//! The robot that is planned for: A1 with its rotors, or a quadruped from a URDF.
+//! The robot that is planned for: A1 with its rotors, or a quadruped from a URDF and what is written down beside it.
 
 mod hardware;
 mod posture;
+mod profile;
 mod rolling;
 mod urdf;
 
-use a1_model::{A1Geared, BUDGETS, FEET, FOOT_RADIUS, MOTORS, OWNERS, SHAPES, a1};
+use a1_model::{A1Geared, BUDGETS, BUILD, FEET, FOOT_RADIUS, MOTORS, OWNERS, SHAPES, a1};
 use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
 use rbd_core::{
-    BaseBody, BaseKind, Body, Budgets, Frame, Inertia, JointLimits, MassMatrix, Model, Motor,
-    Posture, Shape, TableModel, Tree, crba,
+    BaseBody, BaseKind, Body, Budgets, Build, Frame, Inertia, JointLimits, MassMatrix, Model,
+    Motor, Posture, Shape, TableModel, Tree, crba,
 };
 
 pub use posture::State;
@@ -60,6 +61,12 @@ pub struct Data {
     pub owners: [&'static str; OWNER_COUNT],
     /// What the hardware may be asked for.
     pub budgets: Budgets,
+    /// What its gains follow from, where that was measured or written down; otherwise it is derived.
+    build: Option<Build<f64>>,
+    /// Whether the centre of mass stands at a task's height, as in paper A, or the hips do.
+    stands_by_com: bool,
+    /// Thickness of its limbs, where it is written down.
+    limbs: profile::LimbsTable,
     /// Joints near a standing posture.
     seed: [f64; JOINTS],
 }
@@ -106,6 +113,9 @@ impl Quadruped {
             shapes: SHAPES,
             owners: OWNERS,
             budgets: BUDGETS,
+            build: Some(BUILD),
+            stands_by_com: true,
+            limbs: profile::LimbsTable::default(),
             seed: core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]),
         }))
     }
@@ -174,11 +184,10 @@ impl Quadruped {
         self.table.base().mass + bodies.sum::<f64>()
     }
 
-    /// Whether this is the built-in robot.
+    /// Whether a task's standing height is that of the centre of mass, as in paper A, and not that of the hips.
     #[must_use]
-    pub fn is_a1(&self) -> bool {
-        // A URDF may have this name too, but it has no motors.
-        self.name == "a1" && self.motors.is_some()
+    pub fn stands_by_com(&self) -> bool {
+        self.stands_by_com
     }
 }
 

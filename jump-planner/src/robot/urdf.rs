@@ -5,6 +5,7 @@
 //! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else 1 mm. The trunk is the
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
+use super::profile::{LimbsTable, ProfileFile};
 use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
 use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
@@ -14,7 +15,7 @@ use rbd_core::{
     forward_kinematics,
 };
 use roxmltree::{Document, Node};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
 const SEED_LEG: f64 = 0.65;
@@ -33,6 +34,25 @@ pub enum RobotError {
     /// The file cannot be read.
     #[error("{0}")]
     File(#[from] std::io::Error),
+    /// The URDF of a profile cannot be read.
+    #[error("urdf: {path}: {error}: the path is seen from the profile")]
+    Urdf {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The profile is none.
+    #[error("{0}")]
+    Toml(#[from] Box<toml::de::Error>),
+    /// A value of the profile that no robot has.
+    #[error("{key}: {what}")]
+    Profile {
+        /// Its key in the file.
+        key: String,
+        /// What it must be.
+        what: String,
+    },
     /// The URDF is not a robot.
     #[error("{0}")]
     Import(#[from] ImportError),
@@ -88,11 +108,28 @@ pub enum RobotError {
 }
 
 impl Quadruped {
-    /// The robot of a URDF, with joints locked as `JOINT=VALUE`. See the module for what is required.
+    /// The robot of a URDF, or of a profile (`.toml`) that names one, with joints locked as `JOINT=VALUE`. See the module for what a URDF
+    /// must have.
     ///
     /// # Errors
-    /// [`RobotError`] names what is missing and where.
-    pub fn from_urdf(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
+    /// [`RobotError`] names what is missing or cannot be, and where.
+    pub fn load(path: &Path, locks: &[String]) -> Result<Self, RobotError> {
+        if path.extension().is_none_or(|end| end != "toml") {
+            return Self::from_urdf(path, locks, None);
+        }
+        let (profile, urdf) = ProfileFile::load(path)?;
+        let locks = [profile.locks(), locks].concat();
+        Self::from_urdf(&urdf, &locks, Some(&profile)).map_err(|error| match error {
+            RobotError::File(error) => RobotError::Urdf { path: urdf, error },
+            other => other,
+        })
+    }
+
+    fn from_urdf(
+        path: &Path,
+        locks: &[String],
+        profile: Option<&ProfileFile>,
+    ) -> Result<Self, RobotError> {
         let text = crate::file::read_text(path)?;
         let locks = locks.iter().map(|lock| parse_lock(lock));
         let mut options = Options {
@@ -108,10 +145,10 @@ impl Quadruped {
             }
             other => other?,
         };
-        Self::of(&imported, &text)
+        Self::of(&imported, &text, profile)
     }
 
-    fn of(robot: &Robot, text: &str) -> Result<Self, RobotError> {
+    fn of(robot: &Robot, text: &str, profile: Option<&ProfileFile>) -> Result<Self, RobotError> {
         let names = || robot.joints.iter().map(|joint| joint.name.as_str());
         if robot.joints.len() != JOINTS {
             return Err(RobotError::Joints {
@@ -181,9 +218,16 @@ impl Quadruped {
             shapes: SHAPES,
             owners: OWNERS,
             budgets: hardware::budgets(strongest),
+            build: None,
+            stands_by_com: false,
+            limbs: LimbsTable::default(),
             seed: [0.0; JOINTS],
         };
+        profile.map_or(Ok(()), |profile| profile.apply(&mut data))?;
         data.seed = seed(&data)?;
+        if let Some(profile) = profile {
+            data.build = profile.build(&Self::leak(data.clone()))?;
+        }
         data.shapes = hardware::shapes(&data);
         data.owners = hardware::owners(&Self::leak(data.clone()));
         Ok(Self::leak(data))

@@ -108,16 +108,16 @@ impl Task {
         Self::load_for(name, None, &[])
     }
 
-    /// The task of this name or path, for the robot of another URDF where one is given.
+    /// The task of this name or path, for the robot of another URDF or profile where one is given.
     ///
     /// # Errors
     /// [`TaskError`] names file, line and key, or what is wrong with the robot.
     pub fn load_for(name: &str, urdf: Option<&Path>, locks: &[String]) -> Result<Self, TaskError> {
         let (file, folder) = TaskFile::load(name)?;
         let robot = match urdf {
-            Some(path) => Quadruped::from_urdf(path, locks),
+            Some(path) => Quadruped::load(path, locks),
             None if file.robot == "a1" => Quadruped::a1(),
-            None => Quadruped::from_urdf(&folder.join(&file.robot), &file.lock),
+            None => Quadruped::load(&folder.join(&file.robot), &file.lock),
         };
         let robot = robot.map_err(|error| TaskError::Robot {
             task: name.to_owned(),
@@ -325,9 +325,9 @@ impl Task {
 /// The robot standing at the origin, and its centre of mass.
 fn standing(robot: &Quadruped) -> Result<(State, Vector3<f64>), String> {
     let points = robot.hips.map(|hip| Vector3::new(hip.x, hip.y, 0.0));
-    // A1 stands with its centre of mass, not its hips, at the paper's height; there the two are 2 mm apart.
+    // Paper A's robot stands with its centre of mass, not its hips, at this height; there the two are 2 mm apart.
     let mut com_w = Vector3::z() * (STAND * robot.leg_length);
-    if !robot.is_a1() {
+    if !robot.stands_by_com() {
         let hip = robot.hips.iter().map(|hip| hip.z).sum::<f64>() / robot.hips.len() as f64;
         let height = STAND * robot.leg_length + robot.foot_radius - hip;
         let base = Transform::new(

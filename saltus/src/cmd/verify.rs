@@ -17,7 +17,7 @@ use std::process::ExitCode;
 pub(crate) struct Args {
     /// The container: plan.bin of `saltus plan --out`.
     file: PathBuf,
-    /// URDF of the robot that the plan is for; A1 without it.
+    /// URDF or profile of the robot that the plan is for; A1 without it.
     #[arg(long)]
     robot: Option<PathBuf>,
     /// Joints of that robot that were locked.
@@ -30,7 +30,7 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let robot = match &args.robot {
-        Some(path) => Quadruped::from_urdf(path, &args.lock),
+        Some(path) => Quadruped::load(path, &args.lock),
         None => Quadruped::a1(),
     };
     let robot = robot.map_err(|error| error.to_string())?;

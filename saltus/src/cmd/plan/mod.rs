@@ -36,7 +36,7 @@ pub(crate) struct Args {
     /// rules out (III).
     #[arg(long, requires = "task", conflicts_with = "timing")]
     direct: bool,
-    /// Plan for the quadruped of this URDF instead of the task's robot: twelve joints, four legs of three below a floating base, one per
+    /// Plan for the quadruped of this URDF, or of a profile (TOML beside a URDF), instead of the task's robot: twelve joints, four legs of three below a floating base, one per
     /// quadrant, with effort and speed limits.
     #[arg(long, requires = "task")]
     robot: Option<PathBuf>,

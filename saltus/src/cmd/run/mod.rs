@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// Quadruped tasks: how the legs are planned along the single rigid body's motion [default: whole-body].
     #[arg(long, value_parser = planners())]
     planner: Option<Planner>,
-    /// Quadruped tasks: jump with the robot of this URDF instead of the task's.
+    /// Quadruped tasks: jump with the robot of this URDF or profile (TOML beside a URDF) instead of the task's.
     #[arg(long)]
     robot: Option<PathBuf>,
     /// Lock joints of that robot at a position, rad or m.

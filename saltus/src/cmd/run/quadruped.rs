@@ -123,7 +123,7 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
     let robot = args
         .robot
         .as_deref()
-        .map_or_else(Quadruped::a1, |urdf| Quadruped::from_urdf(urdf, &args.lock));
+        .map_or_else(Quadruped::a1, |urdf| Quadruped::load(urdf, &args.lock));
     let robot = robot.map_err(|error| show(&error))?;
     let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
     check_values(&robot, &plan).map_err(|error| show(&error))?;
