@@ -1,8 +1,8 @@
-//! The Rust of the README and of the guide (`docs/guide`), compiled and run as documentation tests.
+//! The Rust of the documents (`docs`), compiled and run as documentation tests.
 
 /// A few lines for each crate.
-#[doc = include_str!("../../README.md")]
-pub mod readme {}
+#[doc = include_str!("../../docs/CRATES.md")]
+pub mod crates {}
 
 /// Landing in firmware.
 #[doc = include_str!("../../docs/guide/4-firmware.md")]

@@ -1,4 +1,4 @@
-//! `cargo xtask first-hour`: what the README and the guide tell a newcomer to type, typed.
+//! `cargo xtask first-hour`: what the guide tells a newcomer to type, typed.
 
 use std::fs;
 use std::process::Command;
@@ -8,8 +8,8 @@ use anyhow::{Context, Result, ensure};
 use crate::bare::{Bare, Choice};
 use crate::run;
 
-/// The section of the README.
-const HEADING: &str = "## Your first hour\n";
+/// The first hour, which stands alone.
+const HOUR: &str = "docs/guide/0-first-hour.md";
 /// The folder into which its lines write.
 const FOLDER: &str = "out/first-hour";
 /// What must be there in the end.
@@ -40,15 +40,15 @@ pub(crate) struct Args {}
 pub(crate) fn run(_: &Args) -> Result<()> {
     let root = run::root();
     Bare::find("thumbv7em-none-eabihf", Choice::Auto)?;
-    let readme = fs::read_to_string(root.join("README.md"))?;
-    follow(&section(&readme)?, FOLDER, &RESULTS).context("README.md")?;
+    let hour = fs::read_to_string(root.join(HOUR)).context(HOUR)?;
+    follow(&script(&hour)?, FOLDER, &RESULTS).context(HOUR)?;
     let mut commands = String::new();
     for chapter in CHAPTERS {
         let text = fs::read_to_string(root.join(format!("docs/guide/{chapter}.md")))?;
         commands += &script(&text).with_context(|| format!("docs/guide/{chapter}.md"))?;
     }
     follow(&commands, GUIDE_FOLDER, &GUIDE_RESULTS).context("docs/guide")?;
-    println!("first hour: every line of the README and of the guide works");
+    println!("first hour: every line of the guide works");
     Ok(())
 }
 
@@ -68,14 +68,6 @@ fn follow(script: &str, folder: &str, results: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The shell lines of the README's section.
-fn section(readme: &str) -> Result<String> {
-    let (_, section) = readme
-        .split_once(HEADING)
-        .context("the README has no first hour")?;
-    script(section.split("\n## ").next().unwrap_or_default())
-}
-
 /// The shell lines of a text.
 fn script(text: &str) -> Result<String> {
     let blocks: Vec<&str> = text
@@ -89,12 +81,12 @@ fn script(text: &str) -> Result<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{script, section};
+    use super::script;
 
     #[test]
-    fn only_the_commands_of_the_section_are_typed() {
-        let readme = "```sh\nno\n```\n## Your first hour\ntext\n```sh\none\n```\n```rust\nno\n```\n```sh\ntwo\n```\n\n## Next\n```sh\nno\n```\n";
-        assert_eq!(section(readme).ok().as_deref(), Some("one\ntwo\n"));
-        assert!(section("nothing").is_err() && script("nothing").is_err());
+    fn only_the_commands_are_typed() {
+        let text = "text\n```sh\none\n```\n```rust\nno\n```\n```sh\ntwo\n```\n";
+        assert_eq!(script(text).ok().as_deref(), Some("one\ntwo\n"));
+        assert!(script("nothing").is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask verdicts`: every task in both simulators ends as `jump-planner/tasks/expected.toml` says, and README shows what came out.
+//! `cargo xtask verdicts`: every task in both simulators ends as `jump-planner/tasks/expected.toml` says, and the document shows what came out.
 //!
 //! A verdict that differs, for better or worse, fails and is named with its task: whoever changed it looks at the run and writes the new
 //! one down.
@@ -12,6 +12,8 @@ use crate::{mujoco, run};
 
 /// The file of expected verdicts.
 pub(crate) const EXPECTED: &str = "jump-planner/tasks/expected.toml";
+/// Where the table of verdicts stands.
+const DOCUMENT: &str = "docs/JUMPS.md";
 
 /// Arguments of `cargo xtask verdicts`.
 #[derive(clap::Args)]
@@ -27,21 +29,21 @@ pub(crate) fn run(_: &Args) -> Result<()> {
         output.status.success(),
         "a verdict changed: look at the run, and write the new one down if it is right"
     );
-    let readme = fs::read_to_string(run::root().join("README.md")).context("README.md")?;
-    shows(&readme, &table)
+    let document = fs::read_to_string(run::root().join(DOCUMENT)).context(DOCUMENT)?;
+    shows(&document, &table)
 }
 
-/// Every line of README's table is one of those that were printed. It is the table with this one's head.
-fn shows(readme: &str, table: &str) -> Result<()> {
+/// Every line of the document's table is one of those that were printed. It is the table with this one's head.
+fn shows(document: &str, table: &str) -> Result<()> {
     let head = table.lines().next().unwrap_or_default();
-    let below = readme.lines().skip_while(|line| *line != head);
+    let below = document.lines().skip_while(|line| *line != head);
     let shown: Vec<&str> = below.skip(2).take_while(|line| !line.is_empty()).collect();
     let printed: Vec<&str> = table.lines().collect();
-    ensure!(!shown.is_empty(), "README.md has no table of verdicts");
+    ensure!(!shown.is_empty(), "{DOCUMENT} has no table of verdicts");
     for line in &shown {
         ensure!(
             printed.contains(line),
-            "README.md shows what `saltus verdicts` does not print any more:\n{line}"
+            "{DOCUMENT} shows what `saltus verdicts` does not print any more:\n{line}"
         );
     }
     Ok(())
