@@ -76,7 +76,7 @@ enum Command {
     Verdicts(verdicts::Args),
     /// The tests of `saltus` that take too long for `cargo test --workspace`, in its release build.
     Suites,
-    /// Type what the README tells a newcomer to type.
+    /// Type what the guide tells a newcomer to type.
     FirstHour(first_hour::Args),
     /// Build every crate from its own archive, with the oldest compiler that it promises.
     Package(package::Args),
