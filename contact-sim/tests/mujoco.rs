@@ -348,3 +348,42 @@ fn tables_that_are_no_robot_are_refused_with_mujocos_words() {
     let refused = MujocoSimulator::<1, 0>::new(&model, (&[], &[]), &Terrain::FLAT, s);
     assert!(refused.unwrap_err().to_string().contains("inertia"));
 }
+
+/// Pushes off sideways from a stand with all legs and flies: base, and its turning rate in the world.
+fn push_off<S: Simulator<f64, 12, C, Error = Error>, const C: usize>(
+    sim: &mut S,
+) -> (rbd_core::Transform<f64>, Vector3<f64>) {
+    let start = standing(0.33);
+    sim.reset(&start, &Tangent::ZERO);
+    hold(sim, &start.joints, (80.0, 2.0), 5_000);
+    let out = core::array::from_fn(|i| [0.5, 0.5, -1.0][i % 3]);
+    hold(sim, &out, (120.0, 1.0), 1_000);
+    let tucked = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
+    hold(sim, &tucked, (20.0, 1.0), 2_000);
+    let base = sim.configuration().base;
+    (base, base.rotation * sim.velocity().base.angular)
+}
+
+#[test]
+fn both_simulators_tell_the_same_push_off() {
+    let feet: [Shape<f64>; 4] = core::array::from_fn(|i| Shape::of(&FEET[i], i).unwrap());
+    for time_constant in [0.002, 0.01] {
+        let mut s = Settings::new(&a1::LIMITS, &MOTORS);
+        s.contact.time_constant = time_constant;
+        let mut native = NativeSimulator::<f64, _, 12, 4, 4>::new(A1Geared, feet, Terrain::FLAT, s);
+        s.substeps = 1;
+        let mut judge: MujocoSimulator<12, 4> =
+            MujocoSimulator::new(&A1Geared, (&feet.map(Geom::Swept), &[]), &Terrain::FLAT, s)
+                .unwrap();
+        let ((ours, our_rate), (theirs, their_rate)) =
+            (push_off(&mut native), push_off(&mut judge));
+        let apart = (ours.translation - theirs.translation).norm();
+        let turned = so3::log(&(ours.rotation.inverse() * theirs.rotation)).norm();
+        let turned = turned.to_degrees();
+        assert!(ours.translation.z > 0.45, "flies");
+        assert!(
+            apart < 3e-3 && turned < 2.0,
+            "{time_constant} s: {apart} m, {turned}°, {our_rate} {their_rate}"
+        );
+    }
+}
