@@ -31,6 +31,8 @@ const TOUCHDOWN: f64 = 15.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trial<'a> {
     pub(crate) sim: Sim,
+    /// Into how many its usual integration steps are cut.
+    pub(crate) finer: u32,
     /// How the lab differs from the plan.
     pub(crate) disturbance: Disturbance,
     /// Of the noise.
@@ -46,6 +48,7 @@ impl Trial<'_> {
     pub(crate) const fn nominal(sim: Sim) -> Self {
         Self {
             sim,
+            finer: 1,
             disturbance: Disturbance::NOMINAL,
             seed: 0,
             interface: Interface::Torque,
@@ -279,7 +282,7 @@ pub(crate) fn run_watched(
     mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
     let mut sensors = Sensors::new(&trial.disturbance, trial.interface, trial.seed, task);
-    let mut world = plant(trial.sim, task, &trial.disturbance)?;
+    let mut world = plant((trial.sim, trial.finer), task, &trial.disturbance)?;
     let jump = jump(task, reference)?;
     let mut workspace = landing::Workspace::new();
     let robot = task.robot;
