@@ -9,6 +9,7 @@ pub mod gazebo;
 pub mod hardware;
 pub mod limits;
 pub mod robots;
+pub mod shapes;
 
 pub use budgets::BUDGETS;
 pub use hardware::{MOTORS, SOLES};

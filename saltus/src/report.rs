@@ -1,6 +1,7 @@
 //! What the reports of all robots share: one HTML file with a jump in 3D and its plots, no network needed.
 
 use nalgebra::Vector3;
+use rbd_core::{Link, Shape, Transform};
 use serde_json::{Value, json};
 
 const TEMPLATE: &str = include_str!("../assets/report.html");
@@ -49,6 +50,22 @@ pub(crate) fn round(x: f64, digits: u32) -> Value {
 /// A point with tenths of a millimetre.
 pub(crate) fn vector(v: &Vector3<f64>) -> Value {
     json!([round(v.x, 4), round(v.y, 4), round(v.z, 4)])
+}
+
+/// A collision shape; the base's link is -1.
+pub(crate) fn shape(shape: &Shape<f64>) -> Value {
+    json!({
+        "link": if let Link::Joint(i) = shape.link { json!(i) } else { json!(-1) },
+        "from": shape.from,
+        "to": shape.to,
+        "radius": shape.radius,
+    })
+}
+
+/// Orientation of a link, as x, y, z, w.
+pub(crate) fn turn(pose: &Transform<f64>) -> Value {
+    let turn = so3::quat::from_rotation(&pose.rotation);
+    json!(so3::quat::to_xyzw(&turn).map(|x| round(x, 4)))
 }
 
 /// One curve over samples.

@@ -1,6 +1,7 @@
 //! The humanoid's jumps, end to end.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+mod keys;
 mod recording;
 
 use serde_json::Value;
@@ -28,6 +29,7 @@ fn number(json: &Value, name: &str) -> f64 {
 fn check(task: &str, name: &str) {
     let (json, good) = run(task, name, &[]);
     assert_eq!(json["on_target"], good, "{json}");
+    keys::are_all_there(&json);
     let verdict = &json["verdict"];
     let failures = verdict["failures"].as_array().unwrap();
     assert_eq!(failures.is_empty(), good, "{json}");
@@ -74,7 +76,7 @@ fn the_torque_program_jumps_four_centimetres_and_stands() {
 /// The page opens offline, and carries the paper's figures and a second run for figure 6.
 #[test]
 fn the_report_has_the_figures_of_the_paper() {
-    run("icub/velocity", "icub-report", &[]);
+    keys::are_all_there(&run("icub/velocity", "icub-report", &[]).0);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("icub-report");
     assert!(recording::agrees_with_csv(&folder) > 100);
     let path = folder.join("report.html");

@@ -10,6 +10,16 @@ use so3::Scalar;
 use so3::math::sin_cos;
 
 impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
+    /// Writes this problem's reference rotation into stages that another one guessed or solved; nothing else of them changes.
+    pub fn write_reference<const NX: usize, const NU: usize, const NI: usize, K>(
+        &self,
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
+    ) {
+        for (k, stage) in stages.iter_mut().enumerate() {
+            stage.state.reference = sin_cos(self.reference_angle(k));
+        }
+    }
+
     /// Writes the guess into the stages.
     ///
     /// The centre of mass stays at the start until the last phase and then flies to the goal; its

@@ -4,6 +4,7 @@
 //! its mass, the composite inertia of the crouch, and margins on friction and force.
 
 pub mod file;
+mod guess;
 mod values;
 
 use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
@@ -256,27 +257,6 @@ impl Task {
             FOOT_COUNT => "four legs".to_owned(),
             _ => on.join(" "),
         }
-    }
-
-    /// The guess of the single-rigid-body problem, not solved: where planning straight on the whole body starts.
-    ///
-    /// # Errors
-    /// A problem that cannot be, with its row.
-    pub fn guess(&self) -> Result<SrbPlan, String> {
-        let problem = &self.problem;
-        problem
-            .check()
-            .map_err(|error| format!("task {}: {error}", self.name))?;
-        let mut stages = vec![Stage::new(srb_opt::State::new()); problem.intervals() + 1];
-        problem.write_guess(&mut stages, || 0.0);
-        Ok(SrbPlan {
-            stages,
-            status: Status::IterationLimit,
-            iterations: 0,
-            wall_ms: 0.0,
-            cost: f64::NAN,
-            max_violation: f64::NAN,
-        })
     }
 
     /// Tries to solve the single-rigid-body problem.

@@ -3,11 +3,14 @@
 use super::control::{Controller, QpLog, TICK};
 use super::log::Sample;
 use super::sensors::{Sensors, sole_forces};
-use super::{GRAVITY, JOINTS, ROBOT, Task, World, on_the_floor, plant, poses, spheres, squat};
+use super::{
+    GRAVITY, JOINTS, OWNERS, ROBOT, SPHERES, Task, World, on_the_floor, plant, poses, spheres,
+    squat,
+};
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Motors};
 use crate::verdict::{Hardware, Stage, Tick};
-use icub_model::{BUDGETS, LIMITS};
+use icub_model::{BUDGETS, LIMITS, shapes};
 use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
 use rbd_core::{CentroidalMap, Motor, Posture, centroidal_map, centroidal_state};
@@ -128,11 +131,24 @@ impl Drive {
             stops: plant.stop_torques(),
             ground: ground.norm(),
             power: self.motors.power(),
-            // Only the soles have shapes, and they may touch the ground.
-            touches: &[],
+            touches: &touches(plant.contact_forces_w(), plant.link_forces()),
         });
         Ok(())
     }
+}
+
+/// Links that something presses on: feet may touch the ground by their soles, which are none of these.
+pub(super) fn touches(
+    ground: &[Vector3<f64>; OWNERS],
+    links: &[f64; OWNERS],
+) -> Vec<(&'static str, f64)> {
+    let forces = ground.iter().zip(links).skip(SPHERES);
+    shapes::OWNERS
+        .iter()
+        .zip(forces)
+        .map(|(name, (ground, link))| (*name, ground.norm() + link))
+        .filter(|(_, force)| *force > 0.0)
+        .collect()
 }
 
 const fn stage(phase: Phase) -> Stage {

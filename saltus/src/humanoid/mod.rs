@@ -9,9 +9,9 @@ pub(crate) mod sensors;
 
 use crate::jump::plant::Sim;
 use crate::lab::{self, Disturbance, Key};
-use contact_sim::{NativeSimulator, Settings, Shape, Terrain};
+use contact_sim::{NativeSimulator, Settings, Shape, Terrain, self_contacts};
 use icub_model::gazebo::joint;
-use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
+use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES, shapes};
 use jump_control::{ComProfile, Curve, takeoff_speed};
 use nalgebra::Vector3;
 use rbd_core::{
@@ -23,6 +23,10 @@ use rbd_core::{
 pub(crate) const JOINTS: usize = 23;
 /// Balls in the corners of its two soles.
 pub(crate) const SPHERES: usize = 8;
+/// What forces count for: the corners of the soles, then all other links.
+pub(crate) const OWNERS: usize = SPHERES + shapes::OWNERS.len();
+/// Shapes of the native simulator.
+const SHAPES: usize = SPHERES + shapes::SHAPES.len();
 /// The robot, with the inertias of the Gazebo model that the paper simulated and the rotors behind its gears.
 pub(crate) const ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
 /// Radius of the balls in the corners of the soles, m.
@@ -232,11 +236,23 @@ pub(crate) fn spheres() -> [Shape<f64>; SPHERES] {
     })
 }
 
+/// All links, each with an owner of its own behind those of the soles.
+pub(crate) fn links() -> [Shape<f64>; shapes::SHAPES.len()] {
+    shapes::shapes(SPHERES)
+}
+
+/// Links that touch each other: those that do not where the robot stands, before the push-off and after the landing.
+fn pairs_of_links(links: &[Shape<f64>; shapes::SHAPES.len()]) -> [u64; shapes::SHAPES.len()] {
+    let at = |joints| self_contacts(&ROBOT, links, &on_the_floor(joints));
+    let (squatting, landed) = (at(squat()), at(landing_posture()));
+    core::array::from_fn(|i| squatting[i] & landed[i])
+}
+
 /// A simulator of the robot.
-type Plant = lab::Plant<JOINTS, SPHERES>;
+type Plant = lab::Plant<JOINTS, OWNERS>;
 
 /// The robot in its lab.
-pub(crate) type World = lab::Ground<JOINTS, SPHERES>;
+pub(crate) type World = lab::Ground<JOINTS, OWNERS>;
 
 /// The robot in a simulator, at rest at `start`.
 pub(crate) fn plant(
@@ -256,19 +272,28 @@ pub(crate) fn plant(
     settings.contact.time_constant = disturbance.seconds(Key::Ground);
     let robot = lab::robot(disturbance, &ROBOT)?;
     let mut plant: Plant = match sim {
-        Sim::Native => Box::new(NativeSimulator::new(
-            robot,
-            spheres(),
-            Terrain::FLAT,
-            settings,
-        )),
+        Sim::Native => {
+            let (balls, links) = (spheres(), links());
+            let all: [Shape<f64>; SHAPES] =
+                core::array::from_fn(|i| match i.checked_sub(SPHERES) {
+                    Some(i) => links[i],
+                    None => balls[i],
+                });
+            // Of a foot its links collide with links, its sole with the ground.
+            let mut pairs = [0; SHAPES];
+            for (all, links) in pairs[SPHERES..].iter_mut().zip(pairs_of_links(&links)) {
+                *all = links << SPHERES;
+            }
+            let native = NativeSimulator::new(robot, all, Terrain::FLAT, settings);
+            Box::new(native.colliding(pairs))
+        }
         Sim::Mujoco => mujoco(&robot, settings)?,
     };
     plant.reset(start, &Tangent::ZERO);
     Ok(World::new(plant, disturbance.get(Key::GroundHeight)))
 }
 
-/// MuJoCo, with the soles as boxes.
+/// MuJoCo, with the soles as boxes and the same links.
 #[cfg(feature = "mujoco")]
 fn mujoco(
     robot: &TableModel<f64, JOINTS>,
@@ -277,13 +302,14 @@ fn mujoco(
     use contact_sim::{Geom, MujocoSimulator};
 
     // Each sole is one box; its force counts for the first of its corners.
-    let geoms: Vec<Geom> = SOLES
-        .iter()
-        .enumerate()
-        .map(|(i, sole)| Geom::of(sole, 4 * i))
-        .collect();
+    let soles = SOLES.iter().enumerate();
+    let mut geoms: Vec<Geom> = soles.map(|(i, sole)| Geom::of(sole, 4 * i)).collect();
+    let links = links();
+    let mut pairs = vec![0; geoms.len()];
+    pairs.extend(pairs_of_links(&links).map(|bits| bits << SOLES.len()));
+    geoms.extend(links.map(Geom::Swept));
     settings.substeps = 1;
-    let sim = MujocoSimulator::new(robot, (&geoms, &[]), &Terrain::FLAT, settings);
+    let sim = MujocoSimulator::new(robot, (&geoms, &pairs), &Terrain::FLAT, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 

@@ -3,10 +3,12 @@
 
 use super::execute::Run;
 use super::log::Sample;
-use super::{JOINTS, ROBOT, State, Task, poses};
+use super::{JOINTS, ROBOT, State, Task, links, poses};
 use crate::log::Log;
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
-use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
+use crate::report::{
+    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, shape, turn, vector,
+};
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::Phase;
@@ -36,6 +38,7 @@ pub(crate) fn html(
             "block": null,
             "foot_radius": DRAWN_FOOT,
             "trunk": TRUNK_SIZE,
+            "shapes": links().each_ref().map(shape),
             // The base's x axis points backwards.
             "nose": -0.07,
             "goal": [0.0, 0.0, 0.0],
@@ -48,13 +51,17 @@ pub(crate) fn html(
     Ok(page(&title, intro, &data))
 }
 
-/// Both legs and both arms as chains of four points.
-fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
-    let q = State {
+/// Where the robot is.
+fn state(s: &Sample) -> State {
+    State {
         base: Transform::new(s.orientation.to_rotation_matrix(), s.position),
         joints: s.joints,
-    };
-    let poses = poses(&q);
+    }
+}
+
+/// Both legs and both arms as chains of four points.
+fn limbs(s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
+    let poses = poses(&state(s));
     let body = |i: usize| poses.bodies[i].translation;
     let leg = |hip: usize, sole: usize| {
         let foot = poses.frame(&SOLES[sole].frame).translation;
@@ -107,6 +114,8 @@ fn frames(samples: &[Sample]) -> Value {
         "position": each(&|s| vector(&s.position)),
         "orientation": each(&|s| json!(so3::quat::to_xyzw(&s.orientation).map(|x| round(x, 5)))),
         "com": each(&|s| vector(&s.com)),
+        "origins": each(&|s| json!(poses(&state(s)).bodies.each_ref().map(|body| vector(&body.translation)))),
+        "turns": each(&|s| json!(poses(&state(s)).bodies.each_ref().map(turn))),
         "points": each(&|s| json!(limbs(s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&forces),
     })

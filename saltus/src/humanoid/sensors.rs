@@ -1,7 +1,7 @@
 //! What the controller is told: encoders, force sensors of the soles, an IMU, and the base as `state-est` makes it of them; never the
 //! truth. In a nominal run the sensors are without error.
 
-use super::{JOINTS, ROBOT, State, Velocity, World};
+use super::{JOINTS, ROBOT, SPHERES, State, Velocity, World};
 use crate::lab::{Disturbance, Encoders, FootSensors, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};
@@ -85,5 +85,5 @@ impl Sensors {
 /// Force of the ground on each sole.
 pub(crate) fn sole_forces(world: &World) -> [Vector3<f64>; 2] {
     let f = world.plant().contact_forces_w();
-    [f[..4].iter().sum(), f[4..].iter().sum()]
+    [f[..4].iter().sum(), f[4..SPHERES].iter().sum()]
 }

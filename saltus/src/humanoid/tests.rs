@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 use super::judge::Judged;
 use super::{GRAVITY, JOINTS, Landing, ROBOT, State, Task, Velocity};
-use super::{com, execute, on_the_floor, poses, squat};
+use super::{com, execute, on_the_floor, plant, poses, squat};
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Lab, PlantArgument};
 use icub_model::MOTORS;
+use icub_model::gazebo::joint;
 use icub_model::hardware::{MOTORS_F32, SOLES_F32};
 use icub_model::limits::LIMITS_F32;
 use icub_model::{LIMITS, SOLES};
@@ -29,6 +30,45 @@ fn the_squat_stands_on_both_soles_inside_its_limits() {
     assert!(c.x > -0.03 && c.x < 0.08, "{c:?}");
     for (q, limits) in q.joints.iter().zip(&LIMITS) {
         assert!(*q > limits.lower && *q < limits.upper);
+    }
+}
+
+/// Names of the links that something presses on after so many ticks without torque.
+fn touched(start: &State, ticks: u32, sim: Sim) -> Vec<&'static str> {
+    let task = Task::named("icub/torque").unwrap();
+    let mut world = plant(&task, sim, &Disturbance::NOMINAL, start).unwrap();
+    for _ in 0..ticks {
+        world.step(&[0.0; JOINTS], false).unwrap();
+    }
+    let plant = world.plant();
+    let touches = execute::touches(plant.contact_forces_w(), plant.link_forces());
+    touches.into_iter().map(|(name, _)| name).collect()
+}
+
+/// Every link has a shape: a robot that lies is carried by more than its soles, crossed legs meet, and one that stands touches nothing.
+#[test]
+fn links_touch_the_ground_and_each_other() {
+    let sims: &[Sim] = if cfg!(feature = "mujoco") {
+        &[Sim::Native, Sim::Mujoco]
+    } else {
+        &[Sim::Native]
+    };
+    for sim in sims {
+        let stands = on_the_floor(squat());
+        assert_eq!(touched(&stands, 100, *sim), [""; 0]);
+        let mut lies = stands;
+        lies.base.rotation = so3::exp(&Vector3::new(0.0, core::f64::consts::FRAC_PI_2, 0.0));
+        lies.base.translation = Vector3::new(0.0, 0.0, 0.3);
+        let carried = touched(&lies, 8000, *sim);
+        assert!(carried.contains(&"trunk"), "{sim:?}: {carried:?}");
+        let mut crossed = squat();
+        crossed[joint::L_HIP_ROLL] = LIMITS[joint::L_HIP_ROLL].lower;
+        crossed[joint::R_HIP_ROLL] = LIMITS[joint::R_HIP_ROLL].lower;
+        let mut flies = on_the_floor(crossed);
+        flies.base.translation.z += 1.0;
+        let met = touched(&flies, 3, *sim);
+        let side = |side| met.iter().any(|name: &&str| name.starts_with(side));
+        assert!(side("l_") && side("r_"), "{sim:?}: {met:?}");
     }
 }
 

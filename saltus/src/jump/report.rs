@@ -5,13 +5,15 @@ use super::log::{Sample, foot_names, joint_names};
 use super::{FOOT_COUNT, JOINTS, State};
 use crate::log::Log;
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
-use crate::report::{COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, vector};
+use crate::report::{
+    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, shape, turn, vector,
+};
 use jump_planner::planned::Origin;
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use nalgebra::Vector3;
-use rbd_core::{Link, Transform};
+use rbd_core::Transform;
 use serde_json::{Value, json};
 
 /// The report's text.
@@ -59,10 +61,7 @@ fn limbs(robot: &Quadruped, s: &Sample) -> [[Vector3<f64>; POINTS]; LIMBS] {
 /// Orientations of the links, as x, y, z, w.
 fn turns(robot: &Quadruped, s: &Sample) -> [Value; JOINTS] {
     let poses = robot.poses(&state(s));
-    core::array::from_fn(|i| {
-        let turn = so3::quat::from_rotation(&poses.bodies[i].rotation);
-        json!(so3::quat::to_xyzw(&turn).map(|x| round(x, 4)))
-    })
+    poses.bodies.each_ref().map(turn)
 }
 
 /// Where the robot is.
@@ -116,12 +115,7 @@ fn scene(task: &Task) -> Value {
         "block": terrain.block.map(|block| [block.lower, block.upper]),
         "foot_radius": task.robot.foot_radius,
         "trunk": task.robot.trunk(),
-        "shapes": task.robot.shapes.map(|shape| json!({
-            "link": if let Link::Joint(i) = shape.link { json!(i) } else { json!(-1) },
-            "from": shape.from,
-            "to": shape.to,
-            "radius": shape.radius,
-        })),
+        "shapes": task.robot.shapes.each_ref().map(shape),
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })

@@ -66,12 +66,12 @@ impl Row {
         self
     }
 
-    /// As printed: yes, NO, or a dash.
+    /// As printed: yes, NO, or unjudged.
     pub(crate) fn mark(&self) -> &'static str {
         match self.holds {
             Some(true) => "yes",
             Some(false) => "NO",
-            None => "-",
+            None => "unjudged",
         }
     }
 
@@ -94,11 +94,7 @@ impl Row {
 
     /// As the file of expected verdicts has it: `A: Table II, ...`, and `unjudged` where this program cannot judge.
     pub(crate) fn found(&self) -> Found {
-        let outcome = match self.holds {
-            Some(true) => "yes",
-            Some(false) => "NO",
-            None => "unjudged",
-        };
+        let outcome = self.mark();
         Found {
             name: format!("{}: {}", self.paper, self.item),
             sim: self.sim.map_or("any", Sim::name).to_owned(),

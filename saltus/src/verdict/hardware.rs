@@ -106,6 +106,8 @@ pub(crate) struct Hardware<const N: usize> {
     heat_share: Total,
     supply: Window,
     power: Total,
+    /// What the supply gave, J.
+    energy: f64,
     /// Links that touched, each with the time of its first touch.
     touched: Vec<(&'static str, f64)>,
 }
@@ -135,6 +137,7 @@ impl<const N: usize> Hardware<N> {
             heat_share: Total::default(),
             supply: Window::new(tick),
             power: Total::default(),
+            energy: 0.0,
             touched: Vec::new(),
         }
     }
@@ -167,6 +170,7 @@ impl<const N: usize> Hardware<N> {
         self.ground.reach(self.force.peak, b.ground_force, time);
         self.supply.add(tick.power);
         self.power.reach(self.supply.peak, b.supply_power, time);
+        self.energy += dt * tick.power;
         let joints = self.heat.iter_mut().zip(tick.given).zip(&self.motors);
         for ((heat, torque), motor) in joints {
             *heat += dt * lab::copper_loss(*torque, motor.gear, b.torque_constant, b.resistance);
@@ -226,6 +230,8 @@ impl<const N: usize> Hardware<N> {
             ground_force: self.ground.value,
             heat_share: self.heat_share.value,
             supply_power: self.power.value,
+            supply_limit: Some(b.supply_power).filter(|limit| limit.is_finite()),
+            supply_energy: self.energy,
             touched: self.touched.iter().map(|(name, _)| *name).collect(),
             exceeded,
         }
@@ -248,7 +254,7 @@ fn saturated<const N: usize>(
         })
 }
 
-/// The account of a run that has ended; s, N m, rad/s, weights, W.
+/// The account of a run that has ended; s, N m, rad/s, weights, W, J.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
     pub(crate) saturation: [f64; 3],
@@ -259,6 +265,9 @@ pub(crate) struct Found {
     pub(crate) ground_force: f64,
     pub(crate) heat_share: f64,
     pub(crate) supply_power: f64,
+    /// None where nobody has published one: the power is then measured and not judged.
+    pub(crate) supply_limit: Option<f64>,
+    pub(crate) supply_energy: f64,
     pub(crate) touched: Vec<&'static str>,
     /// Budgets that were exceeded, and links that touched and may not.
     pub(crate) exceeded: Vec<Failure>,
@@ -284,6 +293,8 @@ impl Found {
             "links_touched": self.touched,
             "heat_share": self.heat_share,
             "supply_power_w": self.supply_power,
+            "supply_limit_w": self.supply_limit,
+            "supply_energy_j": self.supply_energy,
         })
     }
 }

@@ -7,6 +7,8 @@
 mod hardware;
 mod words;
 
+#[cfg(test)]
+pub(crate) use hardware::Found;
 pub(crate) use hardware::{Hardware, Stage, Tick};
 
 use serde_json::{Value, json};

@@ -57,9 +57,13 @@ impl super::hardware::Found {
         } else {
             format!("touched: {}", self.touched.join(", "))
         };
+        let limit = self.supply_limit.map_or_else(
+            || "no limit known".to_owned(),
+            |limit| format!("of {limit:.0}"),
+        );
         format!(
             "saturation {push_off:.1}, {flight:.1}, {landing:.1} ms; stops {:.1} ms, {:.1} N m; {:.1} rad/s, {:.1} ms too fast; ground \
-             {:.1} weights; heat {:.2}; {:.0} W; {touched}",
+             {:.1} weights; heat {:.2}; supply {:.0} W ({limit}), {:.0} J; {touched}",
             1e3 * self.stop_time,
             self.stop_torque,
             self.peak_speed,
@@ -67,6 +71,7 @@ impl super::hardware::Found {
             self.ground_force,
             self.heat_share,
             self.supply_power,
+            self.supply_energy,
         )
     }
 }
