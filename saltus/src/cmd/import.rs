@@ -4,7 +4,7 @@
 //! folder is not, 1 if the crate cannot be written.
 
 use super::failure::{Failure, brief};
-use super::folder::describe;
+use super::folder::{check_new, describe};
 use super::output::Output;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -75,6 +75,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
+        if !folder.is_dir() {
+            check_new(Some(folder))?;
+        }
         write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(
             |error| match error.kind() {
                 ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
