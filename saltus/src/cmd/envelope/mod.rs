@@ -88,6 +88,7 @@ impl Args {
 
 /// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.sim.check()?;
     let task = Task::load(&args.task)?;
     let mut without = args.without.clone();
     without.sort_unstable();

@@ -87,6 +87,7 @@ fn number(text: &str) -> Option<f64> {
 
 /// Runs the command. Exit code 0 when the jump is on target, 2 when it is not or cannot be.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.sim.check()?;
     let Some(task) = icub::Task::named(&args.what) else {
         args.refuse_humanoid_options()?;
         return quadruped::run(args);

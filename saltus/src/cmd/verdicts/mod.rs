@@ -80,6 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         put!("{}", keys::markdown());
         return Ok(ExitCode::SUCCESS);
     }
+    args.sim.iter().try_for_each(|sim| sim.check())?;
     interrupt::listen()?;
     let expected = args.expect.as_deref().map(Expected::read).transpose()?;
     let names = match &expected {
