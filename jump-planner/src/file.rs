@@ -30,3 +30,24 @@ pub fn read_text(path: &Path) -> Result<String> {
     let what = |_| Error::new(ErrorKind::InvalidData, "not UTF-8 text");
     String::from_utf8(read(path)?).map_err(what)
 }
+
+/// An error of a file, with what to do about it.
+#[must_use]
+pub fn told(error: &Error) -> String {
+    use ErrorKind::{
+        FileTooLarge, InvalidData, InvalidFilename, IsADirectory, NotADirectory, NotFound,
+        PermissionDenied, ReadOnlyFilesystem, StorageFull,
+    };
+    let remedy = match error.kind() {
+        NotFound => "check the path",
+        IsADirectory => "give a file, not a folder",
+        NotADirectory => "a part of the path is a file: check it",
+        PermissionDenied | ReadOnlyFilesystem => "choose a place that you may read and write",
+        StorageFull => "make room on the disk",
+        FileTooLarge => "give another file",
+        InvalidData => "give a text file",
+        InvalidFilename => "choose a shorter name",
+        _ => "check the path and the disk",
+    };
+    format!("{error}: {remedy}")
+}

@@ -214,6 +214,14 @@ pub enum ImportError {
         /// The most it handles.
         most: usize,
     },
+    /// More than any robot has.
+    #[error("there are more than {most} {what}: that is no robot; give the robot alone")]
+    TooLarge {
+        /// Of what there is too much.
+        what: &'static str,
+        /// The most that is read.
+        most: usize,
+    },
     /// The tables do not make a model.
     #[error("the tables do not make a model: {0}")]
     Table(#[from] rbd_core::TableError),

@@ -11,6 +11,7 @@ pub mod urdf;
 
 mod canonical;
 mod locks;
+mod size;
 mod tree;
 
 // The vectors and matrices of this crate's interface.

@@ -13,6 +13,7 @@ mod firmware;
 mod firmware_lints;
 mod first_hour;
 mod flash_plan;
+mod fuzz;
 mod gen_model;
 mod icount;
 mod image;
@@ -82,6 +83,8 @@ enum Command {
     Package(package::Args),
     /// Run the examples of all crates.
     Examples(examples::Args),
+    /// Hostile files and command lines for `saltus`, until the time is over.
+    Fuzz(fuzz::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
         Command::FirstHour(args) => first_hour::run(&args),
         Command::Package(args) => package::run(&args),
         Command::Examples(args) => examples::run(&args),
+        Command::Fuzz(args) => fuzz::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

@@ -7,6 +7,7 @@
 
 use super::profile::{LimbsTable, ProfileFile};
 use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
+use crate::range::Range;
 use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
@@ -32,7 +33,7 @@ const TRUNK_HEIGHT: f64 = 0.14;
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
     /// The file cannot be read.
-    #[error("{0}")]
+    #[error("{}", crate::file::told(.0))]
     File(#[from] std::io::Error),
     /// The URDF of a profile cannot be read.
     #[error("urdf: {path}: {error}: the path is seen from the profile")]
@@ -102,6 +103,14 @@ pub enum RobotError {
         /// Its upper limit.
         upper: f64,
     },
+    /// No size of a quadruped.
+    #[error("its {what}: {error}")]
+    Size {
+        /// What is measured.
+        what: &'static str,
+        /// What it must be, and what it is.
+        error: String,
+    },
     /// No posture stands.
     #[error("no standing posture: leg {0} cannot reach below its hip within its joint limits")]
     Posture(&'static str),
@@ -166,6 +175,7 @@ impl Quadruped {
             }
         }
         robot.joints.iter().try_for_each(check_limits)?;
+        size("mass, kg", Range::Above(0.01, 1e4), robot.mass())?;
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
         let mut feet = [Frame::IDENTITY; LEGS];
@@ -199,6 +209,7 @@ impl Quadruped {
             planar(knee - joint(3 * leg + 1)) + planar(foot(leg) - knee)
         };
         let leg_length = (0..LEGS).map(length).fold(f64::INFINITY, f64::min);
+        size("leg's length, m", Range::Above(0.01, 100.0), leg_length)?;
         let limits: [JointLimits<f64>; JOINTS] = core::array::from_fn(|i| robot.joints[i].limits);
         let strongest = limits
             .iter()
@@ -232,6 +243,13 @@ impl Quadruped {
         data.owners = hardware::owners(&Self::leak(data.clone()));
         Ok(Self::leak(data))
     }
+}
+
+/// Refuses what is nowhere near a robot: a solver would look for long for a jump of a feather or a mountain.
+fn size(what: &'static str, range: Range, x: f64) -> Result<(), RobotError> {
+    range
+        .check(x)
+        .map_err(|error| RobotError::Size { what, error })
 }
 
 /// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.

@@ -218,7 +218,7 @@ pub enum TaskError {
         known: String,
     },
     /// The file cannot be read.
-    #[error("{path}: {error}: check the path")]
+    #[error("{path}: {}", crate::file::told(.error))]
     File {
         /// The file.
         path: PathBuf,

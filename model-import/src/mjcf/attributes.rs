@@ -11,7 +11,7 @@ use crate::error::ImportError;
 
 /// How messages call an element.
 pub(super) fn element_of(node: Node<'_, '_>) -> String {
-    let line = node.document().text_pos_at(node.range().start).row;
+    let line = crate::urdf::line_of(node);
     let tag = node.tag_name().name();
     match node.attribute("name") {
         Some(name) => format!("{tag} `{name}` (line {line})"),

@@ -45,6 +45,7 @@ pub fn parse(text: &str, base: BaseKind) -> Result<(Urdf, BaseKind), ImportError
         column: e.pos().col,
         message: e.to_string(),
     })?;
+    crate::size::check(&document)?;
     let root = document.root_element();
     if root.tag_name().name() != "mujoco" {
         let found = root.tag_name().name().to_owned();

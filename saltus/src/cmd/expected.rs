@@ -1,6 +1,7 @@
 //! The file of expected verdicts: how each task ends in each simulator, and what each item of the papers comes out as. A jump that ends
 //! otherwise, better or worse, is a change that somebody has to look at and write down.
 
+use super::folder::describe;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -38,10 +39,14 @@ impl Expected {
     /// Reads the file.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
         let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-        let text = jump_planner::file::read_text(path).map_err(|error| show(&error))?;
+        let text = jump_planner::file::read_text(path).map_err(|error| describe(path, &error))?;
         Ok(Self {
             path: path.to_owned(),
-            tables: toml::from_str(&text).map_err(|error| show(&error))?,
+            tables: toml::from_str(&text).map_err(|error| {
+                show(&format!(
+                    "{error}: it must be like jump-planner/tasks/expected.toml"
+                ))
+            })?,
         })
     }
 

@@ -2,36 +2,34 @@
 
 use super::failure::Failure;
 use super::leftovers::{self, unfinished};
+use jump_planner::file::told;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// A file's error with its name and what to do.
 pub(crate) fn describe(path: &Path, error: &io::Error) -> String {
-    use io::ErrorKind::{
-        FileTooLarge, InvalidData, IsADirectory, NotADirectory, NotFound, PermissionDenied,
-        ReadOnlyFilesystem, StorageFull,
-    };
-    let remedy = match error.kind() {
-        NotFound => "check the path",
-        IsADirectory => "give a file, not a folder",
-        NotADirectory => "a part of the path is a file: check it",
-        PermissionDenied | ReadOnlyFilesystem => "choose a place that you may read and write",
-        StorageFull => "make room on the disk",
-        FileTooLarge => "give another file",
-        InvalidData => "give a text file",
-        _ => "check the path and the disk",
-    };
-    format!("{}: {error}: {remedy}", path.display())
+    format!("{}: {}", path.display(), told(error))
 }
 
 /// Fails where a new folder of results cannot be made, before the work that would fill it: `wanted`, or one in `out`. What killed
 /// processes left there is removed.
 pub(crate) fn check_new(wanted: Option<&Path>) -> Result<(), Failure> {
-    match wanted.filter(|path| path.exists()) {
-        Some(path) => Err(taken(path).into()),
-        None => check_parent(wanted.unwrap_or(Path::new("out/new"))),
+    let path = wanted.unwrap_or(Path::new("out/new"));
+    // A link that leads nowhere is there too, and a name may be longer than names can be.
+    match path.symlink_metadata() {
+        Ok(_) if wanted.is_some() => Err(taken(path).into()),
+        Err(error) if is_unusable(&error) => Err(describe(path, &error).into()),
+        _ => check_parent(path),
     }
+}
+
+/// Whether nothing can ever be at a path of which this is told.
+fn is_unusable(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::InvalidFilename | io::ErrorKind::InvalidInput
+    )
 }
 
 /// Fails where a file cannot be written, before the work of which it tells.
@@ -42,6 +40,10 @@ pub(crate) fn check_file(path: &Path) -> Result<(), Failure> {
     }
     if path.exists() && !path.is_file() {
         return Ok(());
+    }
+    match path.symlink_metadata() {
+        Err(error) if is_unusable(&error) => return Err(describe(path, &error).into()),
+        _ => {}
     }
     check_parent(path)
 }

@@ -4,8 +4,9 @@
 //! folder is not, 1 if the crate cannot be written.
 
 use super::failure::{Failure, brief};
-use super::folder::describe;
+use super::folder::{check_new, describe};
 use super::output::Output;
+use jump_planner::range::Range;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,7 +34,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "free", value_parser = ["free", "lock", "refuse"])]
     mimic: String,
     /// Largest deviation of a joint axis from a coordinate axis that is taken for rounding; aligned joints compute faster.
-    #[arg(long, default_value_t = AXIS_EXACT)]
+    #[arg(long, default_value_t = AXIS_EXACT, allow_negative_numbers = true, value_parser = rounding)]
     axis_rounding: f64,
     /// Whether moments of inertia that no body has are an error or kept.
     #[arg(long, default_value = "physical", value_parser = ["physical", "as-written"])]
@@ -57,6 +58,11 @@ pub(crate) struct Args {
     pub(crate) output: Output,
 }
 
+fn rounding(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Range::From(0.0, 0.1).check(number).map(|()| number)
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let read = |path: &Path| match path.extension().is_some_and(|e| e == "xml") {
@@ -75,6 +81,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let file = args.urdf.file_name().unwrap_or_default().to_string_lossy();
     let provenance = Provenance::new(&file, &text, &args.licence);
     if let Some(folder) = &args.out {
+        if !folder.is_dir() {
+            check_new(Some(folder))?;
+        }
         write_crate(folder, &robot, &about(args, &robot)?, &provenance).map_err(
             |error| match error.kind() {
                 ErrorKind::AlreadyExists => Failure::Refused(error.to_string()),
@@ -107,6 +116,14 @@ fn options(args: &Args) -> Result<Options, ImportError> {
     })
 }
 
+/// Letters of a version, such as 0.1.0-rc.1.
+fn of_version(c: char) -> bool {
+    c.is_ascii_alphanumeric() || ".-+*".contains(c)
+}
+
+/// Names that a crate cannot have beside the compiler's own.
+const TAKEN: [&str; 6] = ["core", "std", "alloc", "test", "proc_macro", "rbd-core"];
+
 fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
     let rbd_core = match &args.rbd_core {
         None => Dependency::default(),
@@ -115,7 +132,8 @@ fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
             if folder.is_dir() {
                 let path = folder.canonicalize().map_err(|error| error.to_string())?;
                 Dependency::Path(path)
-            } else if text.starts_with(|c: char| c.is_ascii_digit()) {
+            } else if text.starts_with(|c: char| c.is_ascii_digit()) && text.chars().all(of_version)
+            {
                 Dependency::Version(text.clone())
             } else {
                 return Err(format!("--rbd-core {text}: neither a folder nor a version"));
@@ -128,7 +146,14 @@ fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
     };
     let word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if !package.starts_with(|c: char| c.is_ascii_alphabetic()) || !package.chars().all(word) {
-        return Err(format!("--package {package}: not a package name"));
+        return Err(format!(
+            "--package {package}: not a package name: letters, digits, - and _, a letter first"
+        ));
+    }
+    if TAKEN.contains(&package.as_str()) {
+        return Err(format!(
+            "--package {package}: that is another crate's name: choose one such as {package}-model"
+        ));
     }
     Ok(Crate {
         package,

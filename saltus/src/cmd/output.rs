@@ -1,6 +1,7 @@
 //! What a command prints: text, one JSON object, or nothing; and how far it is, on a terminal only.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use core::ops::RangeInclusive;
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use jump_planner::planned::Planner;
@@ -51,6 +52,17 @@ impl Output {
         let bar = ProgressBar::new(steps);
         bar.set_style(style.progress_chars("=> "));
         Ok(bar)
+    }
+}
+
+/// A whole number from the first to the last; what it must be is said where it is something else.
+pub(crate) fn whole(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<u64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().ok().filter(|x| range.contains(x));
+        let (low, high) = (range.start(), range.end());
+        number.ok_or_else(|| format!("a whole number from {low} to {high} is needed"))
     }
 }
 

@@ -30,10 +30,10 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let robot = match &args.robot {
-        Some(path) => Quadruped::load(path, &args.lock),
-        None => Quadruped::a1(),
-    };
-    let robot = robot.map_err(|error| error.to_string())?;
+        Some(path) => Quadruped::load(path, &args.lock)
+            .map_err(|error| format!("{}: {error}", path.display())),
+        None => Quadruped::a1().map_err(|error| error.to_string()),
+    }?;
     let bytes =
         jump_planner::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;

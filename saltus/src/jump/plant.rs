@@ -29,6 +29,15 @@ impl Sim {
             Self::Mujoco => "mujoco",
         }
     }
+
+    /// Fails where this build does not have it, before the work that needs it.
+    pub(crate) fn check(self) -> Result<(), String> {
+        match self {
+            #[cfg(not(feature = "mujoco"))]
+            Self::Mujoco => Err(NO_MUJOCO.to_owned()),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Ground, motors and joint losses of the plant.

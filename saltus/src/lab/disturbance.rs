@@ -168,7 +168,15 @@ impl FromStr for PlantArgument {
             lab: false,
             over: Disturbance::NOMINAL,
         };
-        for item in items(text) {
+        let all = items(text);
+        let name = |item: &String| item.split('=').next().unwrap_or_default().to_owned();
+        for (i, item) in all.iter().enumerate() {
+            if all[..i].iter().any(|before| name(before) == name(item)) {
+                return Err(format!(
+                    "`{item}`: {} is given twice: say it once",
+                    name(item)
+                ));
+            }
             match item.split_once('=') {
                 None if item == "lab" => out.lab = true,
                 None if item == "noise" => {
@@ -182,10 +190,10 @@ impl FromStr for PlantArgument {
                         out.over.0[key as usize] = Some(key.row().lab[Lab::A1 as usize][1]);
                     }
                 }
-                Some(("payload", place)) => out.over.set_payload(&item, place)?,
+                Some(("payload", place)) => out.over.set_payload(item, place)?,
                 split => {
-                    let (name, value) = split.unwrap_or((&item, ""));
-                    out.over.set(&item, name, value)?;
+                    let (name, value) = split.unwrap_or((item, ""));
+                    out.over.set(item, name, value)?;
                 }
             }
         }
@@ -245,9 +253,13 @@ mod tests {
             "payload=1@2",
             "ground=mud",
             "loss=nan",
+            "mass=1,mass=2",
+            "payload=1@0,0,0,payload=2",
+            "lab,lab",
         ] {
             let error = wrong.parse::<PlantArgument>().unwrap_err();
-            assert!(error.contains(wrong), "{wrong}: {error}");
+            let last = wrong.rsplit(',').next().unwrap();
+            assert!(error.contains(last), "{wrong}: {error}");
         }
     }
 

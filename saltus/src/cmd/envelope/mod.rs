@@ -6,7 +6,7 @@ mod study;
 use super::failure::Failure;
 use super::folder::check_new;
 use super::interrupt;
-use super::output::Output;
+use super::output::{Output, whole};
 use crate::cmd::output::planners;
 use crate::jump::envelope::{Counts, table};
 use crate::jump::measure::Measure;
@@ -28,10 +28,10 @@ pub(crate) struct Args {
     /// Task, such as a1/lateral.
     task: String,
     /// Number of runs over all shards.
-    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, value_parser = whole(1..=MOST_SAMPLES))]
     samples: u64,
     /// Seed of the whole study.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// Simulator.
     #[arg(long, default_value = "native")]
@@ -88,6 +88,7 @@ impl Args {
 
 /// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.sim.check()?;
     let task = Task::load(&args.task)?;
     let mut without = args.without.clone();
     without.sort_unstable();

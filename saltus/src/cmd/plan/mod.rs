@@ -7,7 +7,7 @@ mod whole_body;
 
 use super::failure::Failure;
 use super::folder::{check_file, describe, write_file};
-use super::output::Output;
+use super::output::{Output, whole};
 use crate::reference::whole_body::shipped;
 use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
@@ -68,11 +68,11 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 0.0, conflicts_with = "task", value_parser = noise)]
     guess_noise: f64,
     /// Reference problems: seed of the guess noise.
-    #[arg(long, default_value_t = 1, conflicts_with = "task")]
+    #[arg(long, default_value_t = 1, conflicts_with = "task", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// Reference problems: solve this many times, each from the cold guess, and report the median time.
-    #[arg(long, default_value_t = 1, conflicts_with = "task")]
-    repeat: usize,
+    #[arg(long, default_value_t = 1, conflicts_with = "task", allow_negative_numbers = true, value_parser = whole(1..=1000))]
+    repeat: u64,
     /// Print every iteration to standard error.
     #[arg(long)]
     trace: bool,
@@ -139,7 +139,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
                 }
             },
         };
-        ("whole_body", whole_body::solve(args, &file, name, &srb)?)
+        let named = |error| match &args.srb {
+            Some(path) => format!("{}: {error}", path.display()),
+            None => error,
+        };
+        let planned = whole_body::solve(args, &file, name, &srb).map_err(named)?;
+        ("whole_body", planned)
     } else {
         ("srb", srb::solve(args, &file, name)?)
     };
@@ -221,7 +226,7 @@ impl Args {
     ) -> Result<(Solution<f64>, f64), String> {
         let mut times = Vec::new();
         let mut outcome = None;
-        for _ in 0..self.repeat.max(1) {
+        for _ in 0..self.repeat {
             let start = Instant::now();
             outcome = Some(solve()?);
             times.push(start.elapsed().as_secs_f64() * 1e3);

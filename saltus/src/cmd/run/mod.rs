@@ -6,7 +6,7 @@ mod quadruped;
 use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
-use super::output::planners;
+use super::output::{planners, whole};
 use crate::humanoid as icub;
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Interface, Lab, PlantArgument};
@@ -29,7 +29,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "native")]
     sim: Sim,
     /// Seed of the lab: 0 is the nominal run, others draw what differs from the plan, and the noise.
-    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// Quadruped tasks: how the legs are planned along the single rigid body's motion [default: whole-body].
     #[arg(long, value_parser = planners())]
@@ -87,6 +87,7 @@ fn number(text: &str) -> Option<f64> {
 
 /// Runs the command. Exit code 0 when the jump is on target, 2 when it is not or cannot be.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.sim.check()?;
     let Some(task) = icub::Task::named(&args.what) else {
         args.refuse_humanoid_options()?;
         return quadruped::run(args);

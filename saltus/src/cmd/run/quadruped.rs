@@ -125,7 +125,10 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
         .robot
         .as_deref()
         .map_or_else(Quadruped::a1, |urdf| Quadruped::load(urdf, &args.lock));
-    let robot = robot.map_err(|error| show(&error))?;
+    let robot = robot.map_err(|error| match &args.robot {
+        Some(urdf) => format!("{}: {error}", urdf.display()),
+        None => error.to_string(),
+    })?;
     let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
     check_values(&robot, &plan).map_err(|error| show(&error))?;
     let name = args.task.as_deref().unwrap_or(plan.header().task);

@@ -8,7 +8,7 @@ mod subject;
 use super::expected::{Expected, Found};
 use super::failure::Failure;
 use super::interrupt;
-use super::output::Output;
+use super::output::{Output, whole};
 use crate::jump::plant::Sim;
 use crate::lab::{Interface, PlantArgument, keys};
 
@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[arg(long)]
     plant: Option<PlantArgument>,
     /// Seed of the lab; as in `saltus run`.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// How the motors are commanded; as in `saltus run`.
     #[arg(long, default_value = "torque")]
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with_all = ["plant", "seed", "interface"])]
     conditions: bool,
     /// With --conditions: one column more, so many seeds of the lab.
-    #[arg(long, default_value_t = 0, requires = "conditions")]
+    #[arg(long, default_value_t = 0, requires = "conditions", allow_negative_numbers = true, value_parser = whole(0..=100_000))]
     lab: u64,
     /// How far both simulators are apart at take-off, in flight and at touchdown, on hard and firm ground.
     #[arg(long, conflicts_with_all = ["plant", "seed", "interface", "conditions"])]
@@ -80,6 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         put!("{}", keys::markdown());
         return Ok(ExitCode::SUCCESS);
     }
+    args.sim.iter().try_for_each(|sim| sim.check())?;
     interrupt::listen()?;
     let expected = args.expect.as_deref().map(Expected::read).transpose()?;
     let names = match &expected {
