@@ -247,6 +247,12 @@ impl<const N: usize, const F: usize> PlanNode<N, F> {
     /// Bytes of a node: phase, time, pose and velocity of the base, joints, torques, and per foot force, place and velocity.
     pub const BYTES: usize = 4 * (1 + 1 + 3 + 9 + 6 + 3 * N + 9 * F);
 
+    /// Only the time.
+    pub(super) const fn time(from: &mut Reader<'_>) -> f32 {
+        let [..] = from.take::<4>();
+        from.number()
+    }
+
     pub(super) const fn read(from: &mut Reader<'_>) -> Self {
         let [phase, ..] = from.take::<4>();
         Self {
