@@ -16,8 +16,8 @@ static inline void expect(const char *what, SaltusStatus got, SaltusStatus wante
     }
 }
 
-static inline void hold(const char *what, int true_or_not) {
-    if (!true_or_not) {
+static inline void hold(const char *what, int holds) {
+    if (!holds) {
         printf("wrong: %s\n", what);
         ++failures;
     }

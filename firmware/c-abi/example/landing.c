@@ -11,12 +11,21 @@ static SaltusA1State a1;
 static SaltusA1Command command;
 static SaltusIcubState icub;
 static SaltusIcubCommand torques;
-static double mass[18][18];
+static double mass[18][18], icub_mass[29][29];
 static const double IDENTITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+/* Forward dynamics undoes inverse dynamics. */
+static void undone(const double *back, const double *acceleration, int count) {
+    for (int i = 0; i < count; ++i) {
+        double error = back[i] - acceleration[i];
+        hold("forward dynamics does not undo inverse dynamics", error < 1e-8 && error > -1e-8);
+    }
+}
 
 static void land(void) {
     static const uint8_t contacts[4] = {1, 1, 0, 1};
     SaltusA1Target target = {.height = 0.25};
+    hold("room for the landing", saltus_a1_landing_size() <= sizeof landing && saltus_a1_landing_align() <= 16);
     memcpy(target.rotation_wb, IDENTITY, sizeof IDENTITY);
     memcpy(a1.rotation_wb, IDENTITY, sizeof IDENTITY);
     a1.position_w[2] = 0.26;
@@ -40,10 +49,7 @@ static void land(void) {
     SaltusA1State bad = a1;
     bad.joints[3] = 0.0 / (bad.joints[0] - a1.joints[0]);
     expect("not a number", saltus_a1_landing_step(landing, &bad, contacts, &target, &command), SALTUS_STATUS_BAD_DATA);
-    if (command.feed_forward[1] != 0 || command.damping[1] <= 0) {
-        puts("wrong: bad data did not give the safe command");
-        ++failures;
-    }
+    hold("bad data did not give the safe command", command.feed_forward[1] == 0 && command.damping[1] > 0);
     bad = a1;
     bad.rotation_wb[0] = 2;
     expect("no rotation", saltus_a1_landing_step(landing, &bad, contacts, &target, &command), SALTUS_STATUS_BAD_DATA);
@@ -64,13 +70,7 @@ static void land(void) {
     acceleration[2] = 1;
     expect("inverse dynamics", saltus_a1_inverse_dynamics(&a1, acceleration, effort), SALTUS_STATUS_OK);
     expect("forward dynamics", saltus_a1_forward_dynamics(&a1, effort, back), SALTUS_STATUS_OK);
-    for (int i = 0; i < 18; ++i) {
-        double error = back[i] - acceleration[i];
-        if (error > 1e-9 || error < -1e-9) {
-            puts("wrong: forward dynamics does not undo inverse dynamics");
-            ++failures;
-        }
-    }
+    undone(back, acceleration, 18);
     print("inverse-dynamics", effort, 18);
 }
 
@@ -117,9 +117,8 @@ static void push_off(void) {
     memcpy(icub.rotation_wb, IDENTITY, sizeof IDENTITY);
     icub.position_w[2] = 0.4;
     SaltusIcubTarget target = {.position_w = {0.0, 0.0, 0.4}};
-    if (saltus_icub_push_size() > sizeof push || saltus_a1_landing_size() > sizeof landing) {
-        puts("wrong: the blocks of this example are too small");
-        ++failures;
+    if (saltus_icub_push_size() > sizeof push || saltus_icub_push_align() > 16) {
+        hold("room for the push-off", 0);
         return;
     }
     expect("push before init", saltus_icub_push_tick(push, &icub, &target, &torques), SALTUS_STATUS_NOT_INITIALISED);
@@ -128,6 +127,14 @@ static void push_off(void) {
         expect("push", saltus_icub_push_tick(push, &icub, &target, &torques), SALTUS_STATUS_OK);
     }
     print("push", torques.torques, 23);
+    double acceleration[29] = {[2] = 1, [10] = -3}, effort[29], back[29];
+    expect("iCub's inverse dynamics", saltus_icub_inverse_dynamics(&icub, acceleration, effort), SALTUS_STATUS_OK);
+    expect("iCub's forward dynamics", saltus_icub_forward_dynamics(&icub, effort, back), SALTUS_STATUS_OK);
+    undone(back, acceleration, 29);
+    expect("iCub's mass matrix", saltus_icub_mass_matrix(&icub, icub_mass[0]), SALTUS_STATUS_OK);
+    print("icub-mass", icub_mass[0], 29);
+    effort[3] = 0.0 / (icub_mass[0][1] - icub_mass[1][0]);
+    expect("an effort of no number", saltus_icub_forward_dynamics(&icub, effort, back), SALTUS_STATUS_BAD_DATA);
 }
 
 int main(void) {
