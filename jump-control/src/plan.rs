@@ -6,7 +6,7 @@ use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Motion, Transform};
 use so3::{Scalar, math};
 
-use crate::container::{Container, ContainerError, StoredNodes};
+use crate::container::{Container, ContainerError, StoredNodes, parts};
 use crate::sample::Torques;
 
 /// One node of a plan with `N` joints and `F` feet.
@@ -173,7 +173,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
     /// mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
     #[must_use]
     pub fn base(&self, (node, time): (usize, T)) -> Option<PlannedBase<T>> {
-        self.from(node, |from, to| base_between(from, to?, time))?
+        self.from::<{ parts::BASE }, _>(node, |from, to| base_between(from, to?, time))?
     }
 
     /// By how much later than planned a body in free fall will be where the plan ends, s: (δz + δż T) over the planned speed
@@ -187,7 +187,8 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         vel_w: &Vector3<T>,
     ) -> Option<T> {
         let last = self.count().checked_sub(1)?;
-        let (end, speed) = self.from(last, |node, _| (node.time, world_velocity(node).z))?;
+        let (end, speed) =
+            self.from::<{ parts::BASE }, _>(last, |node, _| (node.time, world_velocity(node).z))?;
         let planned = self.base((node, time))?;
         let falling = -speed;
         let left = end - time;
@@ -209,7 +210,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
     /// Node `i`; none beyond the last.
     #[must_use]
     pub fn node(&self, i: usize) -> Option<Node<T, N, F>> {
-        self.from(i, |node, _| *node)
+        self.from::<{ parts::ALL }, _>(i, |node, _| *node)
     }
 
     /// The time of node `i`, s.
@@ -220,8 +221,8 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         }
     }
 
-    /// What `read` makes of node `i` and of the one after it, if there is one; none beyond the last.
-    pub(crate) fn from<R>(
+    /// What `read` makes of node `i` and of the one after it, if there is one; none beyond the last. It looks at time and [`parts`] only.
+    pub(crate) fn from<const PARTS: u8, R>(
         &self,
         i: usize,
         read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
@@ -231,20 +232,21 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
                 let mut nodes = nodes.iter().skip(i);
                 Some(read(nodes.next()?, nodes.next()))
             }
-            Nodes::Stored(nodes) => from_stored(nodes, i, read),
+            Nodes::Stored(nodes) => from_stored::<PARTS, _, _, _, _>(nodes, i, read),
         }
     }
 }
 
 /// [`Plan::from`] of stored nodes. Not inlined: two nodes on the stack are for those alone who follow such a plan.
 #[inline(never)]
-fn from_stored<T: Scalar, const N: usize, const F: usize, R>(
+fn from_stored<const PARTS: u8, T: Scalar, const N: usize, const F: usize, R>(
     nodes: &StoredNodes<'_, N, F>,
     i: usize,
     read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
 ) -> Option<R> {
-    let node = nodes.get(i)?.node();
-    let next = nodes.get(i.saturating_add(1)).map(|next| next.node());
+    let node = nodes.parts::<PARTS>(i)?.node();
+    let next = nodes.parts::<PARTS>(i.saturating_add(1));
+    let next = next.map(|next| next.node());
     Some(read(&node, next.as_ref()))
 }
 

@@ -6,6 +6,7 @@
 
 use so3::{Scalar, math};
 
+use crate::container::parts;
 use crate::plan::{Node, Plan};
 
 /// What feed-forward torques do between nodes.
@@ -66,11 +67,11 @@ pub fn sample<T: Scalar, const N: usize, const F: usize>(
         i += 1;
     }
     let reference = match found {
-        Some(i) => plan.from(i, |a, b| match b {
+        Some(i) => plan.from::<{ parts::JOINTS }, _>(i, |a, b| match b {
             Some(b) => between(i, a, b, time, plan.torques),
             None => still(i, a),
         }),
-        None => plan.from(0, |first, _| still(0, first)),
+        None => plan.from::<{ parts::JOINTS }, _>(0, |first, _| still(0, first)),
     };
     reference.unwrap_or(Reference::ZERO)
 }

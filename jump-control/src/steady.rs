@@ -18,6 +18,7 @@ use so3::Scalar;
 use so3::math;
 
 use crate::Measurement;
+use crate::container::parts;
 use crate::plan::Plan;
 
 /// Gains of the base in the push-off; all zero switch it off.
@@ -59,7 +60,7 @@ impl<T: Scalar> Steady<T> {
     #[must_use]
     pub fn grip<const N: usize, const F: usize>(&self, plan: &Plan<'_, T, N, F>, node: usize) -> T {
         let pushes = |force: &Vector3<T>| force.z > T::ZERO;
-        match plan.from(node, |node, _| node.forces_w.iter().all(pushes)) {
+        match plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w.iter().all(pushes)) {
             Some(false) => self.grip,
             _ => T::ZERO,
         }
@@ -79,7 +80,7 @@ impl<T: Scalar> Steady<T> {
         feet_b: &[Vector3<T>; F],
     ) -> [Vector3<T>; F] {
         let mut forces = [Vector3::zeros(); F];
-        let pushes = plan.from(node, |node, _| node.forces_w);
+        let pushes = plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w);
         let Some((forces_w, planned)) = pushes.zip(plan.base((node, time))) else {
             return forces;
         };

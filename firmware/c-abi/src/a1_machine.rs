@@ -290,10 +290,16 @@ pub extern "C" fn saltus_a1_machine_joint_tick(
         let out: &mut [f64; N] = output(torques.cast())?;
         *out = [0.0; N];
         let (q, qd): (&[f64; N], _) = (input(joints.cast())?, input(joint_velocities.cast())?);
-        *out = JointCommand::damp(SAFE_DAMPING).torques(q, qd, &MOTORS);
-        let A1Machine(machine) = resident(memory)?;
-        *out = machine.joint_tick(q, qd, dt);
-        alive(machine.phase())
+        match resident(memory) {
+            Ok(A1Machine(machine)) => {
+                *out = machine.joint_tick(q, qd, dt);
+                alive(machine.phase())
+            }
+            Err(error) => {
+                *out = JointCommand::damp(SAFE_DAMPING).torques(q, qd, &MOTORS);
+                Err(error)
+            }
+        }
     })())
 }
 

@@ -54,6 +54,7 @@ mod write;
 
 pub use error::ContainerError;
 pub use hash::model_hash;
+pub(crate) use record::parts;
 pub use record::{
     GroundStep, Header, LONGEST_ROBOT, LONGEST_TASK, MOST_PHASES, Margins, PlanNode, PlanPhase,
 };
@@ -239,6 +240,15 @@ impl<'a, const N: usize, const F: usize> StoredNodes<'a, N, F> {
     pub(crate) const fn get(&self, i: usize) -> Option<PlanNode<N, F>> {
         match self.from(i) {
             Some(mut from) => Some(PlanNode::read(&mut from)),
+            None => None,
+        }
+    }
+
+    /// [`parts`] of node `i`, zeros elsewhere.
+    #[inline(always)]
+    pub(crate) const fn parts<const PARTS: u8>(&self, i: usize) -> Option<PlanNode<N, F>> {
+        match self.from(i) {
+            Some(mut from) => Some(PlanNode::read_parts::<PARTS>(&mut from)),
             None => None,
         }
     }
