@@ -1,14 +1,14 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-#[cfg(feature = "mujoco")]
+#[cfg(feature = "mjcf")]
 extern crate std;
 
 mod collide;
 mod contact;
 mod error;
 mod joints;
-#[cfg(feature = "mujoco")]
+#[cfg(feature = "mjcf")]
 mod mjcf;
 #[cfg(feature = "mujoco")]
 mod mujoco;
@@ -22,7 +22,7 @@ pub use collide::{MOST_SHAPES, effective_mass, gaps, self_contacts};
 pub use contact::{ContactLaw, ContactMass, ContactMotion, ContactState};
 pub use error::Error;
 pub use joints::Stops;
-#[cfg(feature = "mujoco")]
+#[cfg(feature = "mjcf")]
 pub use mjcf::{Geom, mjcf};
 #[cfg(feature = "mujoco")]
 pub use mujoco::{ModelRefused, MujocoSimulator, mujoco_version};

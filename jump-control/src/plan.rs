@@ -6,6 +6,7 @@ use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Motion, Transform};
 use so3::{Scalar, math};
 
+use crate::container::{Container, ContainerError, StoredNodes, parts};
 use crate::sample::Torques;
 
 /// One node of a plan with `N` joints and `F` feet.
@@ -65,7 +66,7 @@ pub struct PlannedBase<T: Scalar> {
 /// A plan: nodes in order of time, and when its phases end.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a, T: Scalar, const N: usize, const F: usize> {
-    nodes: &'a [Node<T, N, F>],
+    nodes: Nodes<'a, T, N, F>,
     /// When the last stance phase ends and the robot leaves the ground, s.
     pub takeoff: T,
     /// Beginning of the pre-landing posture, the paper's `T_posing`, s.
@@ -74,6 +75,15 @@ pub struct Plan<'a, T: Scalar, const N: usize, const F: usize> {
     pub touchdown: T,
     /// What torques do between nodes.
     pub torques: Torques,
+}
+
+/// Where a plan's nodes stand.
+#[derive(Clone, Copy, Debug)]
+enum Nodes<'a, T: Scalar, const N: usize, const F: usize> {
+    /// As the sampler takes them, such as a `static` that the compiler filled.
+    Ready(&'a [Node<T, N, F>]),
+    /// As the container has them: each is read where it is needed.
+    Stored(StoredNodes<'a, N, F>),
 }
 
 /// Why a plan cannot be executed.
@@ -129,7 +139,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
             return Err(PlanError::PhaseOrder);
         }
         Ok(Self {
-            nodes,
+            nodes: Nodes::Ready(nodes),
             takeoff,
             posing,
             touchdown,
@@ -137,29 +147,33 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         })
     }
 
+    /// A plan that stays where it is stored: what is followed are the container's bytes, and nothing is copied. The numbers are those of
+    /// [`Container::read_into`], bit by bit; reading them takes time in every tick instead of memory.
+    ///
+    /// # Errors
+    /// [`ContainerError::Value`] names the first number that cannot be ([`Container::check`]).
+    pub fn stored(container: &Container<'a, N, F>) -> Result<Self, ContainerError> {
+        container.check()?;
+        let header = container.header();
+        if header.takeoff > header.posing {
+            let (node, what) = (None, "posing");
+            return Err(ContainerError::Value { node, what });
+        }
+        let time = |x: f32| T::of(f64::from(x));
+        Ok(Self {
+            nodes: Nodes::Stored(container.stored()),
+            takeoff: time(header.takeoff),
+            posing: time(header.posing),
+            touchdown: time(header.touchdown),
+            torques: header.torques,
+        })
+    }
+
     /// The base at `time`, between `node` and the next: positions and velocities linear, the rotation turned on from the node by the
     /// mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
     #[must_use]
     pub fn base(&self, (node, time): (usize, T)) -> Option<PlannedBase<T>> {
-        let mut following = self.nodes.iter().skip(node);
-        let (from, to) = following.next().zip(following.next())?;
-        // Also false for NaN.
-        let begun = time >= from.time;
-        if !begun {
-            return None;
-        }
-        let dt = to.time - from.time;
-        let s = math::min((time - from.time) / dt, T::ONE);
-        let blend = |a: Vector3<T>, b: Vector3<T>| a + (b - a) * s;
-        let vel_w = |node: &Node<T, N, F>| node.base.rotation * node.base_velocity.linear;
-        let rate = from.base_velocity.angular;
-        let omega_b = blend(rate, to.base_velocity.angular);
-        Some(PlannedBase {
-            pos_w: blend(from.base.translation, to.base.translation),
-            vel_w: blend(vel_w(from), vel_w(to)),
-            rot_wb: from.base.rotation * so3::exp(&((rate + omega_b) * (T::HALF * s * dt))),
-            omega_b,
-        })
+        self.from::<{ parts::BASE }, _>(node, |from, to| base_between(from, to?, time))?
     }
 
     /// By how much later than planned a body in free fall will be where the plan ends, s: (δz + δż T) over the planned speed
@@ -172,19 +186,95 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         base: &Transform<T>,
         vel_w: &Vector3<T>,
     ) -> Option<T> {
-        let last = self.nodes.last()?;
+        let last = self.count().checked_sub(1)?;
+        let (end, speed) =
+            self.from::<{ parts::BASE }, _>(last, |node, _| (node.time, world_velocity(node).z))?;
         let planned = self.base((node, time))?;
-        let falling = -(last.base.rotation * last.base_velocity.linear).z;
-        let left = last.time - time;
+        let falling = -speed;
+        let left = end - time;
         let late =
             (base.translation.z - planned.pos_w.z + (vel_w.z - planned.vel_w.z) * left) / falling;
         // Slower than this is no fall: its time is anybody's guess.
         (falling > T::HALF && left >= T::ZERO && late.is_finite_number()).then_some(late)
     }
 
-    /// The nodes.
+    /// Number of nodes.
     #[must_use]
-    pub const fn nodes(&self) -> &'a [Node<T, N, F>] {
-        self.nodes
+    pub const fn count(&self) -> usize {
+        match &self.nodes {
+            Nodes::Ready(nodes) => nodes.len(),
+            Nodes::Stored(nodes) => nodes.count(),
+        }
     }
+
+    /// Node `i`; none beyond the last.
+    #[must_use]
+    pub fn node(&self, i: usize) -> Option<Node<T, N, F>> {
+        self.from::<{ parts::ALL }, _>(i, |node, _| *node)
+    }
+
+    /// The time of node `i`, s.
+    pub(crate) fn time(&self, i: usize) -> Option<T> {
+        match &self.nodes {
+            Nodes::Ready(nodes) => nodes.get(i).map(|node| node.time),
+            Nodes::Stored(nodes) => nodes.time(i).map(|x| T::of(f64::from(x))),
+        }
+    }
+
+    /// What `read` makes of node `i` and of the one after it, if there is one; none beyond the last. It looks at time and [`parts`] only.
+    pub(crate) fn from<const PARTS: u8, R>(
+        &self,
+        i: usize,
+        read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
+    ) -> Option<R> {
+        match &self.nodes {
+            Nodes::Ready(nodes) => {
+                let mut nodes = nodes.iter().skip(i);
+                Some(read(nodes.next()?, nodes.next()))
+            }
+            Nodes::Stored(nodes) => from_stored::<PARTS, _, _, _, _>(nodes, i, read),
+        }
+    }
+}
+
+/// [`Plan::from`] of stored nodes. Not inlined: two nodes on the stack are for those alone who follow such a plan.
+#[inline(never)]
+fn from_stored<const PARTS: u8, T: Scalar, const N: usize, const F: usize, R>(
+    nodes: &StoredNodes<'_, N, F>,
+    i: usize,
+    read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
+) -> Option<R> {
+    let node = nodes.parts::<PARTS>(i)?.node();
+    let next = nodes.parts::<PARTS>(i.saturating_add(1));
+    let next = next.map(|next| next.node());
+    Some(read(&node, next.as_ref()))
+}
+
+/// Velocity of a node's base, world axes, m/s.
+fn world_velocity<T: Scalar, const N: usize, const F: usize>(node: &Node<T, N, F>) -> Vector3<T> {
+    node.base.rotation * node.base_velocity.linear
+}
+
+/// The base at `time` between two nodes; none before the first of them.
+fn base_between<T: Scalar, const N: usize, const F: usize>(
+    from: &Node<T, N, F>,
+    to: &Node<T, N, F>,
+    time: T,
+) -> Option<PlannedBase<T>> {
+    // Also false for NaN.
+    let begun = time >= from.time;
+    if !begun {
+        return None;
+    }
+    let dt = to.time - from.time;
+    let s = math::min((time - from.time) / dt, T::ONE);
+    let blend = |a: Vector3<T>, b: Vector3<T>| a + (b - a) * s;
+    let rate = from.base_velocity.angular;
+    let omega_b = blend(rate, to.base_velocity.angular);
+    Some(PlannedBase {
+        pos_w: blend(from.base.translation, to.base.translation),
+        vel_w: blend(world_velocity(from), world_velocity(to)),
+        rot_wb: from.base.rotation * so3::exp(&((rate + omega_b) * (T::HALF * s * dt))),
+        omega_b,
+    })
 }

@@ -6,6 +6,7 @@
 
 use so3::{Scalar, math};
 
+use crate::container::parts;
 use crate::plan::{Node, Plan};
 
 /// What feed-forward torques do between nodes.
@@ -50,27 +51,29 @@ pub fn sample<T: Scalar, const N: usize, const F: usize>(
     time: T,
     hint: usize,
 ) -> Reference<T, N> {
-    let nodes = plan.nodes();
-    let from = match nodes.get(hint) {
-        Some(node) if node.time <= time => hint,
+    let from = match plan.time(hint) {
+        Some(begun) if begun <= time => hint,
         _ => 0,
     };
     let mut found = None;
-    for (i, node) in nodes.iter().enumerate().skip(from) {
-        if node.time <= time {
-            found = Some((i, node));
-        } else {
+    let mut i = from;
+    while let Some(begun) = plan.time(i) {
+        // Also false for NaN.
+        let passed = begun <= time;
+        if !passed {
             break;
         }
+        found = Some(i);
+        i += 1;
     }
-    match (found, nodes.first()) {
-        (Some((i, a)), _) => match nodes.get(i + 1) {
+    let reference = match found {
+        Some(i) => plan.from::<{ parts::JOINTS }, _>(i, |a, b| match b {
             Some(b) => between(i, a, b, time, plan.torques),
             None => still(i, a),
-        },
-        (None, Some(first)) => still(0, first),
-        (None, None) => Reference::ZERO,
-    }
+        }),
+        None => plan.from::<{ parts::JOINTS }, _>(0, |first, _| still(0, first)),
+    };
+    reference.unwrap_or(Reference::ZERO)
 }
 
 fn still<T: Scalar, const N: usize, const F: usize>(

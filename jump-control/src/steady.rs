@@ -18,6 +18,7 @@ use so3::Scalar;
 use so3::math;
 
 use crate::Measurement;
+use crate::container::parts;
 use crate::plan::Plan;
 
 /// Gains of the base in the push-off; all zero switch it off.
@@ -59,8 +60,8 @@ impl<T: Scalar> Steady<T> {
     #[must_use]
     pub fn grip<const N: usize, const F: usize>(&self, plan: &Plan<'_, T, N, F>, node: usize) -> T {
         let pushes = |force: &Vector3<T>| force.z > T::ZERO;
-        match plan.nodes().get(node) {
-            Some(node) if !node.forces_w.iter().all(pushes) => self.grip,
+        match plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w.iter().all(pushes)) {
+            Some(false) => self.grip,
             _ => T::ZERO,
         }
     }
@@ -79,10 +80,11 @@ impl<T: Scalar> Steady<T> {
         feet_b: &[Vector3<T>; F],
     ) -> [Vector3<T>; F] {
         let mut forces = [Vector3::zeros(); F];
-        let Some((from, planned)) = plan.nodes().get(node).zip(plan.base((node, time))) else {
+        let pushes = plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w);
+        let Some((forces_w, planned)) = pushes.zip(plan.base((node, time))) else {
             return forces;
         };
-        let weights = from.forces_w.map(|force| math::max(force.z, T::ZERO));
+        let weights = forces_w.map(|force| math::max(force.z, T::ZERO));
         let sum = weights.iter().fold(T::ZERO, |sum, &w| sum + w);
         // Also false for NaN.
         let pushing = sum > T::ZERO;
@@ -105,7 +107,7 @@ impl<T: Scalar> Steady<T> {
         let (middle, turn) = couple(&weights, feet_b, &moment);
 
         let mut scale = T::ONE;
-        let feet = weights.iter().zip(feet_b).zip(&from.forces_w);
+        let feet = weights.iter().zip(feet_b).zip(&forces_w);
         for (force, ((&w, foot), force_w)) in forces.iter_mut().zip(feet) {
             let lean = rot_bw * force_w - planned_bw * force_w;
             *force = (turn.cross(&(foot - middle)) + push_b) * w + lean * self.direction;

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use jump_control::Plan;
-use nalgebra::Rotation3;
+use jump_control::container::{Container, ContainerError};
+use nalgebra::{Rotation3, Vector3};
 use so3::Scalar;
 
 /// One jump: a plan and where it is to end.
@@ -17,6 +18,22 @@ pub struct Jump<'a, T: Scalar, const N: usize, const F: usize> {
     pub rot_goal: Rotation3<T>,
     /// Joint positions in which the legs meet the ground, body level, rad.
     pub landing_joints: [T; N],
+}
+
+impl<'a, T: Scalar, const N: usize, const F: usize> Jump<'a, T, N, F> {
+    /// The jump of a stored plan, which stays where it is: its bytes are what is flown.
+    ///
+    /// # Errors
+    /// [`ContainerError::Value`] names the first number that cannot be.
+    pub fn stored(container: &Container<'a, N, F>) -> Result<Self, ContainerError> {
+        let (header, number) = (container.header(), |x: f32| T::of(f64::from(x)));
+        Ok(Self {
+            plan: Plan::stored(container)?,
+            weight: number(header.margins.weight),
+            rot_goal: so3::exp(&Vector3::new(T::ZERO, T::ZERO, number(header.heading))),
+            landing_joints: header.landing_joints.map(number),
+        })
+    }
 }
 
 /// Why a jump was not begun; the robot goes on standing.

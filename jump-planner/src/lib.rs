@@ -10,6 +10,7 @@ pub mod planned;
 pub mod range;
 pub mod reference;
 pub mod robot;
+pub mod scene;
 mod setup;
 pub mod stored;
 pub mod task;

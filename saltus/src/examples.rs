@@ -15,7 +15,7 @@ Ctrl-C; 141 in silence where the reader of the output has gone, with the files c
 pub(crate) const PLAN: &str = "\
 Examples:
   saltus plan a1/lateral                              plan, audit, and tell
-  saltus plan a1/lateral --out out/lateral            also keep plan.bin, which controllers read, and plan.json
+  saltus plan a1/lateral --out out/lateral            also keep plan.bin, which controllers read, plan.json, and scene.xml for MuJoCo
   saltus plan my-task.toml --robot my.urdf            your own task for your own quadruped
   saltus plan a1/forward-60 --timing 0.5,0.3,0.55     with given durations of the phases
   saltus plan --reference spin --stage whole-body     a reference problem of paper A

@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use a1_model::A1Geared;
-use jump_control::Node;
 use jump_control::container::{Container, model_hash};
-use saltus_probe::flight::{BYTES, PLAN, Planned, jump};
+use jump_control::{Measurement, Node, Phase};
+use jump_machine::{Inputs, Jump, Machine};
+use landing::Workspace;
+use saltus_probe::flight::{BYTES, PLAN, Planned, jump, settings};
 
 type A1<'a> = Container<'a, 12, 4>;
 
@@ -82,4 +84,56 @@ fn the_machine_is_armed_with_what_the_header_says() {
     assert_eq!(armed.landing_joints, h.landing_joints);
     let turn = so3::log(&armed.rot_goal);
     assert_eq!([turn.x, turn.y, turn.z], [0.0, 0.0, h.heading]);
+}
+
+/// The plan as C arms it: from the bytes, where they are. Through all phases the machine commands the same bits as with the nodes that the
+/// compiler read. The robot is seen where the plan begins all the time, but for what grows to be wrong about it.
+#[test]
+fn a_machine_follows_the_bytes_as_it_follows_the_nodes() {
+    let stored = Jump::<f64, 12, 4>::stored(&open(BYTES)).unwrap();
+    let first = stored.plan.node(0).unwrap();
+    let (mut here, mut there) = (Workspace::new(), Workspace::new());
+    let mut machines =
+        [(&mut here, stored), (&mut there, jump().unwrap())].map(|(memory, jump)| {
+            let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings(), memory);
+            machine.arm(jump, 0.3).unwrap();
+            machine
+        });
+    let mut inputs = Inputs {
+        measured: Measurement {
+            base: first.base,
+            base_velocity: first.base_velocity,
+            joints: first.joints,
+            joint_velocities: [0.0; 12],
+            foot_forces: [33.0; 4],
+            age: 0.001,
+        },
+        felt: first.torques,
+    };
+    let mut seen = Vec::new();
+    let end = ((0.3 + stored.plan.touchdown + 0.2) * 1e3) as u32;
+    for k in 0..end {
+        inputs.measured.base.translation.z += 1e-5;
+        inputs.measured.base_velocity.angular.y += 1e-3;
+        let now = f64::from(k) * 1e-3;
+        let ticks = machines.each_mut().map(|machine| {
+            let tick = machine.tick(now, Some(&inputs));
+            (tick, *machine.command())
+        });
+        assert_eq!(ticks[0], ticks[1], "{now} s");
+        let joints = (&inputs.measured.joints, &inputs.measured.joint_velocities);
+        let torques = machines.each_mut().map(|machine| {
+            machine
+                .joint_tick(joints.0, joints.1, 1e-4)
+                .map(f64::to_bits)
+        });
+        assert_eq!(torques[0], torques[1], "{now} s");
+        if seen.last() != Some(&ticks[0].0.phase) {
+            seen.push(ticks[0].0.phase);
+        }
+    }
+    assert_eq!(
+        seen[..4],
+        [Phase::Hold, Phase::Stance, Phase::Flight, Phase::PreLanding]
+    );
 }

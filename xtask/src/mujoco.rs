@@ -4,7 +4,7 @@
 //! MuJoCo, and find the library where it is without an environment variable (`saltus/build.rs`). Tests share the usual folder.
 //!
 //! The library is the one in the wheel `mujoco` on PyPI: it needs nothing but glibc. It is linked by the names
-//! `libmujoco.so` and `libmujoco.so.VERSION`, of which the second is its SONAME.
+//! `libmujoco.so` and `libmujoco.so.VERSION`, of which the second is its SONAME. The wheel's C headers stand beside it in `include`.
 
 use std::env;
 use std::ffi::OsString;
@@ -79,11 +79,16 @@ fn aside(cargo: &mut Command) {
     }
 }
 
+/// The folder with MuJoCo's library and its `include`, and the path on which programs in C look for it.
+pub(crate) fn library_for_c() -> Result<(PathBuf, OsString)> {
+    library(Path::new("python3"))
+}
+
 /// The folder of the library, fetched if it is not there, and the path on which programs look for it.
 fn library(python: &Path) -> Result<(PathBuf, OsString)> {
     let folder = run::root().join("target/mujoco");
     let library = folder.join(format!("libmujoco.so.{VERSION}"));
-    if !library.exists() {
+    if !library.exists() || !folder.join("include/mujoco/mujoco.h").exists() {
         fetch(python, &folder, &library)?;
     }
     let search = search_path(&folder)?;
@@ -115,7 +120,10 @@ fn fetch(python: &Path, folder: &Path, library: &Path) -> Result<()> {
         }
     }
     let inside = wheel.join(format!("mujoco/libmujoco.so.{VERSION}"));
-    // The short name first: a library in place means that all is in place.
+    let headers = folder.join("include");
+    run::remove_folder(&headers)?;
+    fs::rename(wheel.join("mujoco/include"), headers).context("the wheel has no C headers")?;
+    // The short name before the long one: a library in place means that all is in place.
     fs::copy(&inside, folder.join("libmujoco.so"))
         .with_context(|| format!("{} is not in the wheel", inside.display()))?;
     fs::rename(&inside, library)?;

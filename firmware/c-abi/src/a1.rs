@@ -62,18 +62,32 @@ struct A1Landing {
 
 impl Resident for A1Landing {
     const KIND: u64 = 0x6131_6c61_6e64;
+    type Lent = ();
 }
 
+/// Damping of the safe command, N m s/rad.
+pub(crate) const SAFE_DAMPING: f64 = 2.0;
+
 /// Damping alone: what a caller gets that must not trust anything else.
-const SAFE: A1Command = A1Command {
+pub(crate) const SAFE: A1Command = A1Command {
     position: [0.0; N],
     velocity: [0.0; N],
     feed_forward: [0.0; N],
     stiffness: [0.0; N],
-    damping: [2.0; N],
+    damping: [SAFE_DAMPING; N],
 };
 
 impl A1Command {
+    pub(crate) fn of(c: &JointCommand<f64, N>) -> Self {
+        Self {
+            position: c.position,
+            velocity: c.velocity,
+            feed_forward: c.feed_forward,
+            stiffness: c.gains.map(|g| g.stiffness),
+            damping: c.gains.map(|g| g.damping),
+        }
+    }
+
     fn read(&self) -> JointCommand<f64, N> {
         let mut gains = [JointGains {
             stiffness: 0.0,
@@ -92,67 +106,70 @@ impl A1Command {
     }
 }
 
-/// Inverse dynamics of A1 with rotors: effort = M a + h. `acceleration` and `effort` have 6 numbers of the base, then joints.
+/// Inverse dynamics of A1 with rotors: effort = M a + h. `acceleration` and `effort` have 18 numbers: 6 of the base, then joints.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_inverse_dynamics(
     state: *const A1State,
-    acceleration: *const [f64; 18],
-    effort: *mut [f64; 18],
+    acceleration: *const f64,
+    effort: *mut f64,
 ) -> Status {
     status((|| {
         let (q, v) = input(state)?.read()?;
-        let a = dynamics::split::<N, 18>(input(acceleration)?)?;
-        dynamics::inverse(&A1Geared, &q, &v, &tangent(&a.0, &a.1), output(effort)?);
-        Ok(())
-    })())
-}
-
-/// Forward dynamics of A1 with rotors, free in the air: acceleration = M⁻¹ (effort − h).
-#[unsafe(no_mangle)]
-pub extern "C" fn saltus_a1_forward_dynamics(
-    state: *const A1State,
-    given: *const [f64; 18],
-    acceleration: *mut [f64; 18],
-) -> Status {
-    status((|| {
-        let (q, v) = input(state)?.read()?;
-        let f = dynamics::split::<N, 18>(input(given)?)?;
-        dynamics::forward(
+        let a = dynamics::split::<N, 18>(input(acceleration.cast())?)?;
+        dynamics::inverse::<_, N, 18>(
             &A1Geared,
             &q,
             &v,
-            &effort(&f.0, &f.1),
-            output(acceleration)?,
+            &tangent(&a.0, &a.1),
+            output(effort.cast())?,
         );
         Ok(())
     })())
 }
 
-/// Mass matrix of A1 with rotors, 18 × 18, symmetric.
+/// Forward dynamics of A1 with rotors, free in the air: acceleration = M⁻¹ (effort − h); 18 numbers each.
 #[unsafe(no_mangle)]
-pub extern "C" fn saltus_a1_mass_matrix(
+pub extern "C" fn saltus_a1_forward_dynamics(
     state: *const A1State,
-    mass: *mut [[f64; 18]; 18],
+    given: *const f64,
+    acceleration: *mut f64,
 ) -> Status {
     status((|| {
-        let (q, _) = input(state)?.read()?;
-        dynamics::mass::<_, N, 18>(&A1Geared, &q, output(mass)?);
+        let (q, v) = input(state)?.read()?;
+        let f = dynamics::split::<N, 18>(input(given.cast())?)?;
+        dynamics::forward::<_, N, 18>(
+            &A1Geared,
+            &q,
+            &v,
+            &effort(&f.0, &f.1),
+            output(acceleration.cast())?,
+        );
         Ok(())
     })())
 }
 
-/// Torques of the joints, for 10 kHz: the command inside what the motors can do. Joints whose numbers are not finite get
+/// Mass matrix of A1 with rotors, 18 × 18 numbers, symmetric.
+#[unsafe(no_mangle)]
+pub extern "C" fn saltus_a1_mass_matrix(state: *const A1State, mass: *mut f64) -> Status {
+    status((|| {
+        let (q, _) = input(state)?.read()?;
+        dynamics::mass::<_, N, 18>(&A1Geared, &q, output(mass.cast())?);
+        Ok(())
+    })())
+}
+
+/// Torques of the twelve joints, for 10 kHz: the command inside what the motors can do. Joints whose numbers are not finite get
 /// zero torque.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_joint_pd(
     command: *const A1Command,
-    joints: *const [f64; 12],
-    joint_velocities: *const [f64; 12],
-    torques: *mut [f64; 12],
+    joints: *const f64,
+    joint_velocities: *const f64,
+    torques: *mut f64,
 ) -> Status {
     status((|| {
-        let (q, qd) = (input(joints)?, input(joint_velocities)?);
-        *output(torques)? = input(command)?.read().torques(q, qd, &MOTORS);
+        let (q, qd) = (input(joints.cast())?, input(joint_velocities.cast())?);
+        *output(torques.cast())? = input(command)?.read().torques(q, qd, &MOTORS);
         Ok(())
     })())
 }
@@ -192,14 +209,7 @@ pub extern "C" fn saltus_a1_cartesian_pd(
             age: 0.0,
         };
         let pd = CartesianPd::new(&BUILD, FEET.each_ref().map(|foot| foot.frame));
-        let c = pd.command(&A1Geared, &measured, &reference, &then);
-        *out = A1Command {
-            position: c.position,
-            velocity: c.velocity,
-            feed_forward: c.feed_forward,
-            stiffness: c.gains.map(|g| g.stiffness),
-            damping: c.gains.map(|g| g.damping),
-        };
+        *out = A1Command::of(&pd.command(&A1Geared, &measured, &reference, &then));
         Ok(())
     })())
 }
@@ -223,23 +233,24 @@ pub extern "C" fn saltus_a1_landing_init(
     bytes: usize,
     version: u32,
 ) -> Status {
-    status(place(memory, bytes, version, || A1Landing {
+    let fill = |&mut ()| A1Landing {
         landing: Landing::new(
             FEET.each_ref().map(|foot| foot.frame),
             Settings::new(&BUILD),
             MOTORS.each_ref().map(|motor| motor.torque),
         ),
         workspace: Workspace::new(),
-    }))
+    };
+    status(place(memory, bytes, version, || (), fill))
 }
 
-/// One tick of the landing, for 1 kHz: forces of the feet in contact (`contacts`, zero or not) that bring the body to rest.
+/// One tick of the landing, for 1 kHz: forces of the feet in contact (`contacts`, four of them, zero or not) that bring the body to rest.
 /// Whatever the status, `command` may be given to the joints if it is neither `NullPointer` nor `Misaligned`.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_landing_step(
     memory: *mut c_void,
     state: *const A1State,
-    contacts: *const [u8; 4],
+    contacts: *const u8,
     target: *const A1Target,
     command: *mut A1Command,
 ) -> Status {
@@ -263,7 +274,7 @@ pub extern "C" fn saltus_a1_landing_step(
             rot_wb: checked.base.rotation,
             offset_w: given.offset_w,
         };
-        let on = input(contacts)?.map(|contact| contact != 0);
+        let on = input::<[u8; 4]>(contacts.cast())?.map(|contact| contact != 0);
         let A1Landing { landing, workspace } = controller;
         let c = landing.step(&A1Geared, &q, &v, &on, &target, &given.waiting, workspace);
         *out = A1Command {

@@ -53,47 +53,57 @@ struct IcubPush {
 
 impl Resident for IcubPush {
     const KIND: u64 = 0x6963_7562_7073;
+    type Lent = ();
 }
 
-/// Inverse dynamics of iCub: effort = M a + h. `acceleration` and `effort` have 6 numbers of the base, then joints.
+/// Inverse dynamics of iCub: effort = M a + h. `acceleration` and `effort` have 29 numbers: 6 of the base, then joints.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_icub_inverse_dynamics(
     state: *const IcubState,
-    acceleration: *const [f64; 29],
-    effort: *mut [f64; 29],
+    acceleration: *const f64,
+    effort: *mut f64,
 ) -> Status {
     status((|| {
         let (q, v) = input(state)?.read()?;
-        let a = dynamics::split::<N, 29>(input(acceleration)?)?;
-        dynamics::inverse(&Icub23, &q, &v, &tangent(&a.0, &a.1), output(effort)?);
+        let a = dynamics::split::<N, 29>(input(acceleration.cast())?)?;
+        dynamics::inverse::<_, N, 29>(
+            &Icub23,
+            &q,
+            &v,
+            &tangent(&a.0, &a.1),
+            output(effort.cast())?,
+        );
         Ok(())
     })())
 }
 
-/// Forward dynamics of iCub, free in the air: acceleration = M⁻¹ (effort − h).
+/// Forward dynamics of iCub, free in the air: acceleration = M⁻¹ (effort − h); 29 numbers each.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_icub_forward_dynamics(
     state: *const IcubState,
-    given: *const [f64; 29],
-    acceleration: *mut [f64; 29],
+    given: *const f64,
+    acceleration: *mut f64,
 ) -> Status {
     status((|| {
         let (q, v) = input(state)?.read()?;
-        let f = dynamics::split::<N, 29>(input(given)?)?;
-        dynamics::forward(&Icub23, &q, &v, &effort(&f.0, &f.1), output(acceleration)?);
+        let f = dynamics::split::<N, 29>(input(given.cast())?)?;
+        dynamics::forward::<_, N, 29>(
+            &Icub23,
+            &q,
+            &v,
+            &effort(&f.0, &f.1),
+            output(acceleration.cast())?,
+        );
         Ok(())
     })())
 }
 
-/// Mass matrix of iCub, 29 × 29, symmetric.
+/// Mass matrix of iCub, 29 × 29 numbers, symmetric.
 #[unsafe(no_mangle)]
-pub extern "C" fn saltus_icub_mass_matrix(
-    state: *const IcubState,
-    mass: *mut [[f64; 29]; 29],
-) -> Status {
+pub extern "C" fn saltus_icub_mass_matrix(state: *const IcubState, mass: *mut f64) -> Status {
     status((|| {
         let (q, _) = input(state)?.read()?;
-        dynamics::mass::<_, N, 29>(&Icub23, &q, output(mass)?);
+        dynamics::mass::<_, N, 29>(&Icub23, &q, output(mass.cast())?);
         Ok(())
     })())
 }
@@ -110,18 +120,18 @@ pub extern "C" fn saltus_icub_push_align() -> usize {
     align::<IcubPush>()
 }
 
-/// Initialises the push-off controller in a block; `version` is `SALTUS_VERSION`, `posture` the joints to stay near, rad, and `max_steps` the
+/// Initialises the push-off controller in a block; `version` is `SALTUS_VERSION`, `posture` the 23 joints to stay near, rad, and `max_steps` the
 /// most steps of the solver in a tick, 0 for no cap: with 12 a tick takes 720,000 instructions on a Cortex-M7, with every other 15,000 more.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_icub_push_init(
     memory: *mut c_void,
     bytes: usize,
     version: u32,
-    posture: *const [f64; 23],
+    posture: *const f64,
     max_steps: u32,
 ) -> Status {
     status((|| {
-        let posture = input(posture)?;
+        let posture: &[f64; N] = input(posture.cast())?;
         if !posture.iter().all(|x| x.is_finite()) {
             return Err(Status::BadData);
         }
@@ -129,13 +139,14 @@ pub extern "C" fn saltus_icub_push_init(
         if max_steps > 0 {
             settings.max_steps = max_steps;
         }
-        place(memory, bytes, version, || IcubPush {
+        let fill = |&mut ()| IcubPush {
             program: TorqueJump::new(settings, *posture),
             snapshot: Snapshot::ZERO,
             contacts: SOLES
                 .each_ref()
                 .map(|sole| Contact::new(sole, FRICTION, MAX_FORCE)),
-        })
+        };
+        place(memory, bytes, version, || (), fill)
     })())
 }
 

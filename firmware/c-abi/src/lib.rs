@@ -1,15 +1,19 @@
 //! Dynamics and controllers of A1 and iCub behind a C interface.
 //!
 //! The rules: memory is the caller's, its size and alignment are asked for; every function returns a [`Status`]; nothing
-//! calls back, allocates or keeps a pointer; wrong use is an error, never undefined behaviour, as far as C lets a callee
-//! know. The header `include/saltus.h` is generated from here.
+//! calls back, allocates or keeps a pointer, but a machine its plan; wrong use is an error, never undefined behaviour, as far as C lets a
+//! callee know. A machine follows the plan's bytes where they are: what flies is what was audited. The header `include/saltus.h` is generated from here.
 //!
 //! This crate alone has `unsafe`: pointers from C become references in `memory`, in one place for each kind of pointer.
 #![cfg_attr(target_os = "none", no_std)]
 
 mod a1;
+mod a1_estimator;
+mod a1_machine;
+mod codes;
 mod dynamics;
 mod icub;
+mod machine;
 mod memory;
 mod state;
 
@@ -17,6 +21,19 @@ pub use a1::{
     A1Command, A1Reference, A1Target, saltus_a1_cartesian_pd, saltus_a1_forward_dynamics,
     saltus_a1_inverse_dynamics, saltus_a1_joint_pd, saltus_a1_landing_align,
     saltus_a1_landing_init, saltus_a1_landing_size, saltus_a1_landing_step, saltus_a1_mass_matrix,
+};
+pub use a1_estimator::{
+    A1Estimate, A1Sample, A1Start, saltus_a1_estimator_align, saltus_a1_estimator_init,
+    saltus_a1_estimator_size, saltus_a1_estimator_update,
+};
+pub use a1_machine::{
+    A1Observation, A1Plan, A1Tick, saltus_a1_machine_align, saltus_a1_machine_arm,
+    saltus_a1_machine_init, saltus_a1_machine_joint_tick, saltus_a1_machine_phase,
+    saltus_a1_machine_size, saltus_a1_machine_tick, saltus_a1_plan_read,
+};
+pub use codes::{
+    Culprit, EstimateStatus, Fault, Phase, Refusal, SampleFault, Work, saltus_fault_text,
+    saltus_phase_text, saltus_refusal_text, saltus_sample_fault_text, saltus_status_text,
 };
 pub use icub::{
     IcubCommand, IcubTarget, saltus_icub_forward_dynamics, saltus_icub_inverse_dynamics,
@@ -26,7 +43,7 @@ pub use icub::{
 pub use state::{A1State, IcubState};
 
 /// Version of the interface; a controller is initialised with the version that the caller was compiled with.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// What came of a call.
 #[repr(C)]
@@ -48,6 +65,28 @@ pub enum Status {
     BadData = 6,
     /// The program was not solved; outputs are the best that was found, or the safe command.
     NotSolved = 7,
+    /// The plan's bytes end before it does; the culprit has both lengths.
+    PlanCutOff = 8,
+    /// The bytes are no plan.
+    NotAPlan = 9,
+    /// The plan is of another version of the format; the culprit has both.
+    PlanVersion = 10,
+    /// The plan's checksum does not fit: bytes have changed.
+    PlanDamaged = 11,
+    /// The plan is for a robot with other numbers of joints and feet; the culprit has both.
+    PlanSize = 12,
+    /// The plan is for another robot of the same size; the culprit has both hashes.
+    PlanRobot = 13,
+    /// The plan's header contradicts its length.
+    PlanHeader = 14,
+    /// A value of the plan cannot be, though the checksum fits; the culprit names it and its node.
+    PlanValue = 15,
+    /// The robot does not stand: it holds for another jump, is under way, or has aborted.
+    NotStanding = 16,
+    /// The start is not a number, or leaves less time than holding still and weighing take.
+    TooLate = 17,
+    /// The machine has aborted, its fault says why; outputs damp the joints and nothing else.
+    Aborted = 18,
 }
 
 /// The version of the library: [`VERSION`].

@@ -89,6 +89,35 @@ macro_rules! read {
 read! { A1State 12 }
 read! { IcubState 23 }
 
+/// How far the square of a quaternion's length may be from 1.
+const UNIT: f64 = 1e-3;
+
+/// A pose from a position and a quaternion x, y, z, w; none unless all is finite and the quaternion of length 1.
+pub(crate) fn pose(position: &[f64; 3], xyzw: &[f64; 4]) -> Option<Transform<f64>> {
+    let square: f64 = xyzw.iter().map(|x| x * x).sum();
+    // Also false for NaN.
+    let unit = so3::math::abs(square - 1.0) <= UNIT;
+    if !unit || !position.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let rotation = so3::quat::to_rotation(&so3::quat::from_xyzw(*xyzw).ok()?);
+    Some(Transform::new(rotation, Vector3::from(*position)))
+}
+
+/// A pose that is none: who acts on it finds that it is not finite.
+pub(crate) fn no_pose() -> Transform<f64> {
+    let nan = Matrix3::repeat(f64::NAN);
+    Transform::new(
+        Rotation3::from_matrix_unchecked(nan),
+        Vector3::repeat(f64::NAN),
+    )
+}
+
+/// The quaternion x, y, z, w of a rotation, w ≥ 0.
+pub(crate) fn xyzw(rotation: &Rotation3<f64>) -> [f64; 4] {
+    so3::quat::to_xyzw(&so3::quat::from_rotation(rotation))
+}
+
 /// A generalised acceleration: base in base axes, linear first, then joints.
 pub(crate) fn tangent<const N: usize>(base: &[f64; 6], joints: &[f64; N]) -> Tangent<f64, N> {
     Tangent {

@@ -25,6 +25,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Leaves out so many bytes.
+    pub(super) const fn skip(&mut self, bytes: usize) {
+        self.0 = match self.0.split_at_checked(bytes) {
+            Some((_, rest)) => rest,
+            None => &[],
+        };
+    }
+
     pub(super) const fn number(&mut self) -> f32 {
         f32::from_le_bytes(self.take())
     }

@@ -21,7 +21,7 @@ use crate::plan::Node;
 ///
 /// let header = PLAN.header();
 /// let plan = Plan::new(&NODES, header.takeoff, header.posing, header.touchdown, header.torques)?;
-/// assert_eq!(plan.nodes().len(), 3);
+/// assert_eq!(plan.count(), 3);
 /// # Ok::<(), jump_control::PlanError>(())
 /// ```
 ///

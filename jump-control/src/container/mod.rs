@@ -54,6 +54,7 @@ mod write;
 
 pub use error::ContainerError;
 pub use hash::model_hash;
+pub(crate) use record::parts;
 pub use record::{
     GroundStep, Header, LONGEST_ROBOT, LONGEST_TASK, MOST_PHASES, Margins, PlanNode, PlanPhase,
 };
@@ -178,14 +179,12 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
     /// Node `i`; none beyond the last.
     #[must_use]
     pub const fn node(&self, i: usize) -> Option<PlanNode<N, F>> {
-        let begin = i.saturating_mul(PlanNode::<N, F>::BYTES);
-        let Some((_, rest)) = self.nodes.split_at_checked(begin) else {
-            return None;
-        };
-        if rest.len() < PlanNode::<N, F>::BYTES {
-            return None;
-        }
-        Some(PlanNode::read(&mut Reader::new(rest)))
+        self.stored().get(i)
+    }
+
+    /// The bytes of the nodes.
+    pub(crate) const fn stored(&self) -> StoredNodes<'a, N, F> {
+        StoredNodes { bytes: self.nodes }
     }
 
     /// Nodes in order.
@@ -210,6 +209,56 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
             *slot = node.node();
         }
         Ok(filled)
+    }
+}
+
+/// The nodes of a container that was checked: a view of their bytes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StoredNodes<'a, const N: usize, const F: usize> {
+    bytes: &'a [u8],
+}
+
+impl<'a, const N: usize, const F: usize> StoredNodes<'a, N, F> {
+    /// How many there are.
+    pub(crate) const fn count(&self) -> usize {
+        self.bytes.len() / PlanNode::<N, F>::BYTES
+    }
+
+    /// Bytes from node `i` on; none beyond the last.
+    const fn from(&self, i: usize) -> Option<Reader<'a>> {
+        let begin = i.saturating_mul(PlanNode::<N, F>::BYTES);
+        let Some((_, rest)) = self.bytes.split_at_checked(begin) else {
+            return None;
+        };
+        if rest.len() < PlanNode::<N, F>::BYTES {
+            return None;
+        }
+        Some(Reader::new(rest))
+    }
+
+    /// Node `i`.
+    pub(crate) const fn get(&self, i: usize) -> Option<PlanNode<N, F>> {
+        match self.from(i) {
+            Some(mut from) => Some(PlanNode::read(&mut from)),
+            None => None,
+        }
+    }
+
+    /// [`parts`] of node `i`, zeros elsewhere.
+    #[inline(always)]
+    pub(crate) const fn parts<const PARTS: u8>(&self, i: usize) -> Option<PlanNode<N, F>> {
+        match self.from(i) {
+            Some(mut from) => Some(PlanNode::read_parts::<PARTS>(&mut from)),
+            None => None,
+        }
+    }
+
+    /// Its time alone, s.
+    pub(crate) const fn time(&self, i: usize) -> Option<f32> {
+        match self.from(i) {
+            Some(mut from) => Some(PlanNode::<N, F>::time(&mut from)),
+            None => None,
+        }
     }
 }
 

@@ -89,6 +89,18 @@ pub struct Margins {
     pub weight: f32,
 }
 
+/// Parts of a node, as bits: who follows a stored plan reads those alone that it needs.
+pub(crate) mod parts {
+    /// Place and motion of the base.
+    pub(crate) const BASE: u8 = 1;
+    /// Positions, velocities and torques of the joints.
+    pub(crate) const JOINTS: u8 = 2;
+    /// Forces on the feet.
+    pub(crate) const FORCES: u8 = 4;
+    /// All that the sampler takes.
+    pub(crate) const ALL: u8 = BASE | JOINTS | FORCES;
+}
+
 /// A node of a robot with `N` joints and `F` feet. Torques and forces hold from this node to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanNode<const N: usize, const F: usize> {
@@ -247,21 +259,43 @@ impl<const N: usize, const F: usize> PlanNode<N, F> {
     /// Bytes of a node: phase, time, pose and velocity of the base, joints, torques, and per foot force, place and velocity.
     pub const BYTES: usize = 4 * (1 + 1 + 3 + 9 + 6 + 3 * N + 9 * F);
 
+    /// Only the time.
+    pub(super) const fn time(from: &mut Reader<'_>) -> f32 {
+        let [..] = from.take::<4>();
+        from.number()
+    }
+
     pub(super) const fn read(from: &mut Reader<'_>) -> Self {
-        let [phase, ..] = from.take::<4>();
-        Self {
-            phase,
-            time: from.number(),
-            position_w: from.numbers(),
-            rotation_wb: from.rows(),
-            velocity_b: from.numbers(),
-            joints: from.numbers(),
-            joint_velocities: from.numbers(),
-            torques: from.numbers(),
-            forces_w: from.rows(),
-            feet_b: from.rows(),
-            foot_velocities_b: from.rows(),
+        let mut node = Self::read_parts::<{ parts::ALL }>(from);
+        node.feet_b = from.rows();
+        node.foot_velocities_b = from.rows();
+        node
+    }
+
+    /// Phase, time and these [`parts`]; zeros elsewhere.
+    #[inline(always)]
+    pub(super) const fn read_parts<const PARTS: u8>(from: &mut Reader<'_>) -> Self {
+        let mut node = Self::ZERO;
+        [node.phase, ..] = from.take::<4>();
+        node.time = from.number();
+        if PARTS & parts::BASE != 0 {
+            node.position_w = from.numbers();
+            node.rotation_wb = from.rows();
+            node.velocity_b = from.numbers();
+        } else {
+            from.skip(4 * (3 + 9 + 6));
         }
+        if PARTS & parts::JOINTS != 0 {
+            node.joints = from.numbers();
+            node.joint_velocities = from.numbers();
+            node.torques = from.numbers();
+        } else {
+            from.skip(4 * 3 * N);
+        }
+        if PARTS & parts::FORCES != 0 {
+            node.forces_w = from.rows();
+        }
+        node
     }
 
     pub(super) fn write(&self, to: &mut Writer<'_>) {
@@ -298,6 +332,7 @@ impl<const N: usize, const F: usize> PlanNode<N, F> {
 
     /// As the sampler takes it.
     #[must_use]
+    #[inline]
     pub fn node<T: Scalar>(&self) -> Node<T, N, F> {
         let node = self.node_f64();
         let vector = |x: Vector3<f64>| x.map(T::of);
@@ -338,6 +373,7 @@ macro_rules! conversion {
         impl<const N: usize, const F: usize> PlanNode<N, F> {
             #[doc = $doc]
             #[must_use]
+            #[inline]
             pub const fn $name(&self) -> Node<$T, N, F> {
                 const fn vector(x: &[f32; 3]) -> Vector3<$T> {
                     Vector3::new(x[0] as $T, x[1] as $T, x[2] as $T)

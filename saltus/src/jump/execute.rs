@@ -359,7 +359,7 @@ fn record(
     t: f64,
 ) -> Sample {
     let (q, v) = (world.configuration(), world.velocity());
-    let node = plan.nodes().get(planned.node);
+    let node = plan.node(planned.node);
     Sample {
         time: t,
         phase,

@@ -43,7 +43,7 @@ pub(crate) struct Args {
     /// Lock joints of that robot at a position, rad or m.
     #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
     lock: Vec<String>,
-    /// New folder for the plan: plan.bin, the container that controllers read, and plan.json.
+    /// New folder for the plan: plan.bin, the container that controllers read, plan.json, and scene.xml for MuJoCo.
     #[arg(long, requires = "task")]
     out: Option<PathBuf>,
     /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).

@@ -96,9 +96,11 @@ fn write(args: &Args, report: &Report) -> Result<(), Failure> {
         json["audit"] = audit.details(&task.robot);
     }
     let text = format!("{json:#}\n");
+    let scene = jump_planner::scene::mjcf(task);
     let files = [
         ("plan.bin", report.found.bytes.as_slice()),
         ("plan.json", text.as_bytes()),
+        ("scene.xml", scene.as_bytes()),
     ];
     publish(Some(folder), &task.name, &files).map(|_| ())
 }
