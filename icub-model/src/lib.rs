@@ -8,6 +8,7 @@ pub mod cad;
 pub mod gazebo;
 pub mod hardware;
 pub mod limits;
+pub mod profile;
 pub mod robots;
 pub mod shapes;
 

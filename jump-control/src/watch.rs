@@ -40,6 +40,8 @@ pub enum Fault {
     Silent,
     /// A controller's command was not finite.
     Command,
+    /// A controller's program had no answer for longer than allowed.
+    Unsolved,
 }
 
 impl fmt::Display for Fault {
@@ -52,6 +54,7 @@ impl fmt::Display for Fault {
             Self::Clock => f.write_str("clock not going forward"),
             Self::Silent => f.write_str("control loop not running"),
             Self::Command => f.write_str("command not finite"),
+            Self::Unsolved => f.write_str("program without an answer for too long"),
         }
     }
 }

@@ -11,14 +11,15 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
     pub(crate) fn event(&mut self, t: T, measured: &Measurement<T, N, F>) -> Option<Event> {
         let (settings, velocity) = (&self.settings, &measured.base_velocity);
         let (linear, angular) = settings.rest;
+        let phase = self.supervisor.phase;
         let moving = velocity.linear.norm_squared() > linear * linear
             || velocity.angular.norm_squared() > angular * angular;
-        self.calm = if moving || !matches!(self.phase, Phase::Landing | Phase::Stand) {
+        self.calm = if moving || !matches!(phase, Phase::Landing | Phase::Stand) {
             T::ZERO
         } else {
             self.calm + settings.period
         };
-        match (self.phase, &self.jump) {
+        match (phase, &self.jump) {
             (Phase::Hold, Some(_)) if t < T::ZERO => None,
             (Phase::Hold, Some(_)) => match self.misplaced(measured) {
                 None => Some(Event::Start),

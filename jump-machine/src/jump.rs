@@ -46,6 +46,8 @@ pub enum Refusal {
     TooLate,
     /// At the start this joint was not where the plan begins.
     Posture(usize),
+    /// A number of the jump is not finite.
+    NotFinite,
 }
 
 impl fmt::Display for Refusal {
@@ -59,6 +61,7 @@ impl fmt::Display for Refusal {
                 f,
                 "joint {joint} is not where the plan begins: plan from where the robot stands"
             ),
+            Self::NotFinite => f.write_str("a number of the jump is not finite"),
         }
     }
 }

@@ -2,10 +2,16 @@
 #![no_std]
 
 mod event;
+pub mod humanoid;
+mod interface;
 mod jump;
 mod machine;
+mod observation;
 mod settings;
+mod supervisor;
 
+pub use interface::{JumpMachine, Tick};
 pub use jump::{Jump, Refusal};
-pub use machine::{Inputs, Machine, Tick, Work};
+pub use machine::{Machine, Work};
+pub use observation::{Inputs, Observation};
 pub use settings::Settings;

@@ -1,24 +1,15 @@
 //! The machine: memory, and one method per rate.
 
 use jump_control::{
-    Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, Slew, Watch,
-    next_phase, sample,
+    Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, sample,
 };
 use landing::{DetectorState, Grip, Landing, Outcome, PreLanding, Target, Turning, Workspace};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
 
-use crate::{Jump, Refusal, Settings};
-
-/// What the machine hears in one tick of 1 kHz.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inputs<T: Scalar, const N: usize, const F: usize> {
-    /// The robot; its base comes from an estimator such as `state-est`.
-    pub measured: Measurement<T, N, F>,
-    /// Mean torques of the joints over the period before the measurement, friction included, N m.
-    pub felt: [T; N],
-}
+use crate::supervisor::{Limits, Supervisor};
+use crate::{Inputs, Jump, JumpMachine, Refusal, Settings, Tick};
 
 /// What a tick computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,19 +22,6 @@ pub enum Work {
     Damping,
 }
 
-/// What came of a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tick {
-    /// Where the jump is.
-    pub phase: Phase,
-    /// What was computed.
-    pub work: Work,
-    /// Why the machine has aborted: the first fault.
-    pub fault: Option<Fault>,
-    /// Why the last jump was not begun.
-    pub refusal: Option<Refusal>,
-}
-
 /// A robot that stands, jumps when it is given a plan, lands and stands again.
 ///
 /// It borrows model, plans and the landing's memory, so that they can be statics.
@@ -51,7 +29,7 @@ pub struct Tick {
 pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) settings: Settings<T, N, F>,
     pub(crate) jump: Option<Jump<'a, T, N, F>>,
-    pub(crate) phase: Phase,
+    pub(crate) supervisor: Supervisor<T, N, F>,
     pub(crate) contact: DetectorState<T, N, F>,
     /// Time at rest so far, s.
     pub(crate) calm: T,
@@ -76,13 +54,6 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     late: T,
     /// Share of their distance from the axis of turning by which the feet are drawn in.
     tucked: T,
-    heard: Option<Inputs<T, N, F>>,
-    last_tick: Option<T>,
-    command: JointCommand<T, N>,
-    /// Time since the command was made, s.
-    silence: T,
-    slew: Slew<T, N>,
-    fault: Option<Fault>,
 }
 
 impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
@@ -96,7 +67,13 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let torques = settings.motors.map(|motor| motor.torque);
         Self {
             jump: None,
-            phase: Phase::Stand,
+            supervisor: Supervisor::new(Limits {
+                period: settings.period,
+                max_age: settings.max_age,
+                max_silence: settings.max_silence,
+                safe_damping: settings.safe_damping,
+                slew: settings.slew,
+            }),
             contact: DetectorState::new(),
             calm: T::ZERO,
             refusal: None,
@@ -113,12 +90,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             node: 0,
             late: T::ZERO,
             tucked: T::ZERO,
-            heard: None,
-            last_tick: None,
-            command: JointCommand::damp(settings.safe_damping),
-            silence: T::ZERO,
-            slew: Slew::new(settings.slew),
-            fault: None,
             settings,
         }
     }
@@ -129,10 +100,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// # Errors
     /// A robot that does not stand and a start that is too near are refused: nothing changes then.
     pub fn arm(&mut self, jump: Jump<'a, T, N, F>, start: T) -> Result<(), Refusal> {
-        if self.phase != Phase::Stand {
+        if self.supervisor.phase != Phase::Stand {
             return Err(Refusal::NotStanding);
         }
         let soon = self
+            .supervisor
             .last_tick
             .is_some_and(|now| start - now < self.settings.weighing);
         if soon || !start.is_finite_number() {
@@ -145,7 +117,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         (self.start, self.node, self.refusal) = (start, 0, None);
         (self.late, self.tucked) = (T::ZERO, T::ZERO);
         self.scales = Scales::new();
-        self.phase = next_phase(self.phase, Event::Armed);
+        self.supervisor.happened(Event::Armed);
         Ok(())
     }
 
@@ -154,15 +126,15 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
     /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
     pub fn tick(&mut self, now: T, heard: Option<&Inputs<T, N, F>>) -> Tick {
-        let work = match self.hear(now, heard) {
+        let work = match self.supervisor.hear(now, heard) {
             Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
             Err(fault) => self.abort(fault),
         };
-        self.silence = T::ZERO;
+        self.supervisor.heard_from();
         Tick {
-            phase: self.phase,
+            phase: self.supervisor.phase,
             work,
-            fault: self.fault,
+            fault: self.supervisor.fault,
             refusal: self.refusal,
         }
     }
@@ -171,40 +143,26 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// now. Always finite and within the motors' torques; damping alone once [`Machine::tick`] has been missing for
     /// [`Settings::max_silence`].
     pub fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
-        // Also false for NaN.
-        let dt = if dt > T::ZERO && dt <= self.settings.max_silence {
-            dt
-        } else {
-            self.abort(Fault::Clock);
-            T::ZERO
-        };
-        self.silence += dt;
-        if self.silence > self.settings.max_silence {
-            self.abort(Fault::Silent);
-        } else if let Some(fault) = Watch::joints(q, qd) {
-            self.abort(fault);
-        }
-        let wanted = self.command.torques(q, qd, &self.settings.motors);
-        self.slew.limit(&wanted, dt)
+        self.supervisor.joint_tick(q, qd, dt, &self.settings.motors)
     }
 
     /// What [`Machine::joint_tick`] does, for a joint loop of the caller's own, such as an interrupt that must not wait for
     /// [`Machine::tick`].
     #[must_use]
     pub const fn command(&self) -> &JointCommand<T, N> {
-        &self.command
+        &self.supervisor.command
     }
 
     /// Where the jump is.
     #[must_use]
     pub const fn phase(&self) -> Phase {
-        self.phase
+        self.supervisor.phase
     }
 
     /// The first fault, if the machine has aborted.
     #[must_use]
     pub const fn fault(&self) -> Option<Fault> {
-        self.fault
+        self.supervisor.fault
     }
 
     /// The landing's memory: [`landing::Program::of`] writes out the quadratic program of the last landing tick.
@@ -219,46 +177,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         (&self.contact.contacts, &self.contact.faulty)
     }
 
-    /// The latest measurement with its age now, and the time since the last tick.
-    fn hear(
-        &mut self,
-        now: T,
-        heard: Option<&Inputs<T, N, F>>,
-    ) -> Result<(Inputs<T, N, F>, T), Fault> {
-        let s = &self.settings;
-        let passed = self.last_tick.map_or(s.period, |last| now - last);
-        // Also false for NaN.
-        if !(now.is_finite_number() && passed > T::ZERO) {
-            return Err(Fault::Clock);
-        }
-        if passed > s.max_silence {
-            return Err(Fault::Silent);
-        }
-        self.last_tick = Some(now);
-        // Jitter of the scheduler is not passed on.
-        let dt = if math::abs(passed - s.period) < s.period * T::HALF {
-            s.period
-        } else {
-            passed
-        };
-        let inputs = match (heard, self.heard) {
-            (Some(inputs), _) => *inputs,
-            (None, Some(mut old)) => {
-                old.measured.age += dt;
-                old
-            }
-            (None, None) => return Err(Fault::Stale),
-        };
-        self.heard = Some(inputs);
-        let watch = Watch { max_age: s.max_age };
-        watch.fault(&inputs.measured).map_or(Ok((inputs, dt)), Err)
-    }
-
-    /// Damps the joints from now on; the first fault stays named.
     fn abort(&mut self, fault: Fault) -> Work {
-        self.fault = self.fault.or(Some(fault));
-        self.phase = next_phase(self.phase, Event::Fault);
-        self.command = JointCommand::damp(self.settings.safe_damping);
+        self.supervisor.abort(fault);
         Work::Damping
     }
 
@@ -278,29 +198,26 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         );
         let t = self.plan_time(t, measured);
         if let Some(event) = self.event(t, measured) {
-            self.phase = next_phase(self.phase, event);
+            self.supervisor.happened(event);
         }
-        let (command, work) = match (self.phase, self.jump) {
+        let (command, work) = match (self.supervisor.phase, self.jump) {
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
                 (self.follow(&jump, t, measured, dt), Work::Cartesian)
             }
             (Phase::Landing | Phase::Stand, _) => self.stand(&v),
-            _ => (
-                JointCommand::damp(self.settings.safe_damping),
-                Work::Damping,
-            ),
+            _ => (self.supervisor.safe(), Work::Damping),
         };
-        if !command.is_finite() {
-            return self.abort(Fault::Command);
+        match self.supervisor.give(&command) {
+            Ok(()) => work,
+            Err(fault) => self.abort(fault),
         }
-        self.command = command;
-        work
     }
 
     /// What the plan's clock shows: in flight it is shifted, little by little, so that it shows the planned touchdown when the
     /// ground comes.
     fn plan_time(&mut self, t: T, measured: &Measurement<T, N, F>) -> T {
-        let (Some(jump), Phase::Flight | Phase::PreLanding) = (&self.jump, self.phase) else {
+        let (Some(jump), Phase::Flight | Phase::PreLanding) = (&self.jump, self.supervisor.phase)
+        else {
             return t;
         };
         let plan = &jump.plan;
@@ -330,7 +247,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let mut reference = sample(&jump.plan, t, then.node);
         reference.torques = sample(&jump.plan, t + s.lookahead, then.node).torques;
         self.node = then.node;
-        match self.phase {
+        match self.supervisor.phase {
             // Its weight has settled on the feet by then.
             Phase::Hold if t > -s.weighing => self.scales.add(&measured.foot_forces),
             Phase::Stance => {
@@ -434,6 +351,32 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             gains,
         };
         (command, Work::Landing(c.outcome))
+    }
+}
+
+impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> JumpMachine<T, N, F>
+    for Machine<'_, T, M, N, F>
+{
+    type Work = Work;
+
+    fn tick(&mut self, now: T, observed: Option<&Inputs<T, N, F>>) -> Tick {
+        Machine::tick(self, now, observed)
+    }
+
+    fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
+        Machine::joint_tick(self, q, qd, dt)
+    }
+
+    fn command(&self) -> &JointCommand<T, N> {
+        Machine::command(self)
+    }
+
+    fn phase(&self) -> Phase {
+        Machine::phase(self)
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        Machine::fault(self)
     }
 }
 

@@ -302,7 +302,13 @@ fn icub(out: &Path) {
         limits: &LIMITS,
         motors: &MOTORS,
     };
-    let jump = TorqueJump::new(TorqueJumpSettings::icub(), joints);
+    let jump = TorqueJump::new(
+        TorqueJumpSettings {
+            posture_weight: [1.0; 23],
+            ..icub_model::profile::TORQUE
+        },
+        joints,
+    );
     measure(robot, Humanoid(Box::new((s, jump))), out);
 }
 

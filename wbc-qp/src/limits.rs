@@ -25,6 +25,18 @@ pub struct Horizon<T> {
     pub acceleration: T,
 }
 
+impl Horizon<f64> {
+    /// The same in either precision.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Horizon<T> {
+        Horizon {
+            position: T::of(self.position),
+            velocity: T::of(self.velocity),
+            acceleration: T::of(self.acceleration),
+        }
+    }
+}
+
 impl<T: Scalar> Horizon<T> {
     /// Lowest and highest velocity of a joint at position `q`, rad/s.
     #[must_use]

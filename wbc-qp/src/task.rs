@@ -30,6 +30,17 @@ pub struct Gains<T> {
     pub damping: T,
 }
 
+impl Gains<f64> {
+    /// The same in either precision.
+    #[must_use]
+    pub fn cast<T: Scalar>(&self) -> Gains<T> {
+        Gains {
+            stiffness: T::of(self.stiffness),
+            damping: T::of(self.damping),
+        }
+    }
+}
+
 impl<T: Scalar, const N: usize, const R: usize> Task<T, N, R> {
     /// J x of any motion x: the rate at a velocity; the acceleration less J̇ν at an acceleration.
     #[must_use]

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{N, Rng, snapshot};
-use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::Vector3;
 use rbd_core::{
     Axes, CentroidalMap, ComJacobian, Configuration, FrameJacobian, Tangent, Transform,
@@ -61,7 +61,7 @@ fn angular_momentum(s: &Snapshot<f64, N>, v: &Tangent<f64, N>) -> Vector3<f64> {
 /// (3b) to (3e) hold in every tick, and the momentum follows its integral as (4) says.
 #[test]
 fn velocity_control() {
-    let settings = VelocityJumpSettings::icub();
+    let settings = profile::VELOCITY;
     let mut controller = VelocityJump::<f64, N, 29, 12>::new(settings, crouch(&[0.0; N]).0.joints);
     let (mut q, mut v) = crouch(&[0.0; N]);
     let (mut integral, dt) = (Vector3::zeros(), 1e-3);
@@ -113,7 +113,7 @@ fn torque_control() {
         let (q, v) = crouch(&core::array::from_fn(|_| 0.02 * rng.next()));
         let s = snapshot(&q, &v);
         let goal = wanted(&s);
-        let settings = TorqueJumpSettings::icub();
+        let settings = profile::TORQUE;
         let mut controller = TorqueJump::<f64, N, K, V, M>::new(settings, q.joints);
         let tick = controller
             .tick(&Icub23, &s, &contacts(), (&LIMITS, &MOTORS), &goal)
@@ -163,7 +163,7 @@ fn posture_of_the_velocity_program() {
     let settings = VelocityJumpSettings {
         com_weight: 0.0,
         momentum_weight: 0.0,
-        ..VelocityJumpSettings::icub()
+        ..profile::VELOCITY
     };
     let posture = core::array::from_fn(|i| q.joints[i] + 0.002 * (i as f64 - 11.0));
     let mut controller = VelocityJump::<f64, N, 29, 12>::new(settings, posture);
@@ -194,7 +194,7 @@ fn posture_of_the_torque_program() {
     let settings = TorqueJumpSettings {
         com_weight: 0.0,
         momentum_weight: 0.0,
-        ..TorqueJumpSettings::icub()
+        ..profile::TORQUE
     };
     let posture = core::array::from_fn(|i| q.joints[i] + 0.001 * (i as f64 - 11.0));
     let mut controller = TorqueJump::<f64, N, 0, 23, 29>::new(settings, posture);

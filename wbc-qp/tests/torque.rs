@@ -4,7 +4,7 @@
 mod common;
 
 use common::{N, Rng, oracle, snapshot};
-use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use rbd_core::{Axes, Configuration, Force, Frame, FrameJacobian, Tangent, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};
 use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
@@ -369,7 +369,7 @@ fn a_capped_command_is_inside_its_limits() {
 fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
     TorqueJumpSettings {
         strict: true,
-        ..TorqueJumpSettings::icub()
+        ..profile::TORQUE.cast()
     }
 }
 

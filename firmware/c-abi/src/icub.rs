@@ -2,7 +2,7 @@
 
 use core::ffi::c_void;
 
-use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::Vector3;
 use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Contact, Error, Snapshot, Yielded};
@@ -135,7 +135,10 @@ pub extern "C" fn saltus_icub_push_init(
         if !posture.iter().all(|x| x.is_finite()) {
             return Err(Status::BadData);
         }
-        let mut settings = TorqueJumpSettings::icub();
+        let mut settings = TorqueJumpSettings {
+            posture_weight: [1.0; N],
+            ..profile::TORQUE
+        };
         if max_steps > 0 {
             settings.max_steps = max_steps;
         }

@@ -4,6 +4,7 @@ mod icub;
 mod jumper;
 mod pilot;
 
+pub use icub::Humanoid;
 pub use jumper::Jumper;
 pub use pilot::Pilot;
 

@@ -1,4 +1,4 @@
-//! Control loops as firmware runs them: joint PD at 10 kHz and A1's jump machine or iCub's torque program at 1 kHz, each in its
+//! Control loops as firmware runs them: joint PD at 10 kHz and A1's or iCub's jump machine at 1 kHz, each in its
 //! interrupt, and a flight recorder whose bytes replay on a host.
 //!
 //! | module | what it is |

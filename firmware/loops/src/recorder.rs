@@ -13,8 +13,9 @@
 use saltus_probe::Numbers;
 use saltus_probe::flight::digest;
 
-/// Most numbers that a tick hears: iCub's base (12), its velocity (6), and 23 joints' positions and velocities.
-const HEARD: usize = 64;
+/// Most numbers that a tick hears: iCub's base (12), its velocity (6), positions, velocities and torques of 23 joints, forces on two
+/// soles, and their age.
+const HEARD: usize = 90;
 /// Longest record in bytes: `HEARD` double-precision numbers and what stands around them.
 const LONGEST: usize = 1 + 4 + 8 * HEARD + 8;
 

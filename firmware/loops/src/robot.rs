@@ -2,7 +2,7 @@
 
 use a1_model::A1Geared;
 use jump_machine::Inputs;
-use rbd_core::{Configuration, Model, Tangent};
+use rbd_core::Model;
 use saltus_probe::flight::{Flight, IcubFlight, Planned};
 use saltus_probe::{Numbers, Real};
 
@@ -53,7 +53,7 @@ where
 }
 
 impl Robot<f64, 23> for IcubFlight {
-    type Heard = (Configuration<f64, 23>, Tangent<f64, 23>);
+    type Heard = Inputs<f64, 23, 2>;
 
     fn encoders(&mut self) -> ([f64; 23], [f64; 23]) {
         self.joints()

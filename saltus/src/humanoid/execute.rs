@@ -1,20 +1,21 @@
 //! The closed loop: plant and servos at 10 kHz, controller at 1 kHz.
 
-use super::control::{Controller, QpLog, TICK};
+use super::control::{self, QpLog};
 use super::log::Sample;
 use super::sensors::{Sensors, sole_forces};
-use super::{
-    GRAVITY, JOINTS, OWNERS, ROBOT, SPHERES, Task, World, on_the_floor, plant, poses, spheres,
-    squat,
-};
+use super::{GRAVITY, JOINTS, OWNERS, ROBOT, SPHERES, Task, World, com, known};
+use super::{on_the_floor, plant, poses, spheres, squat};
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Motors};
 use crate::verdict::{Hardware, Stage, Tick};
+use icub_model::profile::{Jump, Machine, Workspace};
 use icub_model::{BUDGETS, LIMITS, shapes};
 use jump_control::{JointCommand, Phase};
 use nalgebra::Vector3;
 use rbd_core::{CentroidalMap, Motor, Posture, centroidal_map, centroidal_state};
 
+/// Length of a tick, s.
+const TICK: f64 = 1e-3;
 /// Time of standing in the squat before the push-off, s.
 pub(crate) const HOLD: f64 = 0.5;
 /// Time after touchdown at which the robot must stand, s.
@@ -54,13 +55,12 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn new(task: &Task, controller: &Controller, tick: f64) -> Self {
-        let weight = controller.mass() * GRAVITY;
+    fn new(task: &Task, jump: &Jump, weight: f64, tick: f64) -> Self {
         Self {
             samples: Vec::new(),
             final_phase: Phase::Hold,
-            takeoff: controller.takeoff(),
-            wanted_speed: controller.wanted_speed(),
+            takeoff: jump.profile.duration,
+            wanted_speed: jump.profile.speed,
             contact_loss: None,
             touchdown: None,
             hardware: Hardware::new(BUDGETS, task.motors(), &LIMITS, weight, tick),
@@ -170,32 +170,42 @@ pub(crate) fn run(
     let start = on_the_floor(squat());
     let mut world = plant(task, sim, disturbance, &start)?;
     let mut sensors = Sensors::new(disturbance, seed, &start);
-    let mut controller = Controller::new(*task, &start)?;
+    let robot = known(task)?;
+    let settings = control::settings(task);
+    let mut workspace = Box::new(Workspace::new(&settings));
+    let mut machine = Machine::new(&robot, settings, &mut workspace);
+    let jump = control::jump(task, &start)?;
+    machine
+        .arm(&jump, 0.0)
+        .map_err(|refusal| refusal.to_string())?;
+    let lift = com(&start).z;
     let mut drive = Drive::new(task, disturbance);
     let tick = world.plant().tick();
-    let mut run = Run::new(task, &controller, tick);
+    let weight = control::mass(&robot) * GRAVITY;
+    let mut run = Run::new(task, &jump, weight, tick);
     let substeps = (TICK / tick).round() as u32;
     for k in 0_u64.. {
         let t = k as f64 * TICK - HOLD;
         if t > run.takeoff + SETTLE + 0.7 {
             break;
         }
-        let command = controller.tick(t, &sensors.measure(t, &world));
-        let sample = record(&world, &controller, t);
+        let told = sensors.measure(t, &world);
+        run.qp.count(task, &machine.tick(t, told.as_ref()));
+        let wanted_height = lift + jump.profile.at(t).rise;
+        let sample = record(&world, machine.phase(), wanted_height, t);
         observe(&mut run, &sample, &drive.limits);
         run.samples.push(sample);
         for i in 0..substeps {
-            let what = (&command, controller.phase);
+            let what = (machine.command(), machine.phase());
             let since = f64::from(i) * tick;
             let times = (t + since + tick, since);
             drive.step(what, (&mut world, &mut sensors), &mut run, times)?;
         }
         if k.is_multiple_of(10) {
-            progress(t, controller.phase);
+            progress(t, machine.phase());
         }
     }
-    run.final_phase = controller.phase;
-    run.qp = controller.qp;
+    run.final_phase = machine.phase();
     run.estimate_error = sensors.worst;
     Ok(run)
 }
@@ -228,7 +238,7 @@ fn demand(
     shares.fold(0.0, f64::max)
 }
 
-fn record(world: &World, controller: &Controller, time: f64) -> Sample {
+fn record(world: &World, phase: Phase, wanted_height: f64, time: f64) -> Sample {
     let (q, v) = (world.configuration(), world.velocity());
     let posture = Posture::new(&ROBOT, &q);
     let state = centroidal_state(&ROBOT, &posture, v);
@@ -239,13 +249,13 @@ fn record(world: &World, controller: &Controller, time: f64) -> Sample {
         .map(|ball| poses.link(ball.link).point(&Vector3::from(ball.from)).z - ball.radius);
     Sample {
         time,
-        phase: controller.phase,
+        phase,
         position: q.base.translation,
         orientation: so3::quat::from_rotation(&q.base.rotation),
         base_velocity: v.base,
         com: state.com_w,
         com_velocity: state.com_velocity_w,
-        wanted_height: controller.wanted_height(time),
+        wanted_height,
         momentum: state.momentum_w.angular,
         locked: map.locked_angular_velocity(&state.momentum_w),
         joints: q.joints,

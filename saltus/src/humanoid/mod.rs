@@ -10,13 +10,13 @@ pub(crate) mod sensors;
 use crate::jump::plant::Sim;
 use crate::lab::{self, Disturbance, Key};
 use contact_sim::{NativeSimulator, Settings, Shape, Terrain, self_contacts};
-use icub_model::gazebo::joint;
-use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES, shapes};
-use jump_control::{ComProfile, Curve, takeoff_speed};
+use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES, profile, shapes};
+use jump_control::ComProfile;
+use jump_machine::humanoid::{self, middle_of_feet};
 use nalgebra::Vector3;
 use rbd_core::{
-    BaseKind, Configuration, ContactShape, Kinematics, Motor, Posture, TableModel, Tangent, Tree,
-    center_of_mass, forward_kinematics,
+    BaseKind, Configuration, Kinematics, Motor, Posture, TableModel, Tangent, Tree, center_of_mass,
+    forward_kinematics,
 };
 
 /// Joints of the robot.
@@ -35,7 +35,6 @@ const CORNER_RADIUS: f64 = 0.005;
 pub(crate) const GRAVITY: f64 = 9.81;
 
 pub(crate) type State = Configuration<f64, JOINTS>;
-pub(crate) type Velocity = Tangent<f64, JOINTS>;
 
 /// What computes the joints' commands in the push-off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,8 +127,7 @@ impl Task {
 
     /// The push-off of the paper: a displacement of 11 cm.
     pub(crate) fn profile(&self) -> Result<ComProfile<f64>, String> {
-        let speed = takeoff_speed(self.height, GRAVITY);
-        ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY)
+        profile::rise(self.height)
             .ok_or_else(|| format!("height {} m: a positive height is needed", self.height))
     }
 }
@@ -143,27 +141,6 @@ pub(crate) fn known(task: &Task) -> Result<TableModel<f64, JOINTS>, String> {
         }
     }
     TableModel::new(BaseKind::Floating, *ROBOT.base(), &bodies).map_err(|error| error.to_string())
-}
-
-/// A posture with both legs alike: hip, knee and ankle pitch and torso pitch, the arms half bent at the sides.
-pub(crate) fn posture(hip: f64, knee: f64, ankle: f64, torso: f64) -> [f64; JOINTS] {
-    let mut q = [0.0; JOINTS];
-    for (leg, x) in [
-        (joint::L_HIP_PITCH, hip),
-        (joint::L_KNEE, knee),
-        (joint::L_ANKLE_PITCH, ankle),
-        (joint::R_HIP_PITCH, hip),
-        (joint::R_KNEE, knee),
-        (joint::R_ANKLE_PITCH, ankle),
-        (joint::TORSO_PITCH, torso),
-    ] {
-        q[leg] = x;
-    }
-    for (shoulder, x) in [(0, -0.5), (1, 0.4), (3, 0.8)] {
-        q[joint::L_SHOULDER_PITCH + shoulder] = x;
-        q[joint::R_SHOULDER_PITCH + shoulder] = x;
-    }
-    q
 }
 
 /// Poses of all bodies.
@@ -180,42 +157,23 @@ pub(crate) fn com(q: &State) -> Vector3<f64> {
 
 /// Middle of both soles' rectangles in the world.
 pub(crate) fn middle_of_soles(poses: &Kinematics<f64, JOINTS>) -> Vector3<f64> {
-    let middles = SOLES.map(|sole| {
-        let ContactShape::Rectangle {
-            x: [a, b],
-            y: [c, d],
-        } = sole.shape
-        else {
-            unreachable!("the soles are rectangles")
-        };
-        let middle = Vector3::new(0.5 * (a + b), 0.5 * (c + d), 0.0);
-        poses.frame(&sole.frame).point(&middle)
-    });
-    (middles[0] + middles[1]) * 0.5
+    middle_of_feet(poses, &profile::SOLE_CONTACTS)
 }
 
 /// The robot with these joints and its left sole flat on the floor, toes along x, the middle between the soles' frames at
 /// the origin.
 pub(crate) fn on_the_floor(joints: [f64; JOINTS]) -> State {
-    let mut q = State {
-        joints,
-        ..State::NEUTRAL
-    };
-    q.base.rotation = poses(&q).frame(&SOLES[0].frame).rotation.inverse();
-    let poses = poses(&q);
-    let [left, right] = SOLES.map(|sole| poses.frame(&sole.frame).translation);
-    q.base.translation = -(left + right) * 0.5;
-    q
+    humanoid::on_the_floor(&ROBOT, &profile::SOLE_CONTACTS, &joints)
 }
 
 /// The squat that the jump starts from.
-pub(crate) fn squat() -> [f64; JOINTS] {
-    posture(1.496, -2.013, -0.817, 0.2)
+pub(crate) const fn squat() -> [f64; JOINTS] {
+    profile::SQUAT
 }
 
 /// The posture in which the robot lands: legs drawn up a little from the take-off, soles level.
-pub(crate) fn landing_posture() -> [f64; JOINTS] {
-    posture(1.08, -1.35, -0.5, 0.2)
+pub(crate) const fn landing_posture() -> [f64; JOINTS] {
+    profile::LANDING_POSTURE
 }
 
 /// Time from the planned take-off to the planned touchdown, s, of a push-off that starts with the centre of mass at height `start`: the

@@ -1,25 +1,21 @@
 //! What the controller is told: encoders, force sensors of the soles, an IMU, and the base as `state-est` makes it of them; never the
 //! truth. In a nominal run the sensors are without error.
 
-use super::{JOINTS, ROBOT, SPHERES, State, Velocity, World};
+use super::{JOINTS, ROBOT, SPHERES, State, World};
 use crate::lab::{Disturbance, Encoders, FootSensors, Link};
 use crate::noise::Noise;
 use crate::observer::{Legs, Observer};
 use icub_model::SOLES;
+use jump_control::Measurement;
+use jump_machine::Observation;
 use nalgebra::Vector3;
-use state_est::Foot;
+use state_est::{Foot, Status};
 
 /// Force at which a sole is certainly loaded, N.
 const LOADED: f64 = 40.0;
 
 /// What arrives in one millisecond.
-#[derive(Clone, Copy)]
-pub(crate) struct Told {
-    pub(crate) q: State,
-    pub(crate) v: Velocity,
-    /// Force on each sole, N.
-    pub(crate) forces: [f64; 2],
-}
+pub(crate) type Told = Observation<f64, JOINTS, 2>;
 
 /// The sensors of one run.
 pub(crate) struct Sensors {
@@ -28,8 +24,8 @@ pub(crate) struct Sensors {
     soles: FootSensors<2>,
     observer: Observer<JOINTS, 2, 4>,
     link: Link<Told>,
-    /// What arrived last.
-    told: Option<Told>,
+    /// Whether anything has been measured.
+    begun: bool,
     /// Largest error of the base's place and of its orientation since the start: m, rad.
     pub(crate) worst: [f64; 2],
 }
@@ -45,7 +41,7 @@ impl Sensors {
             link: Link::new(disturbance, 1.0, 0.0, seed.wrapping_add(0x11e7)),
             noise,
             observer,
-            told: None,
+            begun: false,
             worst: [0.0; 2],
         }
     }
@@ -57,8 +53,8 @@ impl Sensors {
     }
 
     /// The newest that has arrived at time `now`, s; the first sample at once, since the robot stands still before it.
-    pub(crate) fn measure(&mut self, now: f64, world: &World) -> Told {
-        let (mut q, mut v) = (world.configuration(), *world.velocity());
+    pub(crate) fn measure(&mut self, now: f64, world: &World) -> Option<Told> {
+        let (q, v) = (world.configuration(), *world.velocity());
         let forces = sole_forces(world).map(|f| f.norm());
         let forces = self.soles.read(forces, &mut self.noise);
         let (joints, joint_velocities) = self.encoders(world);
@@ -71,14 +67,27 @@ impl Sensors {
         let turn = so3::log(&(estimate.base.rotation * q.base.rotation.inverse()));
         let place = (estimate.base.translation - q.base.translation).norm();
         self.worst = [self.worst[0].max(place), self.worst[1].max(turn.norm())];
-        (q.base, v.base) = (estimate.base, estimate.velocity);
-        (q.joints, v.joints) = (joints, joint_velocities);
-        let sampled = Told { q, v, forces };
+        let lost = estimate.status == Status::Lost;
+        let measured = Measurement {
+            base: estimate.base,
+            base_velocity: estimate.velocity,
+            joints,
+            joint_velocities,
+            foot_forces: forces,
+            age: if lost { f64::INFINITY } else { 0.0 },
+        };
+        let sampled = Told {
+            measured,
+            felt: [0.0; JOINTS],
+        };
         self.link.send(now, sampled);
-        let arrived = self.link.receive(now).map(|(told, _)| told);
-        let told = arrived.or(self.told).unwrap_or(sampled);
-        self.told = Some(told);
-        told
+        let arrived = self.link.receive(now);
+        let first = !core::mem::replace(&mut self.begun, true);
+        let Some((mut told, age)) = arrived else {
+            return first.then_some(sampled);
+        };
+        told.measured.age += age;
+        Some(told)
     }
 }
 

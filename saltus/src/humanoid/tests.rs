@@ -1,7 +1,7 @@
 //! Jumps in both simulators, nominal and disturbed.
 #![allow(clippy::unwrap_used, reason = "tests")]
 use super::judge::Judged;
-use super::{GRAVITY, JOINTS, Landing, ROBOT, State, Task, Velocity};
+use super::{GRAVITY, JOINTS, Landing, ROBOT, State, Task};
 use super::{com, execute, on_the_floor, plant, poses, squat};
 use crate::jump::plant::Sim;
 use crate::lab::{Disturbance, Lab, PlantArgument};
@@ -9,7 +9,7 @@ use icub_model::MOTORS;
 use icub_model::gazebo::joint;
 use icub_model::hardware::{MOTORS_F32, SOLES_F32};
 use icub_model::limits::LIMITS_F32;
-use icub_model::{LIMITS, SOLES};
+use icub_model::{LIMITS, SOLES, profile};
 use jump_control::Phase;
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Motion, Tangent, Transform};
@@ -262,7 +262,7 @@ fn single_precision_follows_over_a_whole_push_off() {
             base: Transform::new(sample.orientation.to_rotation_matrix(), sample.position),
             joints: sample.joints,
         };
-        let v = Velocity {
+        let v = Tangent {
             base: sample.base_velocity,
             joints: sample.joint_velocities,
         };
@@ -312,6 +312,6 @@ fn single_precision_follows_over_a_whole_push_off() {
 fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, JOINTS> {
     TorqueJumpSettings {
         strict: true,
-        ..TorqueJumpSettings::icub()
+        ..profile::TORQUE.cast()
     }
 }

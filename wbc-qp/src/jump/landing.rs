@@ -89,38 +89,6 @@ pub struct LandingSettings<T, const N: usize> {
     pub max_steps: u32,
 }
 
-impl<T: Scalar, const N: usize> LandingSettings<T, N> {
-    /// Found for iCub.
-    #[must_use]
-    pub fn icub() -> Self {
-        let gains = |stiffness: f64, damping: f64| Gains {
-            stiffness: T::of(stiffness),
-            damping: T::of(damping),
-        };
-        Self {
-            com: gains(60.0, 15.0),
-            com_weight: T::of(1e4),
-            momentum_gain: T::of(10.0),
-            momentum_weight: T::of(1e3),
-            trunk: gains(60.0, 15.0),
-            trunk_weight: T::of(1e2),
-            sole: gains(900.0, 60.0),
-            sole_weight: T::of(1e2),
-            posture: [gains(900.0, 60.0), gains(40.0, 12.0)],
-            posture_weight: [T::ONE; N],
-            continuity_weight: T::of(1e-3),
-            force_weight: T::of(1e-3),
-            horizon: Horizon {
-                position: T::of(0.04),
-                velocity: T::of(0.01),
-                acceleration: T::of(1000.0),
-            },
-            max_power: T::INFINITY,
-            max_steps: u32::MAX,
-        }
-    }
-}
-
 /// What flight and landing are to follow in this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandingReference<T: Scalar, const N: usize> {
@@ -154,6 +122,11 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             qp: TorqueQp::new(),
             previous: None,
         }
+    }
+
+    /// Forgets the torques of earlier ticks.
+    pub const fn restart(&mut self) {
+        self.previous = None;
     }
 
     /// One tick; the contacts' loads say how much ground there is.

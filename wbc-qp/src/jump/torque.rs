@@ -47,34 +47,24 @@ pub struct TorqueJumpSettings<T, const N: usize> {
     pub knows_friction: bool,
 }
 
-impl<T: Scalar, const N: usize> TorqueJumpSettings<T, N> {
-    /// Gains found for iCub: centre of mass 100 and 20, posture 50 and 14, momentum 10, Λ = 1, Δ = 1e-3.
+impl<const N: usize> TorqueJumpSettings<f64, N> {
+    /// The same in either precision.
     #[must_use]
-    pub fn icub() -> Self {
-        Self {
-            com: Gains {
-                stiffness: T::of(100.0),
-                damping: T::of(20.0),
-            },
-            momentum_gain: T::of(10.0),
-            posture: Gains {
-                stiffness: T::of(50.0),
-                damping: T::of(14.0),
-            },
-            posture_weight: [T::ONE; N],
-            continuity_weight: T::of(1e-3),
-            strict: false,
-            com_weight: T::of(1e5),
-            momentum_weight: T::of(1e5),
-            force_weight: T::of(1e-3),
-            horizon: Horizon {
-                position: T::of(0.04),
-                velocity: T::of(0.01),
-                acceleration: T::of(1000.0),
-            },
-            max_power: T::INFINITY,
-            max_steps: u32::MAX,
-            knows_friction: true,
+    pub fn cast<T: Scalar>(&self) -> TorqueJumpSettings<T, N> {
+        TorqueJumpSettings {
+            com: self.com.cast(),
+            momentum_gain: T::of(self.momentum_gain),
+            posture: self.posture.cast(),
+            posture_weight: self.posture_weight.map(T::of),
+            continuity_weight: T::of(self.continuity_weight),
+            strict: self.strict,
+            com_weight: T::of(self.com_weight),
+            momentum_weight: T::of(self.momentum_weight),
+            force_weight: T::of(self.force_weight),
+            horizon: self.horizon.cast(),
+            max_power: T::of(self.max_power),
+            max_steps: self.max_steps,
+            knows_friction: self.knows_friction,
         }
     }
 }
@@ -111,6 +101,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             qp: TorqueQp::new(),
             previous: None,
         }
+    }
+
+    /// At rest again in a posture: the torques of earlier ticks are forgotten.
+    pub const fn restart(&mut self, posture: &[T; N]) {
+        self.posture = *posture;
+        self.previous = None;
     }
 
     /// The program of the last tick: for a log, or another solver's opinion.

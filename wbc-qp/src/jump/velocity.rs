@@ -30,24 +30,19 @@ pub struct VelocityJumpSettings<T, const N: usize> {
     pub horizon: Horizon<T>,
 }
 
-impl<T: Scalar, const N: usize> VelocityJumpSettings<T, N> {
-    /// Gains found for iCub: 10 for the centre of mass and the momentum, 1 for the posture, Λ = 1, Δ = 0.1; rows that the paper
-    /// writes as equalities weigh ten thousand times as much.
+impl<const N: usize> VelocityJumpSettings<f64, N> {
+    /// The same in either precision.
     #[must_use]
-    pub fn icub() -> Self {
-        Self {
-            com_gain: T::of(10.0),
-            momentum_gain: T::of(10.0),
-            posture_gain: T::ONE,
-            posture_weight: [T::ONE; N],
-            continuity_weight: [T::of(0.1); N],
-            com_weight: T::of(1e6),
-            momentum_weight: T::of(1e6),
-            horizon: Horizon {
-                position: T::of(0.02),
-                velocity: T::of(0.005),
-                acceleration: T::of(500.0),
-            },
+    pub fn cast<T: Scalar>(&self) -> VelocityJumpSettings<T, N> {
+        VelocityJumpSettings {
+            com_gain: T::of(self.com_gain),
+            momentum_gain: T::of(self.momentum_gain),
+            posture_gain: T::of(self.posture_gain),
+            posture_weight: self.posture_weight.map(T::of),
+            continuity_weight: self.continuity_weight.map(T::of),
+            com_weight: T::of(self.com_weight),
+            momentum_weight: T::of(self.momentum_weight),
+            horizon: self.horizon.cast(),
         }
     }
 }
@@ -86,6 +81,13 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityJump<T, 
             previous: [T::ZERO; N],
             momentum_integral: Vector3::zeros(),
         }
+    }
+
+    /// At rest again in a posture: velocities and momentum of earlier ticks are forgotten.
+    pub fn restart(&mut self, posture: &[T; N]) {
+        self.posture = *posture;
+        self.previous = [T::ZERO; N];
+        self.momentum_integral = Vector3::zeros();
     }
 
     /// One tick of length `dt`.

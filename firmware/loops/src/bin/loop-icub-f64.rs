@@ -1,11 +1,11 @@
-//! iCub's push-off under interrupts, in f64.
+//! iCub's loops under interrupts, in f64.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 saltus_loops::image!(
     f64,
     23,
-    saltus_probe::flight::IcubPush,
+    saltus_loops::control::Humanoid,
     saltus_loops::boards::Mps
 );
 

@@ -1,8 +1,7 @@
 //! Replays a flight recorder's file: `replay a1-f64 FILE`.
 
-use saltus_loops::control::Jumper;
+use saltus_loops::control::{Humanoid, Jumper};
 use saltus_loops::replay::{Error, Replayed, replay};
-use saltus_probe::flight::IcubPush;
 
 fn main() -> Result<(), Box<dyn core::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -12,7 +11,7 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let run: fn(&[u8]) -> Result<Replayed, Error> = match image.as_str() {
         "a1-f64" => replay::<f64, Jumper<f64>, 12>,
         "a1-f32" => replay::<f32, Jumper<f32>, 12>,
-        "icub-f64" => replay::<f64, IcubPush, 23>,
+        "icub-f64" => replay::<f64, Humanoid, 23>,
         _ => return Err("the image is a1-f64, a1-f32 or icub-f64".into()),
     };
     let mut bytes = std::fs::read(path)?;

@@ -1,51 +1,49 @@
-//! iCub's push-off by the torque program.
+//! iCub's jump machine.
 
-use icub_model::MOTORS;
+use icub_model::profile::{JOINTS, Machine, Workspace};
+use icub_model::{Icub23GazeboGeared, MOTORS};
 use jump_control::JointCommand;
-use rbd_core::{Configuration, Motion, Tangent};
-use saltus_probe::flight::IcubPush;
+use jump_machine::Observation;
+use saltus_probe::flight::{icub_machine, icub_settings};
 
-use super::{Control, Heard, pose};
+use super::Control;
 use crate::joints::Joints;
 
 /// Largest rate of a joint's torque, N m/s: the program holds its torques for a millisecond, and smooths them itself.
 const SLEW: f64 = 1e5;
 
-impl Control<f64, 23> for IcubPush {
-    type Heard = (Configuration<f64, 23>, Tangent<f64, 23>);
-    /// The program keeps its own.
-    type Memory = ();
+/// The machine and its clock.
+#[derive(Debug)]
+pub struct Humanoid {
+    machine: Machine<'static, Icub23GazeboGeared>,
+    ticks: u32,
+}
 
-    fn memory() {}
+impl Control<f64, JOINTS> for Humanoid {
+    type Heard = Observation<f64, JOINTS, 2>;
+    type Memory = Workspace;
 
-    fn new((): &'static mut ()) -> Option<Self> {
-        Self::new()
+    fn memory() -> Workspace {
+        Workspace::new(&icub_settings())
     }
 
-    fn joints() -> Joints<f64, 23> {
+    /// Standing in the squat, with the jump armed.
+    fn new(workspace: &'static mut Workspace) -> Option<Self> {
+        let machine = icub_machine(workspace)?;
+        Some(Self { machine, ticks: 0 })
+    }
+
+    fn joints() -> Joints<f64, JOINTS> {
         Joints::new(MOTORS, SLEW)
     }
 
     fn tick(&mut self, heard: &Self::Heard) {
-        // Without an answer the last command stays.
-        let _torques = self.tick(heard);
+        let now = f64::from(self.ticks) * 1e-3;
+        self.ticks = self.ticks.wrapping_add(1);
+        self.machine.tick(now, Some(heard));
     }
 
-    fn command(&self) -> &JointCommand<f64, 23> {
-        self.command()
-    }
-}
-
-impl Heard<f64> for (Configuration<f64, 23>, Tangent<f64, 23>) {
-    fn read(mut next: impl FnMut() -> f64) -> Self {
-        let q = Configuration {
-            base: pose(&mut next),
-            joints: core::array::from_fn(|_| next()),
-        };
-        let v = Tangent {
-            base: Motion::from_array(core::array::from_fn(|_| next())),
-            joints: core::array::from_fn(|_| next()),
-        };
-        (q, v)
+    fn command(&self) -> &JointCommand<f64, JOINTS> {
+        self.machine.command()
     }
 }

@@ -5,6 +5,7 @@ use jump_control::{JointCommand, Measurement};
 use jump_machine::{Inputs, Machine};
 use landing::Workspace;
 use rbd_core::{Model, Motion};
+use saltus_probe::Real;
 use saltus_probe::flight::{HOLD, Planned, jump, settings};
 
 use super::{Control, Heard, pose};
@@ -56,7 +57,7 @@ where
     }
 }
 
-impl<T: Planned> Heard<T> for Inputs<T, 12, 4> {
+impl<T: Real, const N: usize, const F: usize> Heard<T> for Inputs<T, N, F> {
     fn read(mut next: impl FnMut() -> T) -> Self {
         Self {
             measured: Measurement {

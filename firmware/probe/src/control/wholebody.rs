@@ -1,6 +1,6 @@
 //! The push-off programs of a humanoid on its soles: at the level of torques and of velocities.
 
-use icub_model::Icub23Geared;
+use icub_model::{Icub23Geared, profile};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Frame, Model, Transform};
 use wbc_qp::jump::{
@@ -88,7 +88,10 @@ where
     };
     let (limits, motors) = (model.limits(), &motors(model));
     for strict in [false, true] {
-        let mut settings = TorqueJumpSettings::icub();
+        let mut settings = TorqueJumpSettings {
+            posture_weight: [T::ONE; 23],
+            ..profile::TORQUE.cast()
+        };
         settings.strict = strict;
         let mut jump = TorqueJump::<T, 23, 12, 35, 61>::new(settings, posture());
         for contacts in [&contacts, &contacts] {
@@ -100,7 +103,11 @@ where
             });
         }
     }
-    let mut jump = VelocityJump::<T, 23, 29, 12>::new(VelocityJumpSettings::icub(), posture());
+    let settings = VelocityJumpSettings {
+        posture_weight: [T::ONE; 23],
+        ..profile::VELOCITY.cast()
+    };
+    let mut jump = VelocityJump::<T, 23, 29, 12>::new(settings, posture());
     for _ in 0..2 {
         let input = (&mut jump, &snapshot, &contacts);
         on.call("VelocityJump::tick", input, |(jump, s, contacts)| {

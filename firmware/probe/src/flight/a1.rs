@@ -121,7 +121,7 @@ where
     }
 }
 
-impl<T: Real> Numbers for Inputs<T, 12, 4> {
+impl<T: Real, const N: usize, const F: usize> Numbers for Inputs<T, N, F> {
     fn visit(&self, take: &mut dyn FnMut(f64)) {
         let Measurement {
             base,

@@ -1,81 +1,75 @@
-//! iCub pushes off by the torque program, paper B eqs. (6a) to (6f), in double precision, as `saltus run icub/torque`.
+//! iCub jumps: joint loop at 10 kHz, push-off by the torque program (paper B, eqs. (6a) to (6f)), flight, landing and standing at 1 kHz, as
+//! `saltus run icub/torque`.
 
-use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
-use icub_model::gazebo::joint;
-use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
-use jump_control::{ComProfile, Curve, JointCommand, takeoff_speed};
+use contact_sim::{NativeSimulator, Shape, Simulator, Terrain};
+use icub_model::profile::{self, JOINTS, Machine, SETTINGS, SOLE_CONTACTS, Settings, Workspace};
+use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
+use jump_control::Measurement;
+use jump_machine::humanoid::{Jump, Landing, PushOff, Work, on_the_floor};
+use jump_machine::{Observation, Tick};
 use nalgebra::Vector3;
-use rbd_core::{
-    Configuration, JointLimits, Kinematics, Motion, Posture, Tangent, Transform, center_of_mass,
-    forward_kinematics,
-};
-use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
-use wbc_qp::{Contact, Snapshot};
+use rbd_core::{Configuration, Motion, Tangent, Transform};
+use wbc_qp::jump::{ComReference, LandingSettings, TorqueJump, TorqueJumpSettings};
+use wbc_qp::{Snapshot, Yielded};
 
 use super::digested;
-use crate::Recorder;
 use crate::inputs::Stream;
+use crate::{Numbers, Recorder};
 
 const SUBJECT: &str = "icub-jump";
-const N: usize = 23;
-/// Time of standing in the squat, and of the push-off, ms.
-const HOLD: usize = 100;
-const PUSH: usize = 430;
-/// Joint ticks per tick of the program.
+/// Time of standing in the squat before the jump, s.
+pub const ICUB_HOLD: f64 = 0.1;
+/// Time of push-off, flight, landing and standing, ms: it stands after 1.9 s.
+const JUMP: usize = 2100;
+/// Joint ticks per tick of the machine.
 const RATIO: usize = 10;
-const GRAVITY: f64 = 9.81;
-/// Most steps of the solver in a tick: with them a tick takes less than 720,000 instructions on a Cortex-M7. The push-off needs 7.
+/// Most steps of a program's solver in a tick: with them a tick takes less than 720,000 instructions on a Cortex-M7. The push-off needs 7.
 const STEPS: u32 = 11;
 /// States that no jump visits.
 const WILD: usize = 200;
+/// The robot as `saltus run` simulates it, and as its controllers know it.
+static ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
 
-type Program = TorqueJump<f64, N, 12, 35, 55>;
-/// Configuration and velocity.
-type State = (Configuration<f64, N>, Tangent<f64, N>);
+type Observed = Observation<f64, JOINTS, 2>;
 
-/// Legs, torso and arms of a squat.
-fn squat() -> [f64; N] {
-    let mut q = [0.0; N];
-    let mut set = |i: usize, x: f64| {
-        if let Some(slot) = q.get_mut(i) {
-            *slot = x;
-        }
-    };
-    for (hip, knee, ankle) in [
-        (joint::L_HIP_PITCH, joint::L_KNEE, joint::L_ANKLE_PITCH),
-        (joint::R_HIP_PITCH, joint::R_KNEE, joint::R_ANKLE_PITCH),
-    ] {
-        set(hip, 1.496);
-        set(knee, -2.013);
-        set(ankle, -0.817);
+/// iCub's settings with a longest time for each tick.
+#[must_use]
+pub const fn icub_settings() -> Settings {
+    Settings {
+        push_off: PushOff::Torque(PUSH_OFF),
+        landing: Landing::Program(LandingSettings {
+            max_steps: STEPS,
+            ..profile::LANDING
+        }),
+        ..SETTINGS
     }
-    set(joint::TORSO_PITCH, 0.2);
-    for first in [joint::L_SHOULDER_PITCH, joint::R_SHOULDER_PITCH] {
-        set(first, -0.5);
-        set(first + 1, 0.4);
-        set(first + 3, 0.8);
-    }
-    q
 }
 
-fn poses(q: &Configuration<f64, N>) -> Kinematics<f64, N> {
-    let mut kinematics = Kinematics::IDENTITY;
-    forward_kinematics(&Icub23, &Posture::new(&Icub23, q), &mut kinematics);
-    kinematics
+const PUSH_OFF: TorqueJumpSettings<f64, JOINTS> = TorqueJumpSettings {
+    max_steps: STEPS,
+    ..profile::TORQUE
+};
+
+/// Standing in the squat.
+fn standing() -> Configuration<f64, JOINTS> {
+    on_the_floor(&ROBOT, &SOLE_CONTACTS, &profile::SQUAT)
 }
 
-/// With both soles flat on the floor.
-fn standing() -> Configuration<f64, N> {
-    let mut q = Configuration {
-        joints: squat(),
-        ..Configuration::NEUTRAL
-    };
-    let [left, right] = SOLES.each_ref().map(|sole| &sole.frame);
-    q.base.rotation = poses(&q).frame(left).rotation.inverse();
-    let kinematics = poses(&q);
-    let middle = kinematics.frame(left).translation + kinematics.frame(right).translation;
-    q.base.translation = -middle * 0.5;
-    q
+/// The jump of paper B; `None` if it cannot be as wanted.
+#[must_use]
+pub fn icub_jump() -> Option<Jump<f64, JOINTS>> {
+    Some(Jump {
+        profile: profile::rise(profile::HEIGHT)?,
+        start: standing(),
+        landing_joints: profile::LANDING_POSTURE,
+    })
+}
+
+/// The machine, standing, with the jump armed; `None` if it is refused.
+pub fn icub_machine(workspace: &mut Workspace) -> Option<Machine<'_, Icub23GazeboGeared>> {
+    let mut machine = Machine::new(&ROBOT, icub_settings(), workspace);
+    machine.arm(&icub_jump()?, ICUB_HOLD).ok()?;
+    Some(machine)
 }
 
 /// Corners of the soles.
@@ -93,37 +87,10 @@ fn balls() -> [Shape<f64>; 8] {
     })
 }
 
-fn settings() -> TorqueJumpSettings<f64, N> {
-    let mut settings = TorqueJumpSettings::icub();
-    settings.max_steps = STEPS;
-    for (i, weight) in settings.posture_weight.iter_mut().enumerate() {
-        *weight = match i {
-            joint::L_KNEE | joint::R_KNEE => 3.0,
-            joint::L_HIP_PITCH | joint::R_HIP_PITCH => 0.7,
-            joint::L_SHOULDER_PITCH.. => 0.3,
-            _ => 1.0,
-        };
-    }
-    settings
-}
-
-/// Limits with a margin on speed.
-fn guarded() -> [JointLimits<f64>; N] {
-    let mut limits = LIMITS;
-    for (i, limits) in limits.iter_mut().enumerate() {
-        limits.speed *= if i < joint::L_SHOULDER_PITCH {
-            0.95
-        } else {
-            0.9
-        };
-    }
-    limits
-}
-
 /// A simulated iCub in the place of the robot: in a squat on both soles, at rest.
 #[derive(Clone, Debug)]
 pub struct IcubFlight {
-    plant: NativeSimulator<f64, Icub23, N, 8, 8>,
+    plant: NativeSimulator<f64, Icub23GazeboGeared, JOINTS, 8, 8>,
     steps: usize,
     broken: bool,
 }
@@ -132,12 +99,8 @@ impl IcubFlight {
     /// Before the push-off.
     #[must_use]
     pub fn new() -> Self {
-        let mut plant = NativeSimulator::new(
-            Icub23,
-            balls(),
-            Terrain::FLAT,
-            Settings::new(&LIMITS, &MOTORS),
-        );
+        let settings = contact_sim::Settings::new(&LIMITS, &MOTORS);
+        let mut plant = NativeSimulator::new(ROBOT, balls(), Terrain::FLAT, settings);
         plant.reset(&standing(), &Tangent::ZERO);
         Self {
             plant,
@@ -148,27 +111,38 @@ impl IcubFlight {
 
     /// Joint positions and velocities of now.
     #[must_use]
-    pub fn joints(&self) -> ([f64; N], [f64; N]) {
+    pub fn joints(&self) -> ([f64; JOINTS], [f64; JOINTS]) {
         let (q, v) = (self.plant.configuration(), self.plant.velocity());
         (q.joints, v.joints)
     }
 
     /// What the controller is told: the truth.
     #[must_use]
-    pub fn hear(&self) -> State {
-        (*self.plant.configuration(), *self.plant.velocity())
+    pub fn hear(&self) -> Observed {
+        let mut soles = [Vector3::zeros(); 2];
+        for (i, force) in self.plant.contact_forces_w().iter().enumerate() {
+            if let Some(sole) = soles.get_mut(i / 4) {
+                *sole += force;
+            }
+        }
+        observed(
+            self.plant.configuration(),
+            self.plant.velocity(),
+            soles.map(|force| force.norm()),
+        )
     }
 
     /// 100 µs under these torques.
-    pub fn step(&mut self, torques: &[f64; N]) {
+    pub fn step(&mut self, torques: &[f64; JOINTS]) {
         self.broken |= self.plant.step(torques).is_err();
         self.steps += 1;
     }
 
-    /// Whether it has taken off.
+    /// Whether enough time has passed to land and to come to rest.
     #[must_use]
     pub const fn is_over(&self) -> bool {
-        self.broken || self.steps >= (HOLD + PUSH) * RATIO
+        let hold = (ICUB_HOLD * 1e3) as usize;
+        self.broken || self.steps >= (hold + JUMP) * RATIO
     }
 }
 
@@ -178,128 +152,147 @@ impl Default for IcubFlight {
     }
 }
 
-/// The push-off's controller, from standing in the squat to take-off.
-#[derive(Clone, Debug)]
-pub struct IcubPush {
-    program: Program,
-    snapshot: Snapshot<f64, N>,
-    contacts: [Contact<f64>; 2],
-    limits: [JointLimits<f64>; N],
-    profile: ComProfile<f64>,
-    com: Vector3<f64>,
-    ticks: u32,
-    command: JointCommand<f64, N>,
-}
-
-impl IcubPush {
-    /// Before the first tick; `None` if the push-off cannot be as wanted.
-    #[must_use]
-    pub fn new() -> Option<Self> {
-        let start = standing();
-        let speed = takeoff_speed(0.04, GRAVITY);
-        Some(Self {
-            program: Program::new(settings(), start.joints),
-            snapshot: Snapshot::ZERO,
-            contacts: SOLES.each_ref().map(|sole| Contact::new(sole, 0.5, 1000.0)),
-            limits: guarded(),
-            profile: ComProfile::by_displacement(Curve::rising(), speed, 0.11, GRAVITY)?,
-            com: center_of_mass(&Icub23, &Posture::new(&Icub23, &start)).position_w,
-            ticks: 0,
-            command: JointCommand::damp(0.0),
-        })
-    }
-
-    /// One tick of 1 kHz: torques and the solver's iterations. Without an answer the last command stays.
-    pub fn tick(&mut self, (q, v): &State) -> Option<([f64; N], f64)> {
-        let point = self
-            .profile
-            .at(1e-3 * (f64::from(self.ticks) - HOLD as f64));
-        self.ticks = self.ticks.wrapping_add(1);
-        let wanted = ComReference {
-            position_w: self.com + Vector3::z() * point.rise,
-            velocity_w: Vector3::z() * point.speed,
-            acceleration_w: Vector3::z() * point.acceleration,
-        };
-        self.snapshot.update(&Icub23, q, v);
-        let joints = (&self.limits, &MOTORS);
-        let tick = self
-            .program
-            .tick(&Icub23, &self.snapshot, &self.contacts, joints, &wanted);
-        let answer = tick.ok()?.answer;
-        self.command.feed_forward = answer.torques;
-        Some((answer.torques, f64::from(answer.iterations)))
-    }
-
-    /// What the joints are to do.
-    #[must_use]
-    pub const fn command(&self) -> &JointCommand<f64, N> {
-        &self.command
+/// A state with forces on the soles, as a fresh observation.
+const fn observed(
+    q: &Configuration<f64, JOINTS>,
+    v: &Tangent<f64, JOINTS>,
+    foot_forces: [f64; 2],
+) -> Observed {
+    Observation {
+        measured: Measurement {
+            base: q.base,
+            base_velocity: v.base,
+            joints: q.joints,
+            joint_velocities: v.joints,
+            foot_forces,
+            age: 0.0,
+        },
+        felt: [0.0; JOINTS],
     }
 }
 
-/// Pushes off in closed loop with the simulator, then tries the program where no push-off comes.
+impl Numbers for Tick<Work<f64>> {
+    fn visit(&self, take: &mut dyn FnMut(f64)) {
+        take(f64::from(self.phase as u8));
+        take(f64::from(u8::from(self.fault.is_some())));
+        if let Work::PushOff(Ok(solved)) | Work::Landing(Ok(solved)) = self.work {
+            take(f64::from(solved.iterations));
+            (solved.residuals.com, solved.residuals.momentum).visit(take);
+            (solved.yielded == Yielded::Nothing, solved.capped).visit(take);
+        }
+    }
+}
+
+/// What a tick of the machine is called in a jump, and in states that no jump visits.
+const fn name(work: &Work<f64>, wild: bool) -> &'static str {
+    match (work, wild) {
+        (Work::PushOff(_), _) => "push-off tick",
+        (Work::Landing(Ok(solved)), true) if solved.capped => "capped machine tick",
+        (Work::Landing(_), true) => "wild machine tick",
+        (Work::Landing(_), false) => "landing tick",
+        (Work::Servos | Work::Damping, _) => "damping tick",
+    }
+}
+
+/// Jumps and lands in closed loop with the simulator, then tries machine and program where no jump comes.
 pub fn icub<R: Recorder>(recorder: &mut R) {
-    let mut flight = IcubFlight::new();
-    let Some(mut push) = IcubPush::new() else {
+    let mut workspace = Workspace::new(&icub_settings());
+    let Some(mut machine) = icub_machine(&mut workspace) else {
         return;
     };
+    let mut flight = IcubFlight::new();
+    let mut k = 0_u32;
     while !flight.is_over() {
-        let state = flight.hear();
-        digested::<f64, _, _, _>(
-            recorder,
-            SUBJECT,
-            (&mut push, &state),
-            |(push, state)| push.tick(state),
-            |_| "torque tick",
-        );
+        tick(recorder, &mut machine, &mut k, &flight.hear(), false);
         for i in 0..RATIO {
             let (q, v) = flight.joints();
-            let input = (push.command(), &q, &v);
             let torques = if i == 0 {
                 digested::<f64, _, _, _>(
                     recorder,
                     SUBJECT,
-                    input,
-                    |(command, q, v)| command.torques(q, v, &MOTORS),
+                    (&mut machine, &q, &v),
+                    |(machine, q, v)| machine.joint_tick(q, v, 1e-4),
                     |_| "joint PD tick",
                 )
             } else {
-                push.command().torques(&q, &v, &MOTORS)
+                machine.joint_tick(&q, &v, 1e-4)
             };
             flight.step(&torques);
         }
     }
-    let end = flight.plant.velocity().base.to_array();
-    end.iter().for_each(|x| recorder.value(x.to_bits()));
-    wild(recorder, &push.contacts, &push.limits);
+    let end = (*flight.plant.configuration(), *flight.plant.velocity());
+    end.visit(&mut |x| recorder.value(x.to_bits()));
+    recorder.value(machine.phase() as u64);
+    wild_machine(recorder, &mut machine, &mut k);
+    wild(recorder);
 }
 
-/// The program in states far from any push-off: tilted, fast, at the ends of the joints, on one sole or none.
-fn wild<R: Recorder>(
+/// The `k`-th millisecond.
+fn tick<R: Recorder>(
     recorder: &mut R,
-    contacts: &[Contact<f64>; 2],
-    limits: &[JointLimits<f64>; N],
+    machine: &mut Machine<'_, Icub23GazeboGeared>,
+    k: &mut u32,
+    heard: &Observed,
+    wild: bool,
 ) {
+    let now = f64::from(*k) * 1e-3;
+    *k = k.wrapping_add(1);
+    digested::<f64, _, _, _>(
+        recorder,
+        SUBJECT,
+        (&mut *machine, now, heard),
+        |(machine, now, heard)| machine.tick(now, Some(heard)),
+        |tick| name(&tick.work, wild),
+    );
+    let command = super::digest(machine.command());
+    recorder.value(command);
+}
+
+/// A state far from any jump, of number `k`: tilted, fast, at the ends of the joints, on both soles, one or none.
+fn wild_state(
+    stream: &mut Stream,
+    k: usize,
+) -> (Configuration<f64, JOINTS>, Tangent<f64, JOINTS>, [bool; 2]) {
+    let base = Transform::new(
+        so3::exp(&Vector3::from(stream.array::<f64, 3>(0.8))),
+        Vector3::new(0.0, 0.0, 0.5),
+    );
+    let mut joints = profile::SQUAT;
+    for x in &mut joints {
+        *x += stream.next::<f64>(0.6);
+    }
+    let v = Tangent {
+        base: Motion::from_array(stream.array(2.0)),
+        joints: stream.array(6.0),
+    };
+    let soles = core::array::from_fn(|i| (k >> i) & 1 == 0);
+    (Configuration { base, joints }, v, soles)
+}
+
+/// The machine after its landing, told of states where no jump comes, a millisecond after the other.
+fn wild_machine<R: Recorder>(
+    recorder: &mut R,
+    machine: &mut Machine<'_, Icub23GazeboGeared>,
+    k: &mut u32,
+) {
+    let stream = &mut Stream::new(2027);
+    for i in 0..WILD {
+        let (q, v, soles) = wild_state(stream, i);
+        let forces = soles.map(|on| if on { 200.0 } else { 0.0 });
+        tick(recorder, machine, k, &observed(&q, &v, forces), true);
+    }
+}
+
+/// The push-off's program in states far from any push-off.
+fn wild<R: Recorder>(recorder: &mut R) {
     let stream = &mut Stream::new(2026);
-    let mut program = Program::new(settings(), squat());
+    let mut program = TorqueJump::<f64, JOINTS, 12, 35, 55>::new(PUSH_OFF, profile::SQUAT);
     let mut snapshot = Snapshot::ZERO;
     for k in 0..WILD {
-        let base = Transform::new(
-            so3::exp(&Vector3::from(stream.array::<f64, 3>(0.8))),
-            Vector3::new(0.0, 0.0, 0.5),
-        );
-        let mut joints = squat();
-        for x in &mut joints {
-            *x += stream.next::<f64>(0.6);
-        }
-        let q = Configuration { base, joints };
-        let v = Tangent {
-            base: Motion::from_array(stream.array(2.0)),
-            joints: stream.array(6.0),
-        };
-        let mut contacts = *contacts;
-        for (i, contact) in contacts.iter_mut().enumerate() {
-            if (k >> i) & 1 == 1 {
+        let (q, v, soles) = wild_state(stream, k);
+        let mut contacts = SOLE_CONTACTS;
+        for (contact, on) in contacts.iter_mut().zip(soles) {
+            if !on {
                 contact.max_force = 0.0;
             }
         }
@@ -314,8 +307,9 @@ fn wild<R: Recorder>(
             SUBJECT,
             input,
             |(program, snapshot)| {
-                snapshot.update(&Icub23, &q, &v);
-                let tick = program.tick(&Icub23, snapshot, &contacts, (limits, &MOTORS), &wanted);
+                snapshot.update(&ROBOT, &q, &v);
+                let joints = (&SETTINGS.limits, &MOTORS);
+                let tick = program.tick(&ROBOT, snapshot, &contacts, joints, &wanted);
                 let answer = tick.ok()?.answer;
                 Some((answer.torques, f64::from(answer.iterations), answer.capped))
             },

@@ -9,7 +9,7 @@ mod icub;
 mod plan;
 
 pub use a1::{Flight, HOLD, a1, feet, jump, settings};
-pub use icub::{IcubFlight, IcubPush, icub};
+pub use icub::{IcubFlight, icub, icub_machine, icub_settings};
 pub use plan::{BYTES, PLAN, Planned};
 
 use crate::{Label, Numbers, Part, Real, Recorder, canonical_bits};

@@ -1,4 +1,4 @@
-//! iCub's push-off in closed loop, in f64.
+//! iCub's jump in closed loop, in f64.
 #![no_std]
 #![no_main]
 

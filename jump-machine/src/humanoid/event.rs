@@ -1,0 +1,70 @@
+//! What happened in a tick, by phase.
+
+use jump_control::{Event, Measurement, Phase};
+use rbd_core::{GRAVITY, Tree};
+use so3::Scalar;
+
+use super::Machine;
+use crate::Refusal;
+
+impl<
+    T: Scalar,
+    M: Tree<T, N>,
+    const N: usize,
+    const F: usize,
+    const K: usize,
+    const V: usize,
+    const W: usize,
+    const R: usize,
+> Machine<'_, T, M, N, F, K, V, W, R>
+{
+    /// The event of this tick of length `dt`, if any, at time `t` of the jump.
+    pub(super) fn event(&mut self, t: T, measured: &Measurement<T, N, F>, dt: T) -> Option<Event> {
+        let (s, velocity) = (&self.settings, &measured.base_velocity);
+        let (linear, angular) = s.rest;
+        let moving = velocity.linear.norm() > linear || velocity.angular.norm() > angular;
+        let phase = self.supervisor.phase;
+        self.calm = if moving || !matches!(phase, Phase::Landing | Phase::Stand) {
+            T::ZERO
+        } else {
+            self.calm + dt
+        };
+        match (phase, &self.armed) {
+            (Phase::Hold, Some(_)) if t < T::ZERO => None,
+            (Phase::Hold, Some(_)) => match self.misplaced(measured) {
+                None => Some(Event::Start),
+                Some(joint) => {
+                    self.refusal = Some(Refusal::Posture(joint));
+                    Some(Event::Misplaced)
+                }
+            },
+            (Phase::Stance, Some(armed)) => {
+                (t >= armed.jump.profile.duration).then_some(Event::Takeoff)
+            }
+            // The ground cannot come before the robot falls.
+            (Phase::Flight, Some(armed)) => {
+                let apex = self.took_off + armed.jump.profile.speed / T::of(-GRAVITY[2]);
+                (t >= apex).then_some(Event::Posing)
+            }
+            (Phase::PreLanding, _) if total(&measured.foot_forces) > s.touchdown_force => {
+                Some(Event::Touchdown)
+            }
+            (Phase::PreLanding, _) => (t > self.took_off + s.patience).then_some(Event::Overdue),
+            (Phase::Landing, _) => (self.calm > s.settling).then_some(Event::Settled),
+            (Phase::Stand, _) => (self.calm == T::ZERO).then_some(Event::Disturbed),
+            _ => None,
+        }
+    }
+
+    /// The first joint that is not where the jump begins.
+    fn misplaced(&self, measured: &Measurement<T, N, F>) -> Option<usize> {
+        let start = &self.armed.as_ref()?.jump.start;
+        let mut joints = measured.joints.iter().zip(&start.joints);
+        joints.position(|(q, first)| so3::math::abs(*q - *first) > self.settings.start_tolerance)
+    }
+}
+
+/// Force on all feet together.
+fn total<T: Scalar, const F: usize>(forces: &[T; F]) -> T {
+    forces.iter().fold(T::ZERO, |sum, force| sum + *force)
+}
