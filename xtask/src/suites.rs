@@ -12,7 +12,8 @@ use crate::{mujoco, run};
 enum Part {
     /// What `saltus` does as a program, iCub and noise at length, in both simulators and its release build.
     Program,
-    /// Every algorithm beside Pinocchio, and a counting allocator under every call of the control crates.
+    /// Every algorithm beside Pinocchio, a counting allocator under every call of the control crates, A1 dropped from a metre, and the
+    /// bounds beside the solver, in the build of `cargo test --workspace`.
     Algorithms,
 }
 
@@ -34,12 +35,19 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Both are many instances of generic code: more work for the compiler than all other tests of the workspace together.
+/// The whole workspace is named, so that nothing is compiled again with other features.
 fn algorithms() -> Result<()> {
-    let mut cargo = run::cargo();
-    cargo.args(["test", "--package", "saltus-tests", "--features", "long"]);
-    cargo.args(["--test", "golden", "--test", "no_alloc"]);
-    run::succeed(&mut cargo)
+    let test = || {
+        let mut cargo = run::cargo();
+        cargo.args(["test", "--workspace"]);
+        cargo
+    };
+    run::succeed(test().args(["--lib", "--", "--ignored", "bounds::tests"]))?;
+    let mut long = test();
+    long.args(["--features", "saltus-tests/long"]);
+    long.args(["--test", "golden", "--test", "no_alloc"]);
+    long.args(["--test", "landing_drops", "--", "--include-ignored"]);
+    run::succeed(&mut long)
 }
 
 fn program() -> Result<()> {
