@@ -475,6 +475,7 @@ mod tests {
 
     /// One task per bound, a little beyond it: the bound says so, and the solver finds no plan either.
     #[test]
+    #[ignore = "long: cargo xtask suites"]
     fn the_solver_agrees_with_every_bound() {
         let cases = [
             (
@@ -538,6 +539,7 @@ mod tests {
 
         /// Random changes of the tasks, half of them far beyond what can be: whatever breaks a bound, the solver does not solve.
         #[test]
+        #[ignore = "long: cargo xtask suites"]
         fn bounds_never_contradict_the_solver(
             (name, rise, ahead) in (0..BUILT_IN.len(), -1.6..1.6, -0.6..0.6),
             (friction, force, total) in (0.02..2.0, 0.2..2.0, 0.3..1.5),

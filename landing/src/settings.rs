@@ -1,7 +1,7 @@
 //! Gains, weights and limits of the landing controller, and where it is to bring the body.
 
 use nalgebra::Rotation3;
-use rbd_core::Build;
+use rbd_core::{Build, Transform};
 use so3::Scalar;
 
 /// Settings; [`Settings::new`] holds those measured on drops, for a robot of any size.
@@ -81,17 +81,7 @@ impl<T: Scalar> Target<T> {
     /// Level, over the middle of the feet, at no height: set one.
     pub const LEVEL: Self = Self {
         height: T::ZERO,
-        rot_wb: Rotation3::from_matrix_unchecked(nalgebra::Matrix3::new(
-            T::ONE,
-            T::ZERO,
-            T::ZERO,
-            T::ZERO,
-            T::ONE,
-            T::ZERO,
-            T::ZERO,
-            T::ZERO,
-            T::ONE,
-        )),
+        rot_wb: Transform::<T>::IDENTITY.rotation,
         offset_w: [T::ZERO; 2],
     };
 }

@@ -3,10 +3,11 @@
 //! Meshes, collisions, transmissions and simulator tags are skipped. Every element is checked by itself
 //! here; what they form together is checked in the module `tree`.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use rbd_core::model::JointLimits;
 use rbd_core::spatial::{Inertia, Symmetric3, Transform};
 use roxmltree::{Document, Node};
+use so3::euler::RollPitchYaw;
 use so3::math;
 
 use crate::error::{ImportError, Warning};
@@ -460,24 +461,7 @@ fn pose(origin: Option<Node<'_, '_>>, element: &str) -> Result<Transform<f64>, I
     };
     let rpy = read("rpy", "origin rpy")?;
     Ok(Transform::new(
-        rotation_rpy(&rpy),
+        RollPitchYaw::Zyx.rotation(&rpy),
         read("xyz", "origin xyz")?,
     ))
-}
-
-/// Rz(yaw) Ry(pitch) Rx(roll).
-fn rotation_rpy(rpy: &Vector3<f64>) -> Rotation3<f64> {
-    let [(sr, cr), (sp, cp), (sy, cy)] = [rpy.x, rpy.y, rpy.z].map(math::sin_cos);
-    let m = Matrix3::new(
-        cy * cp,
-        cy * sp * sr - sy * cr,
-        cy * sp * cr + sy * sr,
-        sy * cp,
-        sy * sp * sr + cy * cr,
-        sy * sp * cr - cy * sr,
-        -sp,
-        cp * sr,
-        cp * cr,
-    );
-    Rotation3::from_matrix_unchecked(m)
 }

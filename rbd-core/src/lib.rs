@@ -51,6 +51,7 @@ pub use algo::rnea::{nonlinear_effects, rnea, rnea_with_forces};
 pub use algo::rnea_derivatives::{
     DerivativesWorkspace, RneaDerivatives, rnea_derivatives, rnea_derivatives_with_forces,
 };
+pub use algo::second_order;
 pub use hardware::{Budgets, Contact, ContactShape, Motor};
 pub use manifold::{difference, integrate, interpolate};
 pub use model::{BaseBody, BaseKind, Body, Frame, JointLimits, Link};

@@ -2,18 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
-pub(crate) use so3::hat;
 use so3::math::{atan2, sin_cos, sqrt};
+pub(crate) use so3::{hat, vee};
 
-/// Vector of the antisymmetric part of a matrix: `vee((E − Eᵀ)/2)`.
+/// Derivative of [`vee`] of `E Exp(θ)` at θ = 0: `½ (tr(E) I − Eᵀ)`.
 #[inline(always)]
-pub(crate) fn vee_skew<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
-    Vector3::new(e.m32 - e.m23, e.m13 - e.m31, e.m21 - e.m12) * T::HALF
-}
-
-/// Derivative of [`vee_skew`] of `E Exp(θ)` at θ = 0: `½ (tr(E) I − Eᵀ)`.
-#[inline(always)]
-pub(crate) fn vee_skew_derivative<T: Scalar>(e: &Matrix3<T>) -> Matrix3<T> {
+pub(crate) fn vee_derivative<T: Scalar>(e: &Matrix3<T>) -> Matrix3<T> {
     (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF
 }
 
@@ -44,7 +38,7 @@ pub(crate) fn exp<T: Scalar>(w: &Vector3<T>) -> Matrix3<T> {
 /// Logarithm of a matrix that is a rotation up to a small drift, angle below π.
 #[inline(always)]
 pub(crate) fn log<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
-    let v = vee_skew(e);
+    let v = vee(e);
     let s = v.norm_squared();
     let cos = (e.trace() - T::ONE) * T::HALF;
     if s < T::of(1e-12) && cos > T::ZERO {
@@ -85,7 +79,7 @@ pub(crate) struct LogError<T> {
 impl<T: Scalar> LogError<T> {
     #[inline(always)]
     pub(crate) fn new(e: &Matrix3<T>, epsilon: T) -> Self {
-        let s = vee_skew(e);
+        let s = vee(e);
         let c = (e.trace() - T::ONE) * T::HALF;
         let r = sqrt(s.norm_squared() + epsilon);
         let angle = atan2(r, c);
@@ -102,7 +96,7 @@ impl<T: Scalar> LogError<T> {
     #[inline(always)]
     pub(crate) fn derivative(&self, e: &Matrix3<T>) -> Matrix3<T> {
         let Self { s, c, r, angle, .. } = *self;
-        let ds = vee_skew_derivative(e);
+        let ds = vee_derivative(e);
         // h = atan2(r, c)/r;  dr = sᵀ ds / r,  dc = −sᵀ θ.
         let square = r * r + c * c;
         let by_r = (c / square - angle / r) / r;
@@ -146,7 +140,7 @@ impl<T: Scalar> LogError<T> {
             + two * h * (a_q * a_q + angle * a_qq);
         let f_qc = two * h_q * angle * a_c + two * h * (a_q * a_c + angle * a_qc);
         let f_cc = two * h * (a_c * a_c + angle * a_cc);
-        let ds = vee_skew_derivative(e);
+        let ds = vee_derivative(e);
         let (in_q, in_c) = (ds.transpose() * s * two, -s);
         let symmetric = |m: Matrix3<T>| (m + m.transpose()) * T::HALF;
         let identity = Matrix3::identity();

@@ -7,7 +7,7 @@
 
 use crate::dynamics::force_unit;
 use crate::problem::Problem;
-use crate::rotation::{hat, vee_skew, vee_skew_derivative};
+use crate::rotation::{hat, vee, vee_derivative};
 use crate::state::{POSITION, ROTATION, State, TIMES, add_block, put};
 use nalgebra::{Matrix3, Vector3};
 use ocp_solver::{Derivatives, Dims, Values};
@@ -153,7 +153,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         if k == self.intervals() {
             state.pos_w.iter().for_each(|value| push(*value));
             let error = self.final_error(&state.rot_wb);
-            vee_skew(&error).iter().for_each(|value| push(*value));
+            vee(&error).iter().for_each(|value| push(*value));
             push(error.trace());
         }
         let (triples, _) = control.as_chunks::<3>();
@@ -238,7 +238,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         }
         if k == self.intervals() {
             let error = self.final_error(rot);
-            let by_rotation = vee_skew_derivative(&error);
+            let by_rotation = vee_derivative(&error);
             for i in 0..3 {
                 if let Some(row) = d.rows_x.get_mut(at + i) {
                     row[POSITION + i] = T::ONE;
@@ -248,7 +248,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
                 }
             }
             if let Some(row) = d.rows_x.get_mut(at + 6) {
-                put(row, ROTATION, &(vee_skew(&error) * -T::TWO));
+                put(row, ROTATION, &(vee(&error) * -T::TWO));
             }
             at += 7;
         }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::force_unit;
 use crate::problem::Problem;
-use crate::rotation::{LogError, about_axis, vee_skew};
+use crate::rotation::{LogError, about_axis, vee};
 use crate::state::State;
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;
@@ -122,7 +122,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
                 norm(&(state.pos_w - self.goal_w), &mut above);
                 let (sin, cos) = sin_cos(self.angle);
                 let error = about_axis(&self.axis, sin, cos).transpose() * state.rot_wb;
-                norm(&vee_skew(&error), &mut above);
+                norm(&vee(&error), &mut above);
                 above(self.min_final_trace - error.trace());
             }
             before = Some((state, sample));

@@ -28,12 +28,14 @@ fn eighteen_of_eighteen_drops_from_30_cm_are_landed() {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn eighteen_of_eighteen_drops_from_one_metre_are_landed() {
     assert_eq!(good(&mut native(), eighteen(1.0)), 18);
 }
 
 /// Each kind of fault on each foot: landed all the same, and the detector names the foot.
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
     let mut plant = native();
     for wrong in [Wrong::Dead, Wrong::Stuck, Wrong::Chattering] {

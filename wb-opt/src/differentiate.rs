@@ -1,17 +1,17 @@
 //! Derivatives of one interval: cost, mixed rows, and the exact Hessian of the Lagrangian.
 
-use crate::curvature::{Multipliers, PositionTerms};
 use crate::drive::Line;
-use crate::map::{Gradient, Hessian, Map};
+use crate::map::{Map, turning};
 use crate::midpoint::Midpoint;
-use crate::moments::{at_point, moment_of};
 use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
 use crate::state::Units;
 use crate::stretch::Stretch;
-use crate::sweep::{Contacts, EffortJacobian, Sweep};
 use nalgebra::Vector3;
 use ocp_solver::Derivatives;
+use rbd_core::second_order::{
+    Contacts, EffortJacobian, Gradient, Hessian, Multipliers, PositionTerms, Sweep,
+};
 use so3::Scalar;
 
 /// One interval whose nonlinear part is differentiated.
@@ -62,7 +62,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
     /// Adds to the gradient of the Lagrangian.
     #[inline(always)]
     fn count(&mut self, multiplier: T, gradient: &Gradient<T, N, FEET>) {
-        for (sum, part) in self.turning.iter_mut().zip(gradient.turning()) {
+        for (sum, part) in self.turning.iter_mut().zip(turning(gradient)) {
             *sum += part * multiplier;
         }
         if self.stretch.is_some() {
@@ -81,7 +81,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let mut effort = [T::ZERO; N];
         self.sweep.effort(&self.mid.a, self.contacts, &mut effort);
         self.problem.add_friction(&self.mid.v, &mut effort);
-        let mut jacobian = EffortJacobian::<T, N, FEET>::zero();
+        let mut jacobian = EffortJacobian::<T, N, FEET>::ZERO;
         self.sweep.differentiate(self.contacts, &mut jacobian);
         let mut bends = [T::ZERO; N];
         let mut explicit = [T::ZERO; N];
@@ -93,8 +93,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             *bent = bend;
         }
 
-        let mut hessian = Hessian::<T, N, FEET>::zero();
-        let mut cost = Gradient::<T, N, FEET>::zero();
+        let mut hessian = Hessian::<T, N, FEET>::ZERO;
+        let mut cost = Gradient::<T, N, FEET>::ZERO;
         let mut multipliers = [T::ZERO; N];
         let mut pulls = [Vector3::zeros(); FEET];
         for (i, multiplier) in multipliers.iter_mut().enumerate().take(BASE) {
@@ -103,13 +103,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             *multiplier = self.push(units.effort(i), &gradient, 0..N, y, d);
         }
         self.bear_twice(&multipliers, &effort, &jacobian, &mut hessian);
-        for f in 0..self.contacts.count {
-            let rows = self.acceleration(f);
-            let link = self.contacts.points.get(f).map_or(0, |point| point.link);
-            if let Some(pull) = pulls.get_mut(f) {
-                for (row, pull) in rows.iter().zip(pull.iter_mut()) {
-                    *pull = self.push(units.foot_acceleration, row, self.sweep.path(link), y, d);
-                }
+        for ((point, _), pull) in self.contacts.active().zip(&mut pulls) {
+            let rows = self.sweep.acceleration_gradients(point);
+            for (row, pull) in rows.iter().zip(pull.iter_mut()) {
+                let path = self.sweep.path(point.link);
+                *pull = self.push(units.foot_acceleration, row, path, y, d);
             }
         }
         for i in BASE..N {
@@ -182,12 +180,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         }
         let speed = Units::<T>::new().speed;
         for joint in BASE..N {
-            let mut gradient = Gradient::zero();
+            let mut gradient = Gradient::ZERO;
             gradient.q[joint] = T::ONE;
             self.push(T::ONE, &gradient, core::iter::once(joint), y, d);
         }
         for joint in BASE..N {
-            let mut gradient = Gradient::zero();
+            let mut gradient = Gradient::ZERO;
             gradient.v[joint] = T::ONE;
             self.push(speed, &gradient, core::iter::once(joint), y, d);
         }
@@ -251,7 +249,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             let rot_w = self.mid.rot_wc.matrix();
             let spread = reference.rot_wc.matrix() * rot_w.transpose() * -weight;
             terms.add_spread(BASE - 1, &spread);
-            let pull = moment_of(&spread);
+            let pull = so3::vee(&spread) * T::TWO;
             for k in TURN..BASE {
                 cost.q[k] += self.sweep.joints[k].axis.angular.dot(&pull);
             }
@@ -259,32 +257,6 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             straight.start = BASE;
         }
         straight.for_each(|i| hessian.qq[i][i] += two);
-    }
-
-    /// Gradients of the acceleration of the f-th foot in contact.
-    fn acceleration(&self, f: usize) -> [Gradient<T, N, FEET>; 3] {
-        let mut rows = [Gradient::zero(); 3];
-        let Some((point, _)) = self.contacts.active().nth(f) else {
-            return rows;
-        };
-        for k in self.sweep.path(point.link) {
-            let joint = &self.sweep.joints[k];
-            let turn = &joint.axis.angular;
-            let carried = |w: &Vector3<T>| w.cross(&point.velocity) * T::TWO;
-            let by_q = at_point(&joint.second, &point.pos)
-                + carried(&joint.rate.angular)
-                + turn.cross(&point.lifted);
-            let by_v = at_point(&joint.rate, &point.pos) * T::TWO + carried(turn);
-            let by_a = at_point(&joint.axis, &point.pos);
-            let rolling = self.sweep.angular_columns(point.link, k);
-            let by_q = by_q + rolling.by_q.cross(&point.arm);
-            let by_v = by_v + rolling.by_v.cross(&point.arm);
-            let by_a = by_a + rolling.by_a.cross(&point.arm);
-            for (c, row) in rows.iter_mut().enumerate() {
-                (row.q[k], row.v[k], row.a[k]) = (by_q[c], by_v[c], by_a[c]);
-            }
-        }
-        rows
     }
 
     /// Rows of positions: drift and heights over the ground.
@@ -298,46 +270,28 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let mut terms = PositionTerms::new();
         for (point, _) in self.contacts.active() {
             for normal in [Vector3::x(), Vector3::y(), Vector3::z()] {
-                let gradient = self.along(point.link, &point.pos, &normal);
+                let gradient = self
+                    .sweep
+                    .position_gradient(point.link, &point.pos, &normal);
                 let path = self.sweep.path(point.link);
                 let y = self.push(units.position, &gradient, path, y, d);
                 terms.add(point.link, &point.pos, &(normal * y));
             }
         }
         for point in self.problem.points_over_ground(self.k) {
-            let pos = self.sweep.place(point);
+            let pos = self.sweep.place(point.link, &point.offset_l);
             let over = self.problem.over_ground(&pos);
             let path = || self.sweep.path(point.link);
-            let gradient = self.along(point.link, &pos, &over.normal);
+            let gradient = self.sweep.position_gradient(point.link, &pos, &over.normal);
             let y = self.push(units.position, &gradient, path(), y, d);
             terms.add(point.link, &pos, &(over.normal * y));
             if over.curvature != T::ZERO {
                 let mut axis = Vector3::zeros();
                 axis[over.across] = T::ONE;
-                let gradient = self.along(point.link, &pos, &axis);
+                let gradient = self.sweep.position_gradient(point.link, &pos, &axis);
                 hessian.add_outer(y * over.curvature, &gradient, path());
             }
         }
         terms
-    }
-
-    /// Gradient of the position of a point along a direction.
-    fn along(&self, link: usize, pos: &Vector3<T>, normal: &Vector3<T>) -> Gradient<T, N, FEET> {
-        let mut gradient = Gradient::zero();
-        for k in self.sweep.path(link) {
-            gradient.q[k] = normal.dot(&at_point(&self.sweep.joints[k].axis, pos));
-        }
-        gradient
-    }
-}
-
-impl<T: Scalar, const N: usize, const FEET: usize> EffortJacobian<T, N, FEET> {
-    pub(crate) fn row(&self, i: usize) -> Gradient<T, N, FEET> {
-        Gradient {
-            q: self.by_q[i],
-            v: self.by_v[i],
-            a: self.by_a[i],
-            force: self.by_force[i],
-        }
     }
 }

@@ -4,10 +4,10 @@ use crate::drive::Line;
 use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
-use crate::rotation::{angular_acceleration, set_triple, triple, vee_skew};
+use crate::rotation::{angular_acceleration, set_triple, triple};
 use crate::state::State;
-use crate::sweep::Sweep;
 use nalgebra::{Rotation3, Vector3};
+use rbd_core::second_order::Sweep;
 use so3::Scalar;
 use so3::math::{abs, max};
 
@@ -52,7 +52,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         control: &[T; NU],
     ) -> Sample<T, N, FEET> {
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = Sweep::new(&self.robot.bodies, &mid);
+        let sweep = mid.sweep(&self.robot.bodies);
         self.sampled(k, &mid, &sweep)
     }
 
@@ -124,7 +124,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 if self.robot.turns_freely() {
                     let e = goal.seen(&state.rot_wc);
                     let tolerances = self.goal_tolerance.iter().skip(TURN);
-                    for (sine, tolerance) in vee_skew(&e).iter().zip(tolerances) {
+                    for (sine, tolerance) in so3::vee(&e).iter().zip(tolerances) {
                         above(abs(*sine) - *tolerance);
                     }
                     // The sine is small at half a turn, too.
@@ -133,7 +133,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 break;
             }
             let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-            let sweep = Sweep::new(&self.robot.bodies, &mid);
+            let sweep = mid.sweep(&self.robot.bodies);
             let sample = self.sampled(k, &mid, &sweep);
             if let Some(reference) = self.reference.get(k) {
                 let distance = reference.distance_squared(&mid.q, &mid.rot_wc);
@@ -201,7 +201,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     ) {
         let feet = self.feet.iter().zip(&sample.forces_w);
         for (i, ((foot, f), on)) in feet.zip(self.contacts(k)).enumerate() {
-            let point = sweep.point(&foot.point);
+            let point = sweep.point(foot.point.link, &foot.point.offset_l);
             if on {
                 let mut touching = point;
                 touching.arm.z = -foot.radius;
@@ -219,7 +219,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         }
         for clearance in self.clearances {
-            let pos = sweep.place(&clearance.point);
+            let pos = sweep.place(clearance.point.link, &clearance.point.offset_l);
             above(clearance.height - self.over_ground(&pos).height);
         }
     }

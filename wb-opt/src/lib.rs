@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-mod curvature;
 mod differentiate;
 mod drive;
 mod error;
@@ -11,17 +10,14 @@ mod guess;
 mod judge;
 mod map;
 mod midpoint;
-mod moments;
 mod plan;
 mod problem;
 mod robot;
-mod rolling;
 mod rotation;
 mod row;
 mod rows;
 mod state;
 mod stretch;
-mod sweep;
 mod timing;
 mod transcription;
 

@@ -8,127 +8,18 @@ use crate::rotation::{Turn, set_triple, triple};
 use crate::state::{Layout, Units};
 use nalgebra::Vector3;
 use ocp_solver::Derivatives;
+use rbd_core::second_order::{Gradient, Hessian};
 use so3::Scalar;
 
-/// A gradient in (qm, vm, q̈) and in the contact forces.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Gradient<T, const N: usize, const FEET: usize> {
-    pub(crate) q: [T; N],
-    pub(crate) v: [T; N],
-    pub(crate) a: [T; N],
-    pub(crate) force: [[T; 3]; FEET],
+/// The part of a gradient that turns the base: in the angles, their rates and their accelerations.
+#[inline(always)]
+pub(crate) fn turning<T: Scalar, const N: usize, const FEET: usize>(
+    g: &Gradient<T, N, FEET>,
+) -> [Vector3<T>; 3] {
+    [&g.q, &g.v, &g.a].map(|row| triple(row, TURN))
 }
 
-impl<T: Scalar, const N: usize, const FEET: usize> Gradient<T, N, FEET> {
-    /// In the coordinates that turn the base.
-    #[inline(always)]
-    pub(crate) fn turning(&self) -> [Vector3<T>; 3] {
-        [&self.q, &self.v, &self.a].map(|row| triple(row, TURN))
-    }
-
-    pub(crate) const fn zero() -> Self {
-        Self {
-            q: [T::ZERO; N],
-            v: [T::ZERO; N],
-            a: [T::ZERO; N],
-            force: [[T::ZERO; 3]; FEET],
-        }
-    }
-
-    /// Adds `factor` times another.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, factor: T, o: &Self) {
-        add_scaled(&mut self.q, factor, &o.q);
-        add_scaled(&mut self.v, factor, &o.v);
-        add_scaled(&mut self.a, factor, &o.a);
-        for (mine, other) in self.force.iter_mut().zip(&o.force) {
-            add_scaled(mine, factor, other);
-        }
-    }
-}
-
-/// Second derivatives in (qm, vm, q̈) and the contact forces, by rows; `vq` has the rows of vm.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hessian<T, const N: usize, const FEET: usize> {
-    pub(crate) qq: [[T; N]; N],
-    pub(crate) vq: [[T; N]; N],
-    pub(crate) vv: [[T; N]; N],
-    pub(crate) aq: [[T; N]; N],
-    pub(crate) av: [[T; N]; N],
-    pub(crate) aa: [[T; N]; N],
-    pub(crate) force: [[Gradient<T, N, FEET>; 3]; FEET],
-}
-
-impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
-    pub(crate) const fn zero() -> Self {
-        let none = [[T::ZERO; N]; N];
-        Self {
-            qq: none,
-            vq: none,
-            vv: none,
-            aq: none,
-            av: none,
-            aa: none,
-            force: [[Gradient::zero(); 3]; FEET],
-        }
-    }
-
-    /// Adds `weight` g gᵀ; `support` lists the coordinates in which g is not zero, `feet` the forces.
-    #[inline(always)]
-    pub(crate) fn add_outer(
-        &mut self,
-        weight: T,
-        g: &Gradient<T, N, FEET>,
-        support: impl Iterator<Item = usize>,
-    ) {
-        for i in support {
-            let (q, v, a) = (weight * g.q[i], weight * g.v[i], weight * g.a[i]);
-            add_scaled(&mut self.qq[i], q, &g.q);
-            add_scaled(&mut self.vq[i], v, &g.q);
-            add_scaled(&mut self.vv[i], v, &g.v);
-            add_scaled(&mut self.aq[i], a, &g.q);
-            add_scaled(&mut self.av[i], a, &g.v);
-            add_scaled(&mut self.aa[i], a, &g.a);
-        }
-        for (foot, rows) in g.force.iter().zip(&mut self.force) {
-            if foot.iter().all(|x| *x == T::ZERO) {
-                continue;
-            }
-            for (entry, row) in foot.iter().zip(rows) {
-                let f = weight * *entry;
-                add_scaled(&mut row.q, f, &g.q);
-                add_scaled(&mut row.v, f, &g.v);
-                add_scaled(&mut row.a, f, &g.a);
-                for (out, other) in row.force.iter_mut().zip(&g.force) {
-                    add_scaled(out, f, other);
-                }
-            }
-        }
-    }
-}
-
-impl<T: Scalar, const N: usize, const FEET: usize> Hessian<T, N, FEET> {
-    /// Adds what a product of qm's entry `i` and a function with gradient `weight` g bends.
-    pub(crate) fn add_product(&mut self, i: usize, weight: T, g: &Gradient<T, N, FEET>) {
-        add_scaled(&mut self.qq[i], weight, &g.q);
-        let slots = self.qq.iter_mut().zip(&mut self.vq).zip(&mut self.aq);
-        let parts = g.q.iter().zip(&g.v).zip(&g.a);
-        for (((qq, vq), aq), ((q, v), a)) in slots.zip(parts) {
-            qq[i] += weight * *q;
-            vq[i] += weight * *v;
-            aq[i] += weight * *a;
-        }
-        for (row, force) in self
-            .force
-            .iter_mut()
-            .flatten()
-            .zip(g.force.iter().flatten())
-        {
-            row.q[i] += weight * *force;
-        }
-    }
-}
-
+/// y += factor x.
 #[inline(always)]
 pub(crate) fn add_scaled<T: Scalar, const K: usize>(y: &mut [T; K], factor: T, x: &[T; K]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -201,7 +92,7 @@ impl<T: Scalar> Map<T> {
         u: &mut [T; NU],
     ) {
         if let Some(turn) = &self.turn {
-            let [theta, omega, alpha] = turn.gradient(&g.turning());
+            let [theta, omega, alpha] = turn.gradient(&turning(g));
             set_triple(x, TURN, &(theta * scale));
             let speeds = N.saturating_add(TURN);
             set_triple(x, speeds, &(omega * (scale * self.units.speed)));
@@ -291,7 +182,7 @@ impl<T: Scalar> Map<T> {
         for i in 0..N {
             let [row_q, row_v, row_a] = match &self.turn {
                 Some(turn) if (TURN..BASE).contains(&i) => {
-                    let mut node = [Gradient::zero(); 3];
+                    let mut node = [Gradient::ZERO; 3];
                     for k in TURN..BASE {
                         for (r, row) in rows(k).iter().enumerate() {
                             for (c, sum) in node.iter_mut().enumerate() {

@@ -10,8 +10,9 @@ use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
 use crate::rotation::{Turn, angular_acceleration, joint_acceleration, set_triple, triple};
 use crate::state::{Layout, State, Units};
-use crate::sweep::{Contacts, PointMotion, Sweep};
 use nalgebra::{Rotation3, Vector3};
+use rbd_core::model::Body;
+use rbd_core::second_order::{Contacts, Sweep};
 use so3::Scalar;
 
 /// Motion at the middle of an interval, in the coordinates of the chain: on SO(3) the angles of the base turn from
@@ -25,6 +26,18 @@ pub(crate) struct Midpoint<T: Scalar, const N: usize, const FEET: usize> {
     pub(crate) forces: [Vector3<T>; FEET],
     pub(crate) rot_wc: Rotation3<T>,
     pub(crate) layout: Layout,
+}
+
+impl<T: Scalar, const N: usize, const FEET: usize> Midpoint<T, N, FEET> {
+    /// The robot in this motion: the last joint of the base that does not turn carries the rotation that its angles count from.
+    #[inline(always)]
+    pub(crate) fn sweep<'a>(&self, bodies: &'a [Body<T>; N]) -> Sweep<'a, T, N> {
+        Sweep::new(
+            bodies,
+            [&self.q, &self.v, &self.a],
+            Some((TURN - 1, &self.rot_wc)),
+        )
+    }
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
@@ -130,22 +143,15 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         sweep: &Sweep<'_, T, N>,
         mid: &Midpoint<T, N, FEET>,
     ) -> Contacts<T, FEET> {
-        let still = PointMotion {
-            link: 0,
-            pos: Vector3::zeros(),
-            arm: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            lifted: Vector3::zeros(),
-        };
         let mut contacts = Contacts {
-            points: [still; FEET],
             forces: mid.forces,
             count: mid.layout.feet,
+            ..Contacts::NONE
         };
         let on = self.contacts(k);
         let standing = self.feet.iter().zip(&on).filter(|(_, on)| **on);
         for (slot, (foot, _)) in contacts.points.iter_mut().zip(standing) {
-            *slot = sweep.point(&foot.point);
+            *slot = sweep.point(foot.point.link, &foot.point.offset_l);
             slot.arm.z = -foot.radius;
         }
         contacts

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! the midpoint rule on the group: no chart, so nothing is singular. Dynamics are differentiated along a chain of joints
-//! ([`crate::sweep`]) whose last three base joints, about x, y and z, turn from R_m: their angles a are zero there and their
+//! ([`rbd_core::second_order`]) whose last three base joints, about x, y and z, turn from R_m: their angles a are zero there and their
 //! rates and accelerations are known. Near a = 0, with R_m Exp(θ), x = a₂ and z = a₃,
 //!
 //! ```text
@@ -42,12 +42,6 @@ pub(crate) fn set_triple<T: Scalar>(x: &mut [T], at: usize, v: &Vector3<T>) {
     for (slot, value) in x.iter_mut().skip(at).zip(v) {
         *slot = *value;
     }
-}
-
-/// Vector of the antisymmetric part of E: the sine of its angle times its axis.
-#[inline(always)]
-pub(crate) fn vee_skew<T: Scalar>(e: &Matrix3<T>) -> Vector3<T> {
-    Vector3::new(e.m32 - e.m23, e.m13 - e.m31, e.m21 - e.m12) * T::HALF
 }
 
 /// Joint accelerations ä at a = 0 from ω and α, and back with the other sign.

@@ -8,13 +8,14 @@
 //!
 //! and a base on SO(3) as [`Turn::by_half`] says. Products of dt with rates and accelerations bend the Lagrangian besides.
 
-use crate::map::{Gradient, Hessian, Map, add_scaled};
+use crate::map::{Map, add_scaled};
 use crate::midpoint::Midpoint;
 use crate::robot::{BASE, TURN};
 use crate::rotation::{Step, Turn, set_triple};
 use crate::state::{Layout, Units};
 use nalgebra::{Matrix3, Vector3};
 use ocp_solver::Derivatives;
+use rbd_core::second_order::{Gradient, Hessian};
 use so3::Scalar;
 
 /// An interval that the duration of its phase stretches.
@@ -43,7 +44,7 @@ impl<T: Scalar, const N: usize> Stretch<T, N> {
         mid: &Midpoint<T, N, FEET>,
         turn: Option<&Turn<T>>,
     ) -> Self {
-        let mut by = Gradient::zero();
+        let mut by = Gradient::ZERO;
         let (mut end_v, mut end_a) = ([T::ZERO; N], mid.a);
         for (i, end_v) in end_v.iter_mut().enumerate() {
             *end_v = mid.v[i] + dt * T::HALF * mid.a[i];
@@ -94,7 +95,7 @@ impl<T: Scalar, const N: usize> Stretch<T, N> {
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
         let units = Units::<T>::new();
-        let mut row = Gradient::<T, N, FEET>::zero();
+        let mut row = Gradient::<T, N, FEET>::ZERO;
         for i in 0..N {
             let (q, v, a) = (self.by.q[i], self.by.v[i], self.by.a[i]);
             add_scaled(&mut row.q, q, &h.qq[i]);

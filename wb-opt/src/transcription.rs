@@ -2,16 +2,16 @@
 
 use crate::differentiate::Interval;
 use crate::drive::Line;
-use crate::map::{Gradient, Map};
+use crate::map::Map;
 use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::{BASE, Point, TURN};
-use crate::rotation::{Step, set_block, set_triple, triple, vee_skew};
+use crate::rotation::{Step, set_block, set_triple, triple};
 use crate::state::{Layout, State, Units};
 use crate::stretch::{Stretch, Turning};
-use crate::sweep::{Contacts, Sweep};
 use nalgebra::{Matrix3, Vector3};
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem as Ocp, Values};
+use rbd_core::second_order::{Contacts, Gradient, Sweep};
 use so3::{Scalar, hat};
 
 /// A node: its index, state, control, and the next state unless it is the last.
@@ -73,7 +73,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         }
         for point in self.points_over_ground(k) {
-            push(self.over_ground(&sweep.place(point)).height / units.position);
+            push(
+                self.over_ground(&sweep.place(point.link, &point.offset_l))
+                    .height
+                    / units.position,
+            );
         }
         if mid.layout.joints > 0 {
             for q in mid.q.iter().skip(BASE) {
@@ -142,7 +146,7 @@ where
             return;
         };
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = Sweep::new(&self.robot.bodies, &mid);
+        let sweep = mid.sweep(&self.robot.bodies);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
@@ -200,7 +204,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let stretch =
             free.map(|(column, rate)| Stretch::new(column, rate, self.dt(k), &mid, map.turn()));
         self.differentiate_linear(k, &mid, d);
-        let sweep = Sweep::new(&self.robot.bodies, &mid);
+        let sweep = mid.sweep(&self.robot.bodies);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut interval = Interval {
             problem: self,
@@ -212,7 +216,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             row: self.groups(k).first_mixed(),
             turning: [Vector3::zeros(); 3],
             stretch,
-            whole: Gradient::zero(),
+            whole: Gradient::ZERO,
         };
         interval.differentiate(at.row_multipliers, d);
         let (map, turning) = (interval.map, interval.turning);
@@ -266,7 +270,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let mut rows: [T; BASE] =
             core::array::from_fn(|i| state.q.get(i).copied().unwrap_or(T::ZERO));
         if self.robot.turns_freely() {
-            set_triple(&mut rows, TURN, &vee_skew(&self.goal.seen(&state.rot_wc)));
+            set_triple(&mut rows, TURN, &so3::vee(&self.goal.seen(&state.rot_wc)));
         }
         rows
     }
@@ -301,7 +305,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             let multiplier = triple(y, TURN);
             let hessian = bent(&e) * self.weights.goal + bent(&(hat(&multiplier) * e)) * T::HALF;
             set_block(&mut d.hessian_xx, TURN, TURN, &hessian);
-            set_triple(&mut d.cost_x, TURN, &(vee_skew(&e) * two));
+            set_triple(&mut d.cost_x, TURN, &(so3::vee(&e) * two));
             let by_turn = (Matrix3::from_diagonal_element(e.trace()) - e.transpose()) * T::HALF;
             // Rows are gradients: the transpose of a column-major block.
             set_block(&mut d.rows_x, TURN, TURN, &by_turn.transpose());
@@ -376,7 +380,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         for i in 0..groups.limited {
             let joint = BASE.saturating_add(i);
             let row = groups.first_limit().saturating_add(i);
-            let (mut position, mut speed) = (Gradient::zero(), Gradient::zero());
+            let (mut position, mut speed) = (Gradient::ZERO, Gradient::ZERO);
             (position.q[joint], speed.v[joint]) = (T::ONE, T::ONE);
             limit(row, T::ONE, &position, joint);
             limit(

@@ -45,7 +45,7 @@ const HOST: &[Step<'_>] = &[
             "--workspace",
             "--all-targets",
             "--features",
-            "saltus-tests/bench,saltus-tests/fused",
+            "saltus-tests/bench,saltus-tests/fused,saltus-tests/long",
             "--",
             "-D",
             "warnings",
@@ -69,21 +69,8 @@ const HOST: &[Step<'_>] = &[
         ],
     ),
     (
-        "iCub and noise, at length",
-        &[
-            "xtask",
-            "mujoco",
-            "test",
-            "--workspace",
-            "--features",
-            JUDGE,
-            "--bin",
-            "saltus",
-            "--",
-            "--include-ignored",
-            "humanoid::tests",
-            "jump::fuzz",
-        ],
+        "long suites of the algorithms",
+        &["xtask", "suites", "algorithms"],
     ),
 ];
 
@@ -91,7 +78,10 @@ const HOST: &[Step<'_>] = &[
 const RELEASE: &[Step<'_>] = &[
     ("verdicts as expected", &["xtask", "verdicts"]),
     ("both papers", &["xtask", "reproduce"]),
-    ("long suites", &["xtask", "suites"]),
+    (
+        "long suites of the program",
+        &["xtask", "suites", "program"],
+    ),
     ("the report in a browser", &["xtask", "report"]),
     ("instruction counts", &["xtask", "icount"]),
     ("publishable crates", &["xtask", "package"]),

@@ -28,6 +28,7 @@ mod report;
 mod reproduce;
 mod run;
 mod smoke;
+mod suites;
 mod verdicts;
 
 use std::process::ExitCode;
@@ -75,8 +76,8 @@ enum Command {
     Reproduce(reproduce::Args),
     /// Run every task in both simulators and compare the verdicts with the expected ones.
     Verdicts(verdicts::Args),
-    /// The tests of `saltus` that take too long for `cargo test --workspace`, in its release build.
-    Suites,
+    /// The tests that take too long for `cargo test --workspace`.
+    Suites(suites::Args),
     /// Type what the guide tells a newcomer to type.
     FirstHour(first_hour::Args),
     /// Build every crate from its own archive, with the oldest compiler that it promises.
@@ -107,7 +108,7 @@ fn main() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Verdicts(args) => verdicts::run(&args),
-        Command::Suites => mujoco::suites().and_then(|mut cargo| run::succeed(&mut cargo)),
+        Command::Suites(args) => suites::run(&args),
         Command::FirstHour(args) => first_hour::run(&args),
         Command::Package(args) => package::run(&args),
         Command::Examples(args) => examples::run(&args),

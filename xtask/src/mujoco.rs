@@ -59,16 +59,15 @@ pub(crate) fn saltus() -> Result<Command> {
     Ok(cargo)
 }
 
-/// `cargo test` of what `saltus` does as a program, with both simulators, in the release build that the other checks use too: the
-/// tests that take too long for `cargo test --workspace`.
-pub(crate) fn suites() -> Result<Command> {
+/// `cargo test` of `saltus` with both simulators, in the release build that the other checks use too.
+pub(crate) fn saltus_tests() -> Result<Command> {
     let (folder, search) = library(Path::new("python3"))?;
     let mut cargo = run::cargo();
     cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
     cargo.env("LD_LIBRARY_PATH", search);
     aside(&mut cargo);
     cargo.args(["test", "--release", "--package", "saltus"]);
-    cargo.args(["--features", "mujoco", "--test", "*", "--", "--ignored"]);
+    cargo.args(["--features", "mujoco"]);
     Ok(cargo)
 }
 

@@ -94,6 +94,7 @@ where
     spatial::run::<T, R>(on);
     rbd::run::<T, R, _, 9, 15>(on, "kinds", &Kinds, &kinds::hand());
     rbd::run_table::<T, R, _, 9, 15>(on, "kinds-table", &Kinds, &kinds::hand());
+    rbd::second_order::run::<T, R, _, 9>(on, &Kinds);
 }
 
 /// The dynamics of A1.

@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod rotations;
+mod second_order;
 
 use nalgebra::{Quaternion, Rotation3, SMatrix, Unit};
 use so3::Scalar;

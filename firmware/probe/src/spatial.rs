@@ -47,6 +47,7 @@ fn vectors<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>, stream: &mut Stream
     on.call("Motion::dot", (&a, &f), |(a, f)| a.dot(f));
     on.call("Motion::to_classical", (&a, &b), |(a, b)| a.to_classical(b));
     on.call("Motion::to_spatial", (&a, &b), |(a, b)| a.to_spatial(b));
+    on.call("Motion::at_point", (&a, &f.linear), |(a, p)| a.at_point(p));
     on.call("Motion::to_array", &a, |a| a.to_array());
     on.call("Force::to_array", &f, |f| f.to_array());
     let t = Tangent::<T, 3> {

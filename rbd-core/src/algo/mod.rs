@@ -27,6 +27,7 @@ pub mod minv;
 pub mod motion;
 pub mod rnea;
 pub mod rnea_derivatives;
+pub mod second_order;
 mod sweep;
 
 use nalgebra::Vector3;

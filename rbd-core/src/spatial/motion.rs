@@ -52,6 +52,13 @@ impl<T: Scalar> Motion<T> {
         self.linear.dot(&force.linear) + self.angular.dot(&force.angular)
     }
 
+    /// Velocity of the point at `pos`, in the frame's axes: v + ω × r, in m/s.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_point(&self, pos: &Vector3<T>) -> Vector3<T> {
+        self.linear + cross(&self.angular, pos)
+    }
+
     /// Classical acceleration of the point at the origin, from this spatial acceleration and the
     /// velocity of the same frame: a + ω × v.
     #[inline(always)]

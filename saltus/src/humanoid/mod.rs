@@ -276,5 +276,6 @@ fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant
     Err(crate::jump::plant::NO_MUJOCO.into())
 }
 
-#[cfg(test)]
+// Jumps in both simulators take long to compile and to run: `cargo xtask suites`.
+#[cfg(all(test, feature = "mujoco"))]
 mod tests;

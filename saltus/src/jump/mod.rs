@@ -2,7 +2,8 @@
 
 pub(crate) mod envelope;
 pub(crate) mod execute;
-#[cfg(test)]
+// Long: `cargo xtask suites`.
+#[cfg(all(test, feature = "mujoco"))]
 mod fuzz;
 pub(crate) mod judge;
 pub(crate) mod log;

@@ -7,6 +7,7 @@ mod dynamics;
 mod factors;
 mod kinematics;
 mod reduction;
+pub(crate) mod second_order;
 mod state;
 
 use rbd_core::joint::Kind;

@@ -17,25 +17,24 @@
 //! ```
 
 use nalgebra::Vector3;
-use rbd_core::Motion;
-use rbd_core::model::Link;
 use so3::Scalar;
 
-use crate::map::Hessian;
-use crate::sweep::{EffortJacobian, PointMotion, Sweep};
+use super::{EffortJacobian, Hessian, PointMotion, Sweep};
+use crate::model::Link;
+use crate::spatial::Motion;
 
 /// ∂α/∂q_k, ∂α/∂q̇_k, ∂α/∂q̈_k of the body of a point.
-pub(crate) struct AngularColumns<T: Scalar> {
-    pub(crate) by_q: Vector3<T>,
-    pub(crate) by_v: Vector3<T>,
-    pub(crate) by_a: Vector3<T>,
+pub(super) struct AngularColumns<T: Scalar> {
+    pub(super) by_q: Vector3<T>,
+    pub(super) by_v: Vector3<T>,
+    pub(super) by_a: Vector3<T>,
 }
 
 impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
     /// How the angular acceleration of body `link` changes with coordinate `k` on its path.
     #[inline(always)]
-    pub(crate) fn angular_columns(&self, link: usize, k: usize) -> AngularColumns<T> {
-        let (body, joint) = (&self.joints[link], &self.joints[k]);
+    pub(super) fn angular_columns(&self, link: usize, k: usize) -> AngularColumns<T> {
+        let (body, joint) = (self.body(link), self.body(k));
         let (s, rate, second) = (
             &joint.axis.angular,
             &joint.rate.angular,
@@ -50,11 +49,11 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
     }
 
     /// Adds what the couple of a ball foot's force does to the Jacobian of the efforts.
-    pub(crate) fn differentiate_couple<const FEET: usize>(
+    pub(super) fn differentiate_couple<const CONTACTS: usize>(
         &self,
         point: &PointMotion<T>,
         force: &Vector3<T>,
-        out: &mut EffortJacobian<T, N, FEET>,
+        out: &mut EffortJacobian<T, N, CONTACTS>,
     ) {
         let couple = point.arm.cross(force);
         for j in self.path(point.link) {
@@ -66,26 +65,26 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
     }
 
     /// Adds the second derivatives of −M·l + m·α of one foot.
-    pub(crate) fn rolling_curvature<const FEET: usize>(
+    pub(super) fn rolling_curvature<const CONTACTS: usize>(
         &self,
         (point, force): (&PointMotion<T>, &Vector3<T>),
         mu: &Vector3<T>,
         virtuals: &[Motion<T>; N],
-        out: &mut Hessian<T, N, FEET>,
+        out: &mut Hessian<T, N, CONTACTS>,
     ) {
         let (couple, m) = (point.arm.cross(force), point.arm.cross(mu));
         let i = point.link;
-        let omega = &self.joints[i].velocity.angular;
+        let tip = virtuals.get(i).map_or(Vector3::zeros(), |x| x.angular);
+        let omega = &self.body(i).velocity.angular;
         for j in self.path(i) {
             let (s, rate) = (&self.joints[j].axis.angular, &self.joints[j].rate.angular);
             let above = match self.bodies[j].parent {
-                Link::Joint(p) => virtuals[p].angular,
+                Link::Joint(p) => virtuals.get(p).map_or(Vector3::zeros(), |x| x.angular),
                 Link::Base => Vector3::zeros(),
             };
             let columns = self.angular_columns(i, j);
             let of_rate = (rate + s.cross(omega)).cross(&m);
-            let of_axis =
-                couple.cross(&s.cross(&(virtuals[i].angular - above))) - m.cross(&columns.by_q);
+            let of_axis = couple.cross(&s.cross(&(tip - above))) - m.cross(&columns.by_q);
             let of_speed = s.cross(&m);
             let of_speed_axis = -m.cross(&columns.by_v);
             let of_acceleration = -m.cross(s);

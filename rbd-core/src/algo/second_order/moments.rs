@@ -17,56 +17,45 @@
 use core::ops::Add;
 
 use nalgebra::{Matrix3, Vector3};
-use rbd_core::model::Body;
-use rbd_core::{Force, Motion};
-use so3::Scalar;
+use so3::{Scalar, hat};
 
-/// hat(v).
-#[inline(always)]
-pub(crate) fn hat<T: Scalar>(v: &Vector3<T>) -> Matrix3<T> {
-    Matrix3::new(T::ZERO, -v.z, v.y, v.z, T::ZERO, -v.x, -v.y, v.x, T::ZERO)
-}
+use crate::model::Body;
+use crate::spatial::{Force, Motion};
 
 /// a bᵀ.
 #[inline(always)]
-pub(crate) fn outer<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Matrix3<T> {
+pub(super) fn outer<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Matrix3<T> {
     a * b.transpose()
 }
 
 /// `∫ r × a` from `∫ a rᵀ`.
 #[inline(always)]
-pub(crate) fn moment_of<T: Scalar>(m: &Matrix3<T>) -> Vector3<T> {
+pub(super) fn moment_of<T: Scalar>(m: &Matrix3<T>) -> Vector3<T> {
     Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
-}
-
-/// x(r) = x + ω × r: a motion at a point.
-#[inline(always)]
-pub(crate) fn at_point<T: Scalar>(m: &Motion<T>, r: &Vector3<T>) -> Vector3<T> {
-    m.linear + m.angular.cross(r)
 }
 
 /// tr(M) w − M w.
 #[inline(always)]
-pub(crate) fn turn<T: Scalar>(m: &Matrix3<T>, w: &Vector3<T>) -> Vector3<T> {
+pub(super) fn turn<T: Scalar>(m: &Matrix3<T>, w: &Vector3<T>) -> Vector3<T> {
     w * m.trace() - m * w
 }
 
 /// The sums of one subtree.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moments<T: Scalar> {
-    pub(crate) mass: T,
-    pub(crate) first: Vector3<T>,
-    pub(crate) second: Matrix3<T>,
+pub(super) struct Moments<T: Scalar> {
+    pub(super) mass: T,
+    pub(super) first: Vector3<T>,
+    pub(super) second: Matrix3<T>,
     /// ∫ v.
-    pub(crate) momentum: Vector3<T>,
+    pub(super) momentum: Vector3<T>,
     /// ∫ v rᵀ.
-    pub(crate) transport: Matrix3<T>,
+    pub(super) transport: Matrix3<T>,
     /// Force that the motion takes.
-    pub(crate) force: Force<T>,
+    pub(super) force: Force<T>,
 }
 
 impl<T: Scalar> Moments<T> {
-    pub(crate) fn zero() -> Self {
+    pub(super) fn zero() -> Self {
         Self {
             mass: T::ZERO,
             first: Vector3::zeros(),
@@ -79,7 +68,7 @@ impl<T: Scalar> Moments<T> {
 
     /// Of one body at a pose, moving with `v` and accelerating with `a`.
     #[inline(always)]
-    pub(crate) fn of(
+    pub(super) fn of(
         body: &Body<T>,
         rot: &Matrix3<T>,
         pos: &Vector3<T>,
@@ -113,7 +102,7 @@ impl<T: Scalar> Moments<T> {
 
     /// I X.
     #[inline(always)]
-    pub(crate) fn inertia(&self, x: &Motion<T>) -> Force<T> {
+    pub(super) fn inertia(&self, x: &Motion<T>) -> Force<T> {
         Force::new(
             x.linear * self.mass + x.angular.cross(&self.first),
             self.first.cross(&x.linear) + turn(&self.second, &x.angular),
@@ -122,7 +111,7 @@ impl<T: Scalar> Moments<T> {
 
     /// C X; see the module documentation.
     #[inline(always)]
-    pub(crate) fn carried(&self, x: &Motion<T>) -> Force<T> {
+    pub(super) fn carried(&self, x: &Motion<T>) -> Force<T> {
         Force::new(
             x.angular.cross(&self.momentum),
             turn(&self.transport, &x.angular),
@@ -131,7 +120,7 @@ impl<T: Scalar> Moments<T> {
 
     /// Angular part of Cᵀ Y; its linear part is zero.
     #[inline(always)]
-    pub(crate) fn carried_transposed(&self, y: &Motion<T>) -> Vector3<T> {
+    pub(super) fn carried_transposed(&self, y: &Motion<T>) -> Vector3<T> {
         (self.momentum.cross(&y.linear) + turn(&self.transport.transpose(), &y.angular)) * T::TWO
     }
 }

@@ -10,7 +10,7 @@
 //! virtual velocity: Λ = Σ S λ over a body and its ancestors, and λ·τ = Σ_bodies Λ · f. When joint k moves,
 //! its subtree is carried along, and seen from the subtree only what comes in through joint k changes:
 //! δV = Ṡ_k, δA = S̈_k + Ṡ_k × V, δΛ = S^λ_k with S^λ = Λ × S; for q̇_k it is δV = S_k,
-//! δA = 2 Ṡ_k + S_k × V. With the subtree's sums H = ∫ Λ, G = Σ Cᵀ Λ (I, C of [`crate::moments`]), and for a joint j
+//! δA = 2 Ṡ_k + S_k × V. With the subtree's sums H = ∫ Λ, G = Σ Cᵀ Λ (I, C of [`super::moments`]), and for a joint j
 //! and an ancestor k (or k = j):
 //!
 //! ```text
@@ -29,13 +29,12 @@
 //! moments' form.
 
 use nalgebra::{Matrix3, Vector3};
-use rbd_core::model::Link;
-use rbd_core::{Force, Motion};
-use so3::Scalar;
+use so3::{Scalar, hat};
 
-use crate::map::Hessian;
-use crate::moments::{at_point, hat, moment_of, outer, turn};
-use crate::sweep::{Contacts, PointMotion, Sweep};
+use super::moments::{moment_of, outer, turn};
+use super::{Contacts, Hessian, PointMotion, Sweep};
+use crate::model::Link;
+use crate::spatial::{Force, Motion};
 
 /// Sums over the virtual velocities and multipliers of a subtree.
 #[derive(Clone, Copy)]
@@ -109,21 +108,24 @@ fn pulled<T: Scalar>(x: &Motion<T>, pull: &Vector3<T>, by_pos: &Matrix3<T>) -> V
 }
 
 /// Multipliers of the terms of φ.
-pub(crate) struct Multipliers<'a, T: Scalar, const N: usize, const FEET: usize> {
-    /// λ.
-    pub(crate) effort: &'a [T; N],
-    /// μ of the active contacts.
-    pub(crate) acceleration: &'a [Vector3<T>; FEET],
+#[derive(Clone, Copy, Debug)]
+pub struct Multipliers<'a, T: Scalar, const N: usize, const CONTACTS: usize> {
+    /// λ of the efforts.
+    pub effort: &'a [T; N],
+    /// μ of the accelerations of the contacts that count ([`Sweep::slip_rate`]).
+    pub acceleration: &'a [Vector3<T>; CONTACTS],
 }
 
 /// The sums ν of position terms, collected per body.
-#[derive(Clone, Copy)]
-pub(crate) struct PositionTerms<T: Scalar, const N: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct PositionTerms<T: Scalar, const N: usize> {
     push: [(Vector3<T>, Matrix3<T>); N],
 }
 
 impl<T: Scalar, const N: usize> PositionTerms<T, N> {
-    pub(crate) fn new() -> Self {
+    /// No positions.
+    #[must_use]
+    pub fn new() -> Self {
         Self {
             push: [(Vector3::zeros(), Matrix3::zeros()); N],
         }
@@ -131,7 +133,7 @@ impl<T: Scalar, const N: usize> PositionTerms<T, N> {
 
     /// Adds ν · r of a point at `pos` on body `link`.
     #[inline(always)]
-    pub(crate) fn add(&mut self, link: usize, pos: &Vector3<T>, weight: &Vector3<T>) {
+    pub fn add(&mut self, link: usize, pos: &Vector3<T>, weight: &Vector3<T>) {
         if let Some((sum, by_pos)) = self.push.get_mut(link) {
             *sum += weight;
             *by_pos += outer(weight, pos);
@@ -139,22 +141,33 @@ impl<T: Scalar, const N: usize> PositionTerms<T, N> {
     }
 
     /// Adds Σ ν · r of points on body `link` with Σ ν = 0, given Σ ν rᵀ.
-    pub(crate) fn add_spread(&mut self, link: usize, spread: &Matrix3<T>) {
+    pub fn add_spread(&mut self, link: usize, spread: &Matrix3<T>) {
         if let Some((_, by_pos)) = self.push.get_mut(link) {
             *by_pos += spread;
         }
     }
 }
 
+impl<T: Scalar, const N: usize> Default for PositionTerms<T, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
-    /// Adds the second derivatives of φ.
+    /// Adds the second derivatives in (q, q̇, q̈, F) of
+    ///
+    /// φ = Σ λ_i τ_i + Σ μ_f · a_f + Σ ν_i · r_i
+    ///
+    /// with efforts τ ([`Self::effort`]), accelerations a of the contacts ([`Self::slip_rate`]) and positions r of points. Those in q̈ and
+    /// q̇ and in q̈ twice are zero: inverse dynamics is linear in q̈, and M does not know q̇.
     #[inline(never)]
-    pub(crate) fn curvature<const FEET: usize>(
+    pub fn curvature<const CONTACTS: usize>(
         &self,
-        contacts: &Contacts<T, FEET>,
-        multipliers: &Multipliers<'_, T, N, FEET>,
+        contacts: &Contacts<T, CONTACTS>,
+        multipliers: &Multipliers<'_, T, N, CONTACTS>,
         positions: &PositionTerms<T, N>,
-        out: &mut Hessian<T, N, FEET>,
+        out: &mut Hessian<T, N, CONTACTS>,
     ) {
         // Λ and S^λ of every joint.
         let mut virtuals = [Motion::ZERO; N];
@@ -178,7 +191,7 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                 (weights.get_mut(point.link), virtuals.get(point.link))
             {
                 add_acceleration(weight, point, mu);
-                weight.virtual_by_force += outer(&at_point(lambda, &point.pos), force);
+                weight.virtual_by_force += outer(&lambda.at_point(&point.pos), force);
             }
         }
         for i in (0..N).rev() {
@@ -253,13 +266,13 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
             let Some(virtual_motion) = virtuals.get(point.link) else {
                 continue;
             };
-            let slip = at_point(virtual_motion, &point.pos);
+            let slip = virtual_motion.at_point(&point.pos);
             let touch = point.pos + point.arm;
             for k in self.path(point.link) {
                 let turn_k = &self.joints[k].axis.angular;
                 let column = turn_k.cross(&slip)
                     + turn_k.cross(&virtual_motion.angular).cross(&point.arm)
-                    + at_point(&virtual_rates[k], &touch);
+                    + virtual_rates[k].at_point(&touch);
                 for (row, value) in block.iter_mut().zip(column.iter()) {
                     row.q[k] -= *value;
                 }

@@ -1,0 +1,60 @@
+//! `cargo xtask suites`: the tests that take too long, to run or to compile, for `cargo test --workspace`.
+//!
+//! None is left out anywhere else: CI runs both parts.
+
+use anyhow::Result;
+use clap::ValueEnum;
+
+use crate::{mujoco, run};
+
+/// A part of the suites, so that CI's lanes can share them.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// What `saltus` does as a program, iCub and noise at length, in both simulators and its release build.
+    Program,
+    /// Every algorithm beside Pinocchio, a counting allocator under every call of the control crates, A1 dropped from a metre, and the
+    /// bounds beside the solver, in the build of `cargo test --workspace`.
+    Algorithms,
+}
+
+/// Arguments of `cargo xtask suites`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Only this part.
+    part: Option<Part>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let wanted = |part| args.part.is_none_or(|only| only == part);
+    if wanted(Part::Algorithms) {
+        algorithms()?;
+    }
+    if wanted(Part::Program) {
+        program()?;
+    }
+    Ok(())
+}
+
+/// The whole workspace is named, so that nothing is compiled again with other features.
+fn algorithms() -> Result<()> {
+    let test = || {
+        let mut cargo = run::cargo();
+        cargo.args(["test", "--workspace"]);
+        cargo
+    };
+    run::succeed(test().args(["--lib", "--", "--ignored", "bounds::tests"]))?;
+    let mut long = test();
+    long.args(["--features", "saltus-tests/long"]);
+    long.args(["--test", "golden", "--test", "no_alloc"]);
+    long.args(["--test", "landing_drops", "--", "--include-ignored"]);
+    run::succeed(&mut long)
+}
+
+fn program() -> Result<()> {
+    let mut units = mujoco::saltus_tests()?;
+    units.args(["--bin", "saltus", "--", "--include-ignored"]);
+    units.args(["humanoid::tests", "jump::fuzz"]);
+    run::succeed(&mut units)?;
+    let mut whole = mujoco::saltus_tests()?;
+    run::succeed(whole.args(["--test", "*", "--", "--ignored"]))
+}
