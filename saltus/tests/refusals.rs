@@ -71,13 +71,6 @@ fn files_that_are_none_are_named() {
             refused(&folder, arguments, &[file]);
         }
     }
-    for arguments in [
-        ["plan", "a1/lateral", "--robot", "folder"],
-        ["verdicts", "a1/lateral", "--expect", "folder"],
-    ] {
-        // The second is refused by the command line's grammar: both name the tasks.
-        refused(&folder, &arguments, &[arguments[2]]);
-    }
     refused(
         &folder,
         &["verdicts", "--expect", "folder"],

@@ -117,6 +117,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             found += 1;
         }
         trials += 1;
+        if trials.is_multiple_of(100) {
+            println!("{trials} trials");
+        }
     }
     println!(
         "{trials} trials of seed {} in {:.0} s: exit codes 0, 1, 2 {codes:?} times, slowest {slowest:.1} s, {found} broke a promise",

@@ -45,6 +45,9 @@ pub(super) const VALUES: &[&str] = &[
     "%s%n",
 ];
 
+/// How long lines that are repeated get, bytes.
+const LONG: usize = 1 << 20;
+
 /// A changed file.
 pub(super) fn mutate(seed: &[u8], others: &[&[u8]], random: &mut Random) -> Vec<u8> {
     let mut out = seed.to_vec();
@@ -116,7 +119,8 @@ fn lines(text: &[u8], from: &[u8], random: &mut Random) -> Vec<u8> {
     let begin = random.below(given.len());
     let end = (begin + 1 + random.below(8)).min(given.len());
     let some = given.get(begin..end).unwrap_or_default().concat();
-    let times = if random.once_in(20) { 20_000 } else { 1 };
+    let room = LONG / some.len().max(1);
+    let times = if random.once_in(20) { room.max(1) } else { 1 };
     let at = random.below(own.len() + 1);
     let rest = (at + random.below(4)).min(own.len());
     [own[..at].concat(), some.repeat(times), own[rest..].concat()].concat()
