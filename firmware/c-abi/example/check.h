@@ -35,11 +35,18 @@ static inline void print(const char *name, const double *numbers, size_t count) 
     }
 }
 
-/* Instructions since some time in the past: of a board under QEMU's -icount; always 0 elsewhere. */
+/* Instructions since some time in the past, and bytes of stack that were used since it was last painted, but the caller's: of a board under
+ * QEMU's -icount; always 0 elsewhere. */
 #ifdef COUNTS_INSTRUCTIONS
 unsigned long instructions(void);
+void paint_stack(void);
+unsigned long stack_used(void);
 #else
 static inline unsigned long instructions(void) {
+    return 0;
+}
+static inline void paint_stack(void) {}
+static inline unsigned long stack_used(void) {
     return 0;
 }
 #endif

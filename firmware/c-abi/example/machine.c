@@ -231,19 +231,24 @@ static void estimates(void) {
 /* All phases of the plan, in the order of time; digests of what the machine says. */
 static void walk(void) {
     static const uint64_t prime = 0x100000001b3u;
-    unsigned long most[SALTUS_PHASE_ABORT + 1] = {0}, joint = 0, arm;
+    unsigned long most[SALTUS_PHASE_ABORT + 1] = {0}, joint = 0, deepest = 0, arm;
     uint64_t hash = 0xcbf29ce484222325u;
     double tau[12];
     int visited[SALTUS_PHASE_ABORT + 1] = {0};
     begin();
+    paint_stack();
     arm = instructions();
     expect("arm", saltus_a1_machine_arm(machine, plan_begin, length, 0.3, NULL), SALTUS_STATUS_OK);
-    printf("costs arm %lu\n", instructions() - arm);
+    arm = instructions() - arm;
+    printf("costs arm %lu, bytes of stack %lu\n", arm, stack_used());
     for (int k = 1; clock_now < 0.3 + about.touchdown + 0.2; ++k) {
         clock_now = 1e-3 * k;
-        unsigned long since = instructions();
+        paint_stack();
+        unsigned long since = instructions(), used;
         SaltusStatus status = saltus_a1_machine_tick(machine, clock_now, &seen, &tick);
         since = instructions() - since;
+        used = stack_used();
+        deepest = used > deepest ? used : deepest;
         expect("walk", status, SALTUS_STATUS_OK);
         ++visited[tick.phase];
         most[tick.phase] = since > most[tick.phase] ? since : most[tick.phase];
@@ -270,6 +275,7 @@ static void walk(void) {
         printf("costs tick %s %lu\n", saltus_phase_text((uint32_t)phase), most[phase]);
     }
     printf("costs joint-tick %lu\n", joint);
+    printf("costs tick, bytes of stack at most %lu\n", deepest);
 }
 
 int main(void) {

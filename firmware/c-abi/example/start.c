@@ -6,6 +6,8 @@ extern uint32_t stack_top, data_start, data_end, data_load, __bss_start__, __bss
 extern void initialise_monitor_handles(void);
 extern int main(void);
 unsigned long instructions(void);
+void paint_stack(void);
+unsigned long stack_used(void);
 
 void reset(void) {
     *(volatile uint32_t *)0xE000ED88u |= 0xFu << 20; /* CPACR: the floating-point unit */
@@ -39,6 +41,30 @@ unsigned long instructions(void) {
     periods += (now - last) & 0x00ffffffu;
     last = now;
     return (unsigned long)((uint64_t)periods * 5u / 8u);
+}
+
+/* What is painted ends a little below the stack pointer: these two functions have frames as well. */
+enum { WATCHED = 32 * 1024, OWN = 64, PAINT = 0x5a17a5a5 };
+
+static volatile uint32_t *stack_now(void) {
+    uint32_t pointer;
+    __asm volatile("mov %0, sp" : "=r"(pointer));
+    return (volatile uint32_t *)pointer;
+}
+
+__attribute__((noinline)) void paint_stack(void) {
+    volatile uint32_t *top = stack_now() - OWN / 4;
+    for (volatile uint32_t *word = top - WATCHED / 4; word < top; ++word) {
+        *word = PAINT;
+    }
+}
+
+__attribute__((noinline)) unsigned long stack_used(void) {
+    volatile uint32_t *top = stack_now() - OWN / 4, *word = top - WATCHED / 4;
+    while (word < top && *word == PAINT) {
+        ++word;
+    }
+    return (unsigned long)(top - word) * 4 + OWN;
 }
 
 static void fault(void) {

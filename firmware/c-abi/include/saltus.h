@@ -873,8 +873,8 @@ enum SaltusStatus saltus_a1_machine_tick(void *memory,
                                          struct SaltusA1Tick *tick);
 
 /*
- Torques of the twelve joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can do, and no faster than their drives. Damping
- alone once ticks have been missing for 5 ms, or an encoder is not finite; and where the block is no machine.
+ Torques of the twelve joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can
+ do, and no faster than their drives. Damping alone once ticks have been missing for 5 ms, or an encoder is not finite; and where the block is no machine.
  */
 enum SaltusStatus saltus_a1_machine_joint_tick(void *memory,
                                                const double *joints,

@@ -276,8 +276,8 @@ pub extern "C" fn saltus_a1_machine_tick(
     })())
 }
 
-/// Torques of the twelve joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can do, and no faster than their drives. Damping
-/// alone once ticks have been missing for 5 ms, or an encoder is not finite; and where the block is no machine.
+/// Torques of the twelve joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can
+/// do, and no faster than their drives. Damping alone once ticks have been missing for 5 ms, or an encoder is not finite; and where the block is no machine.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_machine_joint_tick(
     memory: *mut c_void,

@@ -2,7 +2,8 @@
 //!
 //! The rules: memory is the caller's, its size and alignment are asked for; every function returns a [`Status`]; nothing
 //! calls back, allocates or keeps a pointer, but a machine its plan; wrong use is an error, never undefined behaviour, as far as C lets a
-//! callee know. A machine follows the plan's bytes where they are: what flies is what was audited. The header `include/saltus.h` is generated from here.
+//! callee know. A machine follows the plan's bytes where they are: what flies is what was audited.
+//! The header `include/saltus.h` is generated from here.
 //!
 //! This crate alone has `unsafe`: pointers from C become references in `memory`, in one place for each kind of pointer.
 #![cfg_attr(target_os = "none", no_std)]
