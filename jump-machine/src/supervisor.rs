@@ -163,11 +163,12 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
     ) -> [T; N] {
         let since = self.silence;
         let dt = self.watch_joints(q, qd, dt);
-        let mut command = self.command;
-        for (position, velocity) in command.position.iter_mut().zip(&command.velocity) {
-            *position += since * *velocity;
+        // Positions that go on are joints that stay behind: fewer numbers to copy.
+        let mut behind = *q;
+        for (q, velocity) in behind.iter_mut().zip(&self.command.velocity) {
+            *q -= since * *velocity;
         }
-        let wanted = command.torques(q, qd, motors);
+        let wanted = self.command.torques(&behind, qd, motors);
         self.slew.limit(&wanted, dt)
     }
 }

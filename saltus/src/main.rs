@@ -7,6 +7,7 @@
 #[macro_use]
 mod stream;
 
+mod closed_loop;
 mod cmd;
 mod examples;
 mod humanoid;

@@ -4,7 +4,7 @@ use core::hint::black_box;
 use std::collections::BTreeSet;
 
 use allocation_counter::measure;
-use saltus_probe::{Label, Recorder, basics, control};
+use saltus_probe::{Label, Recorder, basics, control, flight};
 
 /// Counts the allocations of every call.
 #[derive(Default)]
@@ -43,6 +43,9 @@ fn no_algorithm_allocates() {
     basics::<f32, _>(&mut counting);
     control::a1::<f64, _>(&mut counting);
     control::icub::<f64, _>(&mut counting);
+    // Whole jumps of both machines.
+    flight::a1::<f64, _>(&mut counting);
+    flight::icub(&mut counting);
     assert_eq!(counting.allocating, BTreeSet::new());
     for label in [
         "so3/f32/exp",
@@ -52,6 +55,10 @@ fn no_algorithm_allocates() {
         "landing/f64/Landing::step",
         "contact-sim/f64/NativeSimulator::step",
         "wbc-qp/f64/TorqueJump::tick",
+        "a1-jump/f64/landing tick",
+        "icub-jump/f64/push-off tick",
+        "icub-jump/f64/landing tick",
+        "icub-jump/f64/joint PD tick",
     ] {
         assert!(counting.called.contains(label), "{label} was not called");
     }

@@ -277,6 +277,7 @@ impl<
     }
 
     /// Flight and landing by one program: contacts come as the ground comes.
+    #[inline(never)]
     fn land(
         &mut self,
         now: &Now<'_, T, N, F>,
@@ -371,50 +372,68 @@ impl<
             velocity_w: up * point.speed,
             acceleration_w: up * point.acceleration,
         };
+        match self.workspace.push_off {
+            Program::Velocity(_) => self.push_by_velocity(armed, now, &wanted),
+            Program::Torque(_) => self.push_by_torque(now, &wanted),
+        }
+    }
+
+    #[inline(never)]
+    fn push_by_velocity(
+        &mut self,
+        armed: &Armed<T, N>,
+        now: &Now<'_, T, N, F>,
+        wanted: &ComReference<T>,
+    ) -> (JointCommand<T, N>, Work<T>) {
         let Workspace {
             push_off, snapshot, ..
         } = &mut *self.workspace;
-        let s = &self.settings;
-        match push_off {
-            Program::Velocity(program) => {
-                // Servos hide the feet's own small motion, and a centre of mass that ignores it is smooth.
-                let (q, v) = match self.feet.first() {
-                    Some(foot) => anchored(
-                        self.model,
-                        &now.q.joints,
-                        &now.v.joints,
-                        &foot.frame,
-                        &armed.anchor,
-                    ),
-                    None => (now.q, now.v),
-                };
-                snapshot.update(self.model, &q, &v);
-                let tick =
-                    program.tick(self.model, snapshot, &self.feet, &s.limits, &wanted, now.dt);
-                let solved = tick.as_ref().map_err(|error| *error).map(|tick| Solved {
-                    iterations: tick.iterations,
-                    residuals: tick.residuals,
-                    yielded: Yielded::Nothing,
-                    capped: false,
-                });
-                let velocities = tick.map_or([T::ZERO; N], |tick| tick.velocities);
-                let command = self.track(&velocities);
-                for (servo, qd) in self.servo.iter_mut().zip(velocities) {
-                    *servo += now.dt * qd;
-                }
-                (command, Work::PushOff(solved))
-            }
-            Program::Torque(program) => {
-                // Nothing hides it from torques: a foot that rocks would look like the whole robot rocking.
-                snapshot.update(self.model, &now.q, &now.v);
-                let joints = (&s.limits, &s.motors);
-                let tick = program.tick(self.model, snapshot, &self.feet, joints, &wanted);
-                // The servos only follow, to be ready for the flight.
-                self.servo = now.q.joints;
-                let solved = self.take(tick);
-                (self.torque_command(), Work::PushOff(solved))
-            }
+        let Program::Velocity(program) = push_off else {
+            return (self.supervisor.safe(), Work::Damping);
+        };
+        // Servos hide the feet's own small motion, and a centre of mass that ignores it is smooth.
+        let (joints, speeds) = (&now.q.joints, &now.v.joints);
+        let (q, v) = match self.feet.first() {
+            Some(foot) => anchored(self.model, joints, speeds, &foot.frame, &armed.anchor),
+            None => (now.q, now.v),
+        };
+        snapshot.update(self.model, &q, &v);
+        let limits = &self.settings.limits;
+        let tick = program.tick(self.model, snapshot, &self.feet, limits, wanted, now.dt);
+        let velocities = tick.map_or([T::ZERO; N], |tick| tick.velocities);
+        let solved = tick.map(|tick| Solved {
+            iterations: tick.iterations,
+            residuals: tick.residuals,
+            yielded: Yielded::Nothing,
+            capped: false,
+        });
+        let command = self.track(&velocities);
+        for (servo, qd) in self.servo.iter_mut().zip(velocities) {
+            *servo += now.dt * qd;
         }
+        (command, Work::PushOff(solved))
+    }
+
+    #[inline(never)]
+    fn push_by_torque(
+        &mut self,
+        now: &Now<'_, T, N, F>,
+        wanted: &ComReference<T>,
+    ) -> (JointCommand<T, N>, Work<T>) {
+        let Workspace {
+            push_off, snapshot, ..
+        } = &mut *self.workspace;
+        let Program::Torque(program) = push_off else {
+            return (self.supervisor.safe(), Work::Damping);
+        };
+        // Nothing hides it from torques: a foot that rocks would look like the whole robot rocking.
+        snapshot.update(self.model, &now.q, &now.v);
+        let joints = (&self.settings.limits, &self.settings.motors);
+        let tick = program.tick(self.model, snapshot, &self.feet, joints, wanted);
+        // The servos only follow, to be ready for the flight.
+        self.servo = now.q.joints;
+        let solved = self.take(tick);
+        (self.torque_command(), Work::PushOff(solved))
     }
 
     /// Keeps the torques of an answer.

@@ -1,25 +1,27 @@
-//! The closed loop: plant and servos at 10 kHz, controller at 1 kHz.
+//! A humanoid's jump in the closed loop, and what is kept of it.
 
 use super::control::{self, QpLog};
 use super::log::Sample;
-use super::sensors::{Sensors, sole_forces};
-use super::{GRAVITY, JOINTS, OWNERS, ROBOT, SPHERES, Task, World, com, known};
+use super::{FEET, GRAVITY, JOINTS, Known, OWNERS, ROBOT, SPHERES, Task, World, com, known};
 use super::{on_the_floor, plant, poses, spheres, squat};
+use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::jump::plant::Sim;
-use crate::lab::{Disturbance, Motors};
-use crate::verdict::{Hardware, Stage, Tick};
+use crate::lab::{Disturbance, Interface};
+use crate::verdict::{Hardware, Tick};
 use icub_model::profile::{Jump, Machine, Workspace};
-use icub_model::{BUDGETS, LIMITS, shapes};
+use icub_model::{BUDGETS, LIMITS, SOLES, shapes};
 use jump_control::{JointCommand, Phase};
+use jump_machine::humanoid::Work;
 use nalgebra::Vector3;
 use rbd_core::{CentroidalMap, Motor, Posture, centroidal_map, centroidal_state};
+use state_est::Foot;
 
-/// Length of a tick, s.
-const TICK: f64 = 1e-3;
 /// Time of standing in the squat before the push-off, s.
 pub(crate) const HOLD: f64 = 0.5;
 /// Time after touchdown at which the robot must stand, s.
 pub(crate) const SETTLE: f64 = 2.0;
+/// Force at which a sole is certainly loaded, N.
+const LOADED: f64 = 40.0;
 /// Force on a sole below which it counts as off the ground, N.
 const LIFTED: f64 = 1.0;
 
@@ -76,64 +78,62 @@ impl Run {
     }
 }
 
-/// The path from the controller's commands to the plant's torques.
-struct Drive {
-    motors: Motors<JOINTS>,
-    limits: [Motor<f64>; JOINTS],
-    /// Torques that the joints' loop has computed and that act from the next tick on.
-    computed: [f64; JOINTS],
+/// Force of the ground on each sole, N.
+pub(crate) fn sole_forces(world: &World) -> [Vector3<f64>; FEET] {
+    let f = world.plant().contact_forces_w();
+    [f[..4].iter().sum(), f[4..SPHERES].iter().sum()]
 }
 
-impl Drive {
-    fn new(task: &Task, disturbance: &Disturbance) -> Self {
-        let limits = task.motors();
-        Self {
-            motors: Motors::new(disturbance, limits, &BUDGETS),
-            limits,
-            computed: [0.0; JOINTS],
-        }
+/// What is kept of a run.
+struct Keeper<'a> {
+    task: &'a Task,
+    jump: Jump,
+    /// Height of the centre of mass at the start, m.
+    lift: f64,
+    motors: [Motor<f64>; JOINTS],
+    run: Run,
+}
+
+impl<'m> Recorder<Machine<'m, Known>, JOINTS, FEET, OWNERS> for Keeper<'_> {
+    fn ticked(
+        &mut self,
+        t: f64,
+        tick: &jump_machine::Tick<Work<f64>>,
+        _: &Machine<'m, Known>,
+        world: &World,
+    ) {
+        self.run.qp.count(self.task, tick);
+        let wanted_height = self.lift + self.jump.profile.at(t).rise;
+        let sample = record(world, tick.phase, wanted_height, t);
+        observe(&mut self.run, &sample, &self.motors);
+        self.run.samples.push(sample);
     }
 
-    /// One tick of the plant that ends at `time`, and began `since` after the command came: reads the encoders, lets the joints' loop compute, and applies what it computed a
-    /// tick ago.
-    fn step(
-        &mut self,
-        (command, phase): (&JointCommand<f64, JOINTS>, Phase),
-        (world, sensors): (&mut World, &mut Sensors),
-        run: &mut Run,
-        (time, since): (f64, f64),
-    ) -> Result<(), String> {
-        let dt = world.plant().tick();
-        let (q, v) = sensors.encoders(world);
-        let asked = self.computed;
-        let moved = ahead(command, since);
-        self.computed = moved.torques(&q, &v, &self.limits);
+    fn stepped(&mut self, step: &Step<JOINTS>, machine: &Machine<'m, Known>, world: &World) {
+        let run = &mut self.run;
         if run.touchdown.is_some() {
-            let over = demand(&moved, &q, &v, &self.limits);
+            let moved = ahead(machine.command(), step.since);
+            let (q, v) = &step.encoders;
+            let over = demand(&moved, q, v, &self.motors);
             run.landing_demand = run.landing_demand.max(over);
             if over > 1.0 {
-                run.landing_saturation += dt;
+                run.landing_saturation += step.dt;
             }
         }
-        let speeds = world.velocity().joints;
-        let given = self.motors.give(&asked, &speeds, dt);
-        let flies = matches!(phase, Phase::Flight | Phase::PreLanding);
-        world.step(&given, flies)?;
         let plant = world.plant();
         let ground: Vector3<f64> = plant.contact_forces_w().iter().sum();
         run.hardware.add(&Tick {
-            time,
-            dt,
-            stage: stage(phase),
-            asked: &asked,
+            time: step.time,
+            dt: step.dt,
+            stage: stage(machine.phase()),
+            asked: &step.asked,
             given: plant.delivered(),
-            speeds: &speeds,
+            speeds: &step.speeds,
             stops: plant.stop_torques(),
             ground: ground.norm(),
-            power: self.motors.power(),
+            power: step.power,
             touches: &touches(plant.contact_forces_w(), plant.link_forces()),
         });
-        Ok(())
     }
 }
 
@@ -151,62 +151,54 @@ pub(super) fn touches(
         .collect()
 }
 
-const fn stage(phase: Phase) -> Stage {
-    match phase {
-        Phase::Hold | Phase::Stance => Stage::PushOff,
-        Phase::Flight | Phase::PreLanding => Stage::Flight,
-        Phase::Landing | Phase::Stand | Phase::Abort => Stage::Landing,
-    }
-}
-
 /// Runs the jump; `progress` hears time and phase once per simulated 10 ms.
 pub(crate) fn run(
     task: &Task,
     sim: Sim,
     disturbance: &Disturbance,
     seed: u64,
-    mut progress: impl FnMut(f64, Phase),
+    progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let start = on_the_floor(squat());
-    let mut world = plant(task, sim, disturbance, &start)?;
-    let mut sensors = Sensors::new(disturbance, seed, &start);
-    let robot = known(task)?;
+    let (robot, motors) = (known(task)?, task.motors());
     let settings = control::settings(task);
     let mut workspace = Box::new(Workspace::new(&settings));
     let mut machine = Machine::new(&robot, settings, &mut workspace);
     let jump = control::jump(task, &start)?;
-    machine
-        .arm(&jump, 0.0)
-        .map_err(|refusal| refusal.to_string())?;
-    let lift = com(&start).z;
-    let mut drive = Drive::new(task, disturbance);
-    let tick = world.plant().tick();
+    let armed = machine.arm(&jump, 0.0);
+    armed.map_err(|refusal| refusal.to_string())?;
+    let feet = Feet {
+        feet: SOLES.map(|sole| Foot::of(&sole)),
+        loaded: LOADED,
+        settling: 0,
+        forces: |world| sole_forces(world).map(|f| f.norm()),
+    };
+    let interface = Interface::Torque;
+    let setting = Setting {
+        disturbance,
+        interface,
+        seed,
+        start: &start,
+    };
+    let mut closed = ClosedLoop {
+        machine,
+        sensors: Sensors::<_, _, _, _, { FEET + 2 }>::new(ROBOT, feet, &setting),
+        drive: Drive::new(disturbance, (interface, seed), (&LIMITS, motors), &BUDGETS),
+        world: plant(task, sim, disturbance, &start)?,
+    };
     let weight = control::mass(&robot) * GRAVITY;
-    let mut run = Run::new(task, &jump, weight, tick);
-    let substeps = (TICK / tick).round() as u32;
-    for k in 0_u64.. {
-        let t = k as f64 * TICK - HOLD;
-        if t > run.takeoff + SETTLE + 0.7 {
-            break;
-        }
-        let told = sensors.measure(t, &world);
-        run.qp.count(task, &machine.tick(t, told.as_ref()));
-        let wanted_height = lift + jump.profile.at(t).rise;
-        let sample = record(&world, machine.phase(), wanted_height, t);
-        observe(&mut run, &sample, &drive.limits);
-        run.samples.push(sample);
-        for i in 0..substeps {
-            let what = (machine.command(), machine.phase());
-            let since = f64::from(i) * tick;
-            let times = (t + since + tick, since);
-            drive.step(what, (&mut world, &mut sensors), &mut run, times)?;
-        }
-        if k.is_multiple_of(10) {
-            progress(t, machine.phase());
-        }
-    }
-    run.final_phase = machine.phase();
-    run.estimate_error = sensors.worst;
+    let mut keeper = Keeper {
+        task,
+        jump,
+        lift: com(&start).z,
+        motors,
+        run: Run::new(task, &jump, weight, closed.world.plant().tick()),
+    };
+    let end = jump.profile.duration + SETTLE + 0.7;
+    closed.run((HOLD, end), &mut keeper, progress)?;
+    let mut run = keeper.run;
+    run.final_phase = closed.machine.phase();
+    run.estimate_error = closed.sensors.worst;
     Ok(run)
 }
 

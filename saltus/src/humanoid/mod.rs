@@ -5,7 +5,6 @@ pub(crate) mod execute;
 pub(crate) mod judge;
 pub(crate) mod log;
 pub(crate) mod report;
-pub(crate) mod sensors;
 
 use crate::jump::plant::Sim;
 use crate::lab::{self, Disturbance, Key};
@@ -21,6 +20,8 @@ use rbd_core::{
 
 /// Joints of the robot.
 pub(crate) const JOINTS: usize = 23;
+/// Its feet.
+pub(crate) const FEET: usize = 2;
 /// Balls in the corners of its two soles.
 pub(crate) const SPHERES: usize = 8;
 /// What forces count for: the corners of the soles, then all other links.
@@ -132,8 +133,11 @@ impl Task {
     }
 }
 
+/// The model of a controller.
+pub(crate) type Known = TableModel<f64, JOINTS>;
+
 /// The robot as its controller knows it.
-pub(crate) fn known(task: &Task) -> Result<TableModel<f64, JOINTS>, String> {
+pub(crate) fn known(task: &Task) -> Result<Known, String> {
     let mut bodies = *ROBOT.bodies();
     if !task.knows_rotors {
         for body in &mut bodies {

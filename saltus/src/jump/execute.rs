@@ -1,12 +1,12 @@
-//! The closed loop: plant and joint control at 10 kHz, the jump machine at 1 kHz.
+//! A quadruped's jump in the closed loop, and what is kept of it.
 
 use super::log::Sample;
 use super::measure::Measure;
 use super::plant::{Sim, plant};
-use super::sensors::{Sensors, Told, World};
-use super::{FOOT_COUNT, JOINTS};
-use crate::lab::{Boards, Disturbance, Interface, Motors};
-use crate::verdict::{Hardware, Stage, Tick as HardwareTick};
+use super::{FOOT_COUNT, JOINTS, OWNERS, Told, World};
+use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
+use crate::lab::{Disturbance, Interface};
+use crate::verdict::{Hardware, Tick as HardwareTick};
 use jump_control::{Fault, Phase, Plan, Torques, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use jump_planner::reference::{Reference, heading_matrix};
@@ -14,16 +14,15 @@ use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use landing::Outcome;
 use nalgebra::Vector3;
-use rbd_core::{Model, Motor, joint_friction};
+use rbd_core::Model;
+use state_est::Foot;
 
 /// Time of standing still before the jump, s.
 pub(crate) const HOLD: f64 = 0.3;
 /// Time after touchdown at which the robot must stand, s.
 pub(crate) const SETTLE: f64 = 2.0;
-/// Speed at which the joints' Coulomb friction fades, rad/s.
-const FRICTION_SMOOTHING: f64 = 0.1;
-/// Ticks of the plant per tick of the controller.
-const RATIO: u32 = 10;
+/// Force at which a foot is certainly loaded, N.
+const LOADED: f64 = 15.0;
 /// Force on a foot that counts as its touchdown, N.
 const TOUCHDOWN: f64 = 15.0;
 
@@ -127,8 +126,8 @@ impl Run {
         }
     }
 
-    /// Extremes and events of one tick of the plant that ended at `time`.
-    fn observe(&mut self, world: &World, motors: &MotorTick<'_>, phase: Phase, time: f64) {
+    /// Extremes and events of one tick of the plant.
+    fn observe(&mut self, world: &World, step: &Step<JOINTS>, phase: Phase) {
         let plant = world.plant();
         self.ticks[0] += 1;
         let delivered = plant.delivered();
@@ -140,7 +139,7 @@ impl Run {
         self.peak_foot_force = self.peak_foot_force.max(foot);
         let looking = matches!(phase, Phase::PreLanding | Phase::Landing);
         if self.first_contact.is_none() && looking && foot > TOUCHDOWN {
-            self.first_contact = Some(time);
+            self.first_contact = Some(step.time);
         }
         let owners = self
             .robot
@@ -158,32 +157,17 @@ impl Run {
             .filter(|(_, force)| *force > 0.0)
             .collect();
         self.hardware.add(&HardwareTick {
-            time,
-            dt: plant.tick(),
+            time: step.time,
+            dt: step.dt,
             stage: stage(phase),
-            asked: motors.asked,
+            asked: &step.asked,
             given: delivered,
-            speeds: motors.speeds,
+            speeds: &step.speeds,
             stops: plant.stop_torques(),
             ground: forces.iter().sum::<Vector3<f64>>().norm(),
-            power: motors.power,
+            power: step.power,
             touches: &touches,
         });
-    }
-}
-
-/// What went through the motors in one tick of the plant.
-struct MotorTick<'a> {
-    asked: &'a [f64; JOINTS],
-    speeds: &'a [f64; JOINTS],
-    power: f64,
-}
-
-const fn stage(phase: Phase) -> Stage {
-    match phase {
-        Phase::Hold | Phase::Stance => Stage::PushOff,
-        Phase::Flight | Phase::PreLanding => Stage::Flight,
-        Phase::Landing | Phase::Stand | Phase::Abort => Stage::Landing,
     }
 }
 
@@ -196,59 +180,6 @@ pub(crate) fn run(
 ) -> Result<Run, String> {
     let trial = Trial::nominal(sim);
     run_watched(task, reference, trial, |_, _| {}, progress, |_| {})
-}
-
-/// The path from the machine's commands to the plant's torques.
-struct Drive {
-    interface: Interface,
-    boards: Boards<JOINTS>,
-    motors: Motors<JOINTS>,
-    /// Torques that the joint loop has computed and that act from the next tick on.
-    computed: [f64; JOINTS],
-    /// Mean of what the boards believe to have given, friction included, since the last tick of the machine.
-    felt: [f64; JOINTS],
-    robot: Quadruped,
-    drives: [Motor<f64>; JOINTS],
-}
-
-impl Drive {
-    fn new(trial: &Trial<'_>, robot: Quadruped) -> Self {
-        let drives = robot.drives();
-        Self {
-            robot,
-            drives,
-            interface: trial.interface,
-            boards: Boards::new(&trial.disturbance, trial.seed.wrapping_add(0xb0a2d)),
-            motors: Motors::new(&trial.disturbance, drives, &robot.budgets),
-            computed: [0.0; JOINTS],
-            felt: [0.0; JOINTS],
-        }
-    }
-
-    /// One tick of the plant: reads the encoders, lets the joint loop compute, and applies what it computed a tick ago.
-    fn step<M: rbd_core::Tree<f64, JOINTS>>(
-        &mut self,
-        machine: &mut Machine<'_, f64, M, JOINTS, FOOT_COUNT>,
-        (world, sensors): (&mut World, &mut Sensors),
-        now: f64,
-    ) -> Result<([f64; JOINTS], [f64; JOINTS]), String> {
-        let dt = world.plant().tick();
-        let (q, v) = sensors.encoders(world);
-        let asked = self.computed;
-        self.computed = match self.interface {
-            Interface::Torque => machine.joint_tick(&q, &v, dt),
-            Interface::JointPd { .. } => self.boards.torques(now, (&q, &v), &self.drives),
-        };
-        let speeds = world.velocity().joints;
-        let given = self.motors.give(&asked, &speeds, dt);
-        let flies = matches!(machine.phase(), Phase::Flight | Phase::PreLanding);
-        world.step(&given, flies)?;
-        let losses = joint_friction(Model::limits(&self.robot), &v, FRICTION_SMOOTHING);
-        for ((felt, tau), loss) in self.felt.iter_mut().zip(self.motors.measured()).zip(losses) {
-            *felt += (tau + loss) / f64::from(RATIO);
-        }
-        Ok((asked, speeds))
-    }
 }
 
 /// The jump as the machine takes it, of a plan that borrows the reference.
@@ -271,82 +202,136 @@ fn jump<'a>(
     })
 }
 
+/// Force of the ground on each foot, N.
+fn foot_forces(world: &World) -> [f64; FOOT_COUNT] {
+    let forces = world.plant().contact_forces_w();
+    core::array::from_fn(|i| forces[i].norm())
+}
+
+/// The feet of a robot.
+fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
+    Feet {
+        feet: robot.feet.map(|frame| Foot {
+            frame,
+            radius: robot.foot_radius,
+        }),
+        loaded: LOADED,
+        settling: 5,
+        forces: foot_forces,
+    }
+}
+
+/// What is kept of a run.
+struct Keeper<'a, 'p, T, W> {
+    run: Run,
+    plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
+    /// Node of the plan's last sample.
+    node: usize,
+    /// Whether the machine is told how old its observations are.
+    delayed: bool,
+    tamper: T,
+    watch: W,
+}
+
+impl<'m, T, W> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
+    for Keeper<'_, '_, T, W>
+where
+    T: FnMut(u64, &mut Told),
+    W: FnMut(&landing::Workspace<f64, 12, 4>),
+{
+    fn tell(&mut self, k: u64, told: &mut Told) {
+        if !self.delayed && told.measured.age.is_finite() {
+            told.measured.age = 0.0;
+        }
+        (self.tamper)(k, told);
+    }
+
+    fn ticked(
+        &mut self,
+        t: f64,
+        tick: &Tick,
+        machine: &Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+        world: &World,
+    ) {
+        self.run.count(tick);
+        let mut commanded_forces_w = [Vector3::zeros(); FOOT_COUNT];
+        if let Work::Landing(Outcome::Solved(_) | Outcome::Failed(_)) = tick.work {
+            commanded_forces_w = machine.workspace().forces_w();
+            (self.watch)(machine.workspace());
+        }
+        let planned = sample(self.plan, t, self.node);
+        self.node = planned.node;
+        let robot = &self.run.robot;
+        let sample = Sample {
+            commanded_forces_w,
+            ..record(robot, world, tick.phase, self.plan, &planned, t)
+        };
+        self.run.samples.push(sample);
+    }
+
+    fn stepped(
+        &mut self,
+        step: &Step<JOINTS>,
+        machine: &Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+        world: &World,
+    ) {
+        self.run.observe(world, step, machine.phase());
+    }
+}
+
 /// As [`run`], for any trial; `tamper` may change what the controller is told at each millisecond since the start, `watch` sees the
 /// landing's memory after every tick that solved a program.
 pub(crate) fn run_watched(
     task: &Task,
     reference: &Reference,
     trial: Trial<'_>,
-    mut tamper: impl FnMut(u64, &mut Told),
-    mut progress: impl FnMut(f64, Phase),
-    mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
+    tamper: impl FnMut(u64, &mut Told),
+    progress: impl FnMut(f64, Phase),
+    watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
-    let mut sensors = Sensors::new(&trial.disturbance, trial.interface, trial.seed, task);
-    let mut world = plant((trial.sim, trial.finer), task, &trial.disturbance)?;
-    let jump = jump(task, reference)?;
-    let mut workspace = landing::Workspace::new();
     let robot = task.robot;
-    let build = robot.build(&task.start);
-    let mut settings = Settings::new(&build, robot.feet, robot.drives(), task.start.joints);
+    let (drives, build) = (robot.drives(), robot.build(&task.start));
+    let mut settings = Settings::new(&build, robot.feet, drives, task.start.joints);
     for measure in trial.without {
         measure.leave(&mut settings);
     }
-    let delayed = !trial.without.contains(&Measure::Delay);
+    let jump = jump(task, reference)?;
+    let mut workspace = landing::Workspace::new();
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
-    sensors.begin(-HOLD, &world);
-    let mut drive = Drive::new(&trial, robot);
-    let mut run = Run::new(task, world.plant().tick());
+    let limits = (Model::limits(&robot), drives);
+    let setting = Setting {
+        disturbance: &trial.disturbance,
+        interface: trial.interface,
+        seed: trial.seed,
+        start: &task.start,
+    };
+    let mut closed = ClosedLoop {
+        machine,
+        sensors: Sensors::<_, _, _, _, { FOOT_COUNT + 2 }>::new(robot, feet(&robot), &setting),
+        drive: Drive::new(
+            &trial.disturbance,
+            (trial.interface, trial.seed),
+            limits,
+            &robot.budgets,
+        ),
+        world: plant((trial.sim, trial.finer), task, &trial.disturbance)?,
+    };
+    let mut keeper = Keeper {
+        run: Run::new(task, closed.world.plant().tick()),
+        plan: &jump.plan,
+        node: 0,
+        delayed: !trial.without.contains(&Measure::Delay),
+        tamper,
+        watch,
+    };
     let end = reference.touchdown + SETTLE + 0.5;
-    let (mut k, mut node) = (0_u64, 0);
-    loop {
-        let t = k as f64 * 1e-3 - HOLD;
-        if t > end {
-            break;
-        }
-        let felt = core::mem::take(&mut drive.felt);
-        let mut heard = sensors.measure(t, &world, &felt);
-        if let Some(told) = &mut heard {
-            if !delayed && told.measured.age.is_finite() {
-                told.measured.age = 0.0;
-            }
-            tamper(k, told);
-        }
-        let tick = machine.tick(t, heard.as_ref());
-        run.count(&tick);
-        let mut commanded_forces_w = [Vector3::zeros(); FOOT_COUNT];
-        if let Work::Landing(Outcome::Solved(_) | Outcome::Failed(_)) = tick.work {
-            commanded_forces_w = machine.workspace().forces_w();
-            watch(machine.workspace());
-        }
-        if k.is_multiple_of(trial.interface.period_ms()) {
-            drive.boards.send(t, machine.command());
-        }
-        let planned = sample(&jump.plan, t, node);
-        node = planned.node;
-        run.samples.push(Sample {
-            commanded_forces_w,
-            ..record(&robot, &world, machine.phase(), &jump.plan, &planned, t)
-        });
-        for i in 0..RATIO {
-            let now = t + f64::from(i) * world.plant().tick();
-            let (asked, speeds) = drive.step(&mut machine, (&mut world, &mut sensors), now)?;
-            let motors = MotorTick {
-                asked: &asked,
-                speeds: &speeds,
-                power: drive.motors.power(),
-            };
-            run.observe(&world, &motors, machine.phase(), now + world.plant().tick());
-        }
-        if k.is_multiple_of(10) {
-            progress(t, machine.phase());
-        }
-        k += 1;
-    }
-    run.final_phase = machine.phase();
-    run.fault = machine.fault();
-    run.estimate_errors = sensors.worst;
+    closed.run((HOLD, end), &mut keeper, progress)?;
+    let mut run = keeper.run;
+    run.final_phase = closed.machine.phase();
+    run.fault = closed.machine.fault();
+    run.estimate_errors = closed.sensors.worst;
     Ok(run)
 }
 

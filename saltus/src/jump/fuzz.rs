@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use super::Told;
 use super::execute::{HOLD, Run, Trial, run_watched};
 use super::plant::Sim;
-use super::sensors::Told;
 use a1_model::MOTORS;
 use jump_control::{Fault, Phase};
 use jump_planner::reference::{Reference, build};

@@ -11,8 +11,12 @@ pub(crate) mod measure;
 pub(crate) mod plant;
 pub(crate) mod programs;
 pub(crate) mod report;
-mod sensors;
 pub(crate) mod strip;
 
 pub(crate) use jump_planner::robot::{OWNER_COUNT as OWNERS, State};
 pub(crate) use jump_planner::{FOOT_COUNT, JOINTS, Node, state};
+
+/// The robot in its lab.
+pub(crate) type World = crate::lab::Ground<JOINTS, OWNERS>;
+/// What the machine is told.
+pub(crate) type Told = jump_machine::Observation<f64, JOINTS, FOOT_COUNT>;

@@ -1,7 +1,6 @@
 //! The simulated robot: which simulator, in which world.
 
-use super::sensors::World;
-use super::{JOINTS, OWNERS};
+use super::{JOINTS, OWNERS, World};
 use crate::lab::{self, Disturbance, Key};
 use contact_sim::{NativeSimulator, Settings};
 use jump_planner::robot::{Quadruped, SHAPE_COUNT};

@@ -18,13 +18,13 @@ use crate::{Numbers, Recorder};
 
 const SUBJECT: &str = "icub-jump";
 /// Time of standing in the squat before the jump, s.
-pub const ICUB_HOLD: f64 = 0.1;
+const ICUB_HOLD: f64 = 0.1;
 /// Time of push-off, flight, landing and standing, ms: it stands after 1.9 s.
 const JUMP: usize = 2100;
 /// Joint ticks per tick of the machine.
 const RATIO: usize = 10;
 /// Most steps of a program's solver in a tick: with them a tick takes less than 720,000 instructions on a Cortex-M7. The push-off needs 7.
-const STEPS: u32 = 11;
+const STEPS: u32 = 10;
 /// States that no jump visits.
 const WILD: usize = 200;
 /// The robot as `saltus run` simulates it, and as its controllers know it.
@@ -56,8 +56,7 @@ fn standing() -> Configuration<f64, JOINTS> {
 }
 
 /// The jump of paper B; `None` if it cannot be as wanted.
-#[must_use]
-pub fn icub_jump() -> Option<Jump<f64, JOINTS>> {
+fn icub_jump() -> Option<Jump<f64, JOINTS>> {
     Some(Jump {
         profile: profile::rise(profile::HEIGHT)?,
         start: standing(),
