@@ -173,7 +173,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
     /// mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
     #[must_use]
     pub fn base(&self, (node, time): (usize, T)) -> Option<PlannedBase<T>> {
-        self.from::<{ parts::BASE }, _>(node, |from, to| base_between(from, to?, time))?
+        self.following::<{ parts::BASE }, _>(node, |nodes| base_at(nodes, time))
     }
 
     /// By how much later than planned a body in free fall will be where the plan ends, s: (δz + δż T) over the planned speed
@@ -187,8 +187,11 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         vel_w: &Vector3<T>,
     ) -> Option<T> {
         let last = self.count().checked_sub(1)?;
-        let (end, speed) =
-            self.from::<{ parts::BASE }, _>(last, |node, _| (node.time, world_velocity(node).z))?;
+        let (end, speed) = self.following::<{ parts::BASE }, _>(last, |nodes| {
+            nodes
+                .first()
+                .map(|node| (node.time, world_velocity(node).z))
+        })?;
         let planned = self.base((node, time))?;
         let falling = -speed;
         let left = end - time;
@@ -210,7 +213,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
     /// Node `i`; none beyond the last.
     #[must_use]
     pub fn node(&self, i: usize) -> Option<Node<T, N, F>> {
-        self.from::<{ parts::ALL }, _>(i, |node, _| *node)
+        self.following::<{ parts::ALL }, _>(i, |nodes| nodes.first().copied())
     }
 
     /// The time of node `i`, s.
@@ -221,33 +224,47 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         }
     }
 
-    /// What `read` makes of node `i` and of the one after it, if there is one; none beyond the last. It looks at time and [`parts`] only.
-    pub(crate) fn from<const PARTS: u8, R>(
+    /// Joint positions at the first node, rad.
+    #[must_use]
+    pub fn start(&self) -> Option<[T; N]> {
+        self.following::<{ parts::JOINTS }, _>(0, |nodes| nodes.first().map(|node| node.joints))
+    }
+
+    /// All nodes, where they stand as the sampler takes them.
+    pub(crate) const fn ready(&self) -> Option<&'a [Node<T, N, F>]> {
+        match &self.nodes {
+            Nodes::Ready(nodes) => Some(nodes),
+            Nodes::Stored(_) => None,
+        }
+    }
+
+    /// What `read` makes of the nodes from `i` on, of which it looks at two and at their time and [`parts`] only.
+    pub(crate) fn following<const PARTS: u8, R>(
         &self,
         i: usize,
-        read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
-    ) -> Option<R> {
+        read: impl FnOnce(&[Node<T, N, F>]) -> R,
+    ) -> R {
         match &self.nodes {
-            Nodes::Ready(nodes) => {
-                let mut nodes = nodes.iter().skip(i);
-                Some(read(nodes.next()?, nodes.next()))
-            }
-            Nodes::Stored(nodes) => from_stored::<PARTS, _, _, _, _>(nodes, i, read),
+            Nodes::Ready(nodes) => read(nodes.get(i..).unwrap_or_default()),
+            Nodes::Stored(nodes) => following_stored::<PARTS, _, _, _, _>(nodes, i, read),
         }
     }
 }
 
-/// [`Plan::from`] of stored nodes. Not inlined: two nodes on the stack are for those alone who follow such a plan.
+/// [`Plan::following`] of stored nodes. Not inlined: two nodes on the stack are for those alone who follow such a plan.
 #[inline(never)]
-fn from_stored<const PARTS: u8, T: Scalar, const N: usize, const F: usize, R>(
+fn following_stored<const PARTS: u8, T: Scalar, const N: usize, const F: usize, R>(
     nodes: &StoredNodes<'_, N, F>,
     i: usize,
-    read: impl FnOnce(&Node<T, N, F>, Option<&Node<T, N, F>>) -> R,
-) -> Option<R> {
-    let node = nodes.parts::<PARTS>(i)?.node();
+    read: impl FnOnce(&[Node<T, N, F>]) -> R,
+) -> R {
+    let first = nodes.parts::<PARTS>(i).map(|node| node.node());
     let next = nodes.parts::<PARTS>(i.saturating_add(1));
-    let next = next.map(|next| next.node());
-    Some(read(&node, next.as_ref()))
+    match (first, next.map(|next| next.node())) {
+        (Some(first), Some(next)) => read(&[first, next]),
+        (Some(first), None) => read(&[first]),
+        (None, _) => read(&[]),
+    }
 }
 
 /// Velocity of a node's base, world axes, m/s.
@@ -255,12 +272,13 @@ fn world_velocity<T: Scalar, const N: usize, const F: usize>(node: &Node<T, N, F
     node.base.rotation * node.base_velocity.linear
 }
 
-/// The base at `time` between two nodes; none before the first of them.
-fn base_between<T: Scalar, const N: usize, const F: usize>(
-    from: &Node<T, N, F>,
-    to: &Node<T, N, F>,
+/// The base at `time` between the first two of these nodes; none before the first of them.
+fn base_at<T: Scalar, const N: usize, const F: usize>(
+    nodes: &[Node<T, N, F>],
     time: T,
 ) -> Option<PlannedBase<T>> {
+    let mut following = nodes.iter();
+    let (from, to) = following.next().zip(following.next())?;
     // Also false for NaN.
     let begun = time >= from.time;
     if !begun {

@@ -51,29 +51,57 @@ pub fn sample<T: Scalar, const N: usize, const F: usize>(
     time: T,
     hint: usize,
 ) -> Reference<T, N> {
-    let from = match plan.time(hint) {
-        Some(begun) if begun <= time => hint,
+    match plan.ready() {
+        Some(nodes) => sample_in(nodes, plan.torques, time, hint),
+        None => sample_stored(plan, time, hint),
+    }
+}
+
+/// [`sample`] of a plan that is read where it is stored: of its two nodes around `time`.
+#[inline(never)]
+fn sample_stored<T: Scalar, const N: usize, const F: usize>(
+    plan: &Plan<'_, T, N, F>,
+    time: T,
+    hint: usize,
+) -> Reference<T, N> {
+    let begun = |i| plan.time(i).is_some_and(|begun| begun <= time);
+    let mut i = if begun(hint) { hint } else { 0 };
+    while begun(i + 1) {
+        i += 1;
+    }
+    plan.following::<{ parts::JOINTS }, _>(i, |nodes| {
+        let mut reference = sample_in(nodes, plan.torques, time, 0);
+        reference.node += i;
+        reference
+    })
+}
+
+fn sample_in<T: Scalar, const N: usize, const F: usize>(
+    nodes: &[Node<T, N, F>],
+    torques: Torques,
+    time: T,
+    hint: usize,
+) -> Reference<T, N> {
+    let from = match nodes.get(hint) {
+        Some(node) if node.time <= time => hint,
         _ => 0,
     };
     let mut found = None;
-    let mut i = from;
-    while let Some(begun) = plan.time(i) {
-        // Also false for NaN.
-        let passed = begun <= time;
-        if !passed {
+    for (i, node) in nodes.iter().enumerate().skip(from) {
+        if node.time <= time {
+            found = Some((i, node));
+        } else {
             break;
         }
-        found = Some(i);
-        i += 1;
     }
-    let reference = match found {
-        Some(i) => plan.from::<{ parts::JOINTS }, _>(i, |a, b| match b {
-            Some(b) => between(i, a, b, time, plan.torques),
+    match (found, nodes.first()) {
+        (Some((i, a)), _) => match nodes.get(i + 1) {
+            Some(b) => between(i, a, b, time, torques),
             None => still(i, a),
-        }),
-        None => plan.from::<{ parts::JOINTS }, _>(0, |first, _| still(0, first)),
-    };
-    reference.unwrap_or(Reference::ZERO)
+        },
+        (None, Some(first)) => still(0, first),
+        (None, None) => Reference::ZERO,
+    }
 }
 
 fn still<T: Scalar, const N: usize, const F: usize>(

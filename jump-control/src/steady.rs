@@ -19,7 +19,7 @@ use so3::math;
 
 use crate::Measurement;
 use crate::container::parts;
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedBase};
 
 /// Gains of the base in the push-off; all zero switch it off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,10 +60,10 @@ impl<T: Scalar> Steady<T> {
     #[must_use]
     pub fn grip<const N: usize, const F: usize>(&self, plan: &Plan<'_, T, N, F>, node: usize) -> T {
         let pushes = |force: &Vector3<T>| force.z > T::ZERO;
-        match plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w.iter().all(pushes)) {
-            Some(false) => self.grip,
+        plan.following::<{ parts::FORCES }, _>(node, |nodes| match nodes.first() {
+            Some(node) if !node.forces_w.iter().all(pushes) => self.grip,
             _ => T::ZERO,
-        }
+        })
     }
 
     /// Forces of the ground on the feet, base axes, N, that are wanted besides the plan's at `time`; they are zero on feet
@@ -79,11 +79,25 @@ impl<T: Scalar> Steady<T> {
         measured: &Measurement<T, N, F>,
         feet_b: &[Vector3<T>; F],
     ) -> [Vector3<T>; F] {
-        let mut forces = [Vector3::zeros(); F];
-        let pushes = plan.from::<{ parts::FORCES }, _>(node, |node, _| node.forces_w);
-        let Some((forces_w, planned)) = pushes.zip(plan.base((node, time))) else {
-            return forces;
+        let Some(planned) = plan.base((node, time)) else {
+            return [Vector3::zeros(); F];
         };
+        plan.following::<{ parts::FORCES }, _>(node, |nodes| match nodes.first() {
+            Some(node) => self.forces_beside(&node.forces_w, &planned, mass, measured, feet_b),
+            None => [Vector3::zeros(); F],
+        })
+    }
+
+    /// [`Self::forces`], beside the plan's own.
+    fn forces_beside<const N: usize, const F: usize>(
+        &self,
+        forces_w: &[Vector3<T>; F],
+        planned: &PlannedBase<T>,
+        mass: T,
+        measured: &Measurement<T, N, F>,
+        feet_b: &[Vector3<T>; F],
+    ) -> [Vector3<T>; F] {
+        let mut forces = [Vector3::zeros(); F];
         let weights = forces_w.map(|force| math::max(force.z, T::ZERO));
         let sum = weights.iter().fold(T::ZERO, |sum, &w| sum + w);
         // Also false for NaN.
@@ -107,7 +121,7 @@ impl<T: Scalar> Steady<T> {
         let (middle, turn) = couple(&weights, feet_b, &moment);
 
         let mut scale = T::ONE;
-        let feet = weights.iter().zip(feet_b).zip(&forces_w);
+        let feet = weights.iter().zip(feet_b).zip(forces_w);
         for (force, ((&w, foot), force_w)) in forces.iter_mut().zip(feet) {
             let lean = rot_bw * force_w - planned_bw * force_w;
             *force = (turn.cross(&(foot - middle)) + push_b) * w + lean * self.direction;

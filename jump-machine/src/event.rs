@@ -42,8 +42,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
 
     /// The first joint that is not where the plan begins.
     fn misplaced(&self, measured: &Measurement<T, N, F>) -> Option<usize> {
-        let first = self.jump.as_ref()?.plan.node(0)?;
-        let mut joints = measured.joints.iter().zip(&first.joints);
+        let first = self.jump.as_ref()?.plan.start()?;
+        let mut joints = measured.joints.iter().zip(&first);
         joints
             .position(|(q, planned)| so3::math::abs(*q - *planned) > self.settings.start_tolerance)
     }
