@@ -81,7 +81,7 @@ fn landed() -> Heard {
 fn at(k: i32) -> Heard {
     match k {
         ..TAKEOFF => ground(),
-        ..=560 => air(),
+        TAKEOFF..=560 => air(),
         _ => landed(),
     }
 }

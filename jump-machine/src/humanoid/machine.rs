@@ -4,14 +4,13 @@ use jump_control::{Event, Fault, JointCommand, JointGains, Phase};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Tangent, Tree};
 use so3::{Scalar, math};
+use wbc_qp::Contact;
 use wbc_qp::jump::{Absorption, ComReference, LandingReference, TorqueTick};
-use wbc_qp::{Contact, Yielded, anchored};
 
 use super::aerial::{Aerial, JointMotion};
 use super::jump::Armed;
 use super::recovery::{Height, Recovery};
 use super::stance::{Stance, middle_of_feet};
-use super::workspace::Program;
 use super::{Jump, Landing, Settings, Solved, Work, Workspace};
 use crate::supervisor::{Limits, Supervisor};
 use crate::{JumpMachine, Observation, Refusal, Tick};
@@ -40,19 +39,19 @@ pub struct Machine<
     pub(super) calm: T,
     /// When the robot left the ground as planned, on the clock of the jump, s.
     pub(super) took_off: T,
-    model: &'a M,
-    workspace: &'a mut Workspace<T, N, K, V, W, R>,
+    pub(super) model: &'a M,
+    pub(super) workspace: &'a mut Workspace<T, N, K, V, W, R>,
     /// When the jump begins, on the clock of `tick`.
     start: T,
     /// Feet with their loads.
-    feet: [Contact<T>; F],
+    pub(super) feet: [Contact<T>; F],
     /// Where the robot is to stand.
     stance: Stance<T, N>,
     aerial: Aerial<T, N>,
     /// None until the ground is there.
     recovery: Option<Recovery<T>>,
     /// Positions that the servos track.
-    servo: [T; N],
+    pub(super) servo: [T; N],
     /// Torques of the last program that was solved.
     torques: [T; N],
     /// Time for which no program has had an answer, s.
@@ -60,12 +59,12 @@ pub struct Machine<
 }
 
 /// Configuration and velocity as observed, in one tick of the programs.
-struct Now<'a, T: Scalar, const N: usize, const F: usize> {
+pub(super) struct Now<'a, T: Scalar, const N: usize, const F: usize> {
     /// Time of the jump, s.
-    t: T,
-    dt: T,
-    q: Configuration<T, N>,
-    v: Tangent<T, N>,
+    pub(super) t: T,
+    pub(super) dt: T,
+    pub(super) q: Configuration<T, N>,
+    pub(super) v: Tangent<T, N>,
     foot_forces: &'a [T; F],
 }
 
@@ -356,88 +355,8 @@ impl<
         )
     }
 
-    /// Hold and push-off: the centre of mass along its profile.
-    fn push(
-        &mut self,
-        armed: &Armed<T, N>,
-        now: &Now<'_, T, N, F>,
-    ) -> (JointCommand<T, N>, Work<T>) {
-        for foot in &mut self.feet {
-            foot.load = T::ONE;
-        }
-        let point = armed.jump.profile.at(now.t);
-        let up = Vector3::z();
-        let wanted = ComReference {
-            position_w: armed.com_w + up * point.rise,
-            velocity_w: up * point.speed,
-            acceleration_w: up * point.acceleration,
-        };
-        match self.workspace.push_off {
-            Program::Velocity(_) => self.push_by_velocity(armed, now, &wanted),
-            Program::Torque(_) => self.push_by_torque(now, &wanted),
-        }
-    }
-
-    #[inline(never)]
-    fn push_by_velocity(
-        &mut self,
-        armed: &Armed<T, N>,
-        now: &Now<'_, T, N, F>,
-        wanted: &ComReference<T>,
-    ) -> (JointCommand<T, N>, Work<T>) {
-        let Workspace {
-            push_off, snapshot, ..
-        } = &mut *self.workspace;
-        let Program::Velocity(program) = push_off else {
-            return (self.supervisor.safe(), Work::Damping);
-        };
-        // Servos hide the feet's own small motion, and a centre of mass that ignores it is smooth.
-        let (joints, speeds) = (&now.q.joints, &now.v.joints);
-        let (q, v) = match self.feet.first() {
-            Some(foot) => anchored(self.model, joints, speeds, &foot.frame, &armed.anchor),
-            None => (now.q, now.v),
-        };
-        snapshot.update(self.model, &q, &v);
-        let limits = &self.settings.limits;
-        let tick = program.tick(self.model, snapshot, &self.feet, limits, wanted, now.dt);
-        let velocities = tick.map_or([T::ZERO; N], |tick| tick.velocities);
-        let solved = tick.map(|tick| Solved {
-            iterations: tick.iterations,
-            residuals: tick.residuals,
-            yielded: Yielded::Nothing,
-            capped: false,
-        });
-        let command = self.track(&velocities);
-        for (servo, qd) in self.servo.iter_mut().zip(velocities) {
-            *servo += now.dt * qd;
-        }
-        (command, Work::PushOff(solved))
-    }
-
-    #[inline(never)]
-    fn push_by_torque(
-        &mut self,
-        now: &Now<'_, T, N, F>,
-        wanted: &ComReference<T>,
-    ) -> (JointCommand<T, N>, Work<T>) {
-        let Workspace {
-            push_off, snapshot, ..
-        } = &mut *self.workspace;
-        let Program::Torque(program) = push_off else {
-            return (self.supervisor.safe(), Work::Damping);
-        };
-        // Nothing hides it from torques: a foot that rocks would look like the whole robot rocking.
-        snapshot.update(self.model, &now.q, &now.v);
-        let joints = (&self.settings.limits, &self.settings.motors);
-        let tick = program.tick(self.model, snapshot, &self.feet, joints, wanted);
-        // The servos only follow, to be ready for the flight.
-        self.servo = now.q.joints;
-        let solved = self.take(tick);
-        (self.torque_command(), Work::PushOff(solved))
-    }
-
     /// Keeps the torques of an answer.
-    fn take(
+    pub(super) fn take(
         &mut self,
         tick: Result<TorqueTick<T, N, K>, wbc_qp::Error>,
     ) -> Result<Solved<T>, wbc_qp::Error> {
@@ -452,14 +371,14 @@ impl<
     }
 
     /// The torques of the last program that was solved.
-    const fn torque_command(&self) -> JointCommand<T, N> {
+    pub(super) const fn torque_command(&self) -> JointCommand<T, N> {
         let mut command = JointCommand::damp(T::ZERO);
         command.feed_forward = self.torques;
         command
     }
 
     /// Positions of now with these velocities, for the servos.
-    const fn track(&self, velocity: &[T; N]) -> JointCommand<T, N> {
+    pub(super) const fn track(&self, velocity: &[T; N]) -> JointCommand<T, N> {
         JointCommand {
             position: self.servo,
             velocity: *velocity,

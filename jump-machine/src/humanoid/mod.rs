@@ -5,6 +5,7 @@ mod aerial;
 mod event;
 mod jump;
 mod machine;
+mod push_off;
 mod recovery;
 mod settings;
 mod stance;

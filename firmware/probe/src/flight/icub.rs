@@ -185,8 +185,10 @@ impl Numbers for Tick<Work<f64>> {
 /// What a tick of the machine is called in a jump, and in states that no jump visits.
 const fn name(work: &Work<f64>, wild: bool) -> &'static str {
     match (work, wild) {
+        (Work::PushOff(Ok(solved)), _) if solved.capped => "capped push-off tick",
         (Work::PushOff(_), _) => "push-off tick",
         (Work::Landing(Ok(solved)), true) if solved.capped => "capped machine tick",
+        (Work::Landing(Ok(solved)), false) if solved.capped => "capped landing tick",
         (Work::Landing(_), true) => "wild machine tick",
         (Work::Landing(_), false) => "landing tick",
         (Work::Servos | Work::Damping, _) => "damping tick",
