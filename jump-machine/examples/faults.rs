@@ -4,7 +4,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::Measurement;
-use jump_machine::{Inputs, Machine, Settings};
+use jump_machine::{Machine, Observation, Settings};
 use rbd_core::{Motion, Transform};
 
 fn main() {
@@ -13,7 +13,7 @@ fn main() {
     // All memory there is; a static in firmware.
     let mut workspace = landing::Workspace::new();
     let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings, &mut workspace);
-    let mut inputs = Inputs {
+    let mut inputs = Observation {
         measured: Measurement {
             base: Transform::IDENTITY,
             base_velocity: Motion::ZERO,

@@ -13,5 +13,5 @@ mod supervisor;
 pub use interface::{JumpMachine, Tick};
 pub use jump::{Jump, Refusal};
 pub use machine::{Machine, Work};
-pub use observation::{Inputs, Observation};
+pub use observation::Observation;
 pub use settings::Settings;

@@ -9,7 +9,7 @@ use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
 
 use crate::supervisor::{Limits, Supervisor};
-use crate::{Inputs, Jump, JumpMachine, Refusal, Settings, Tick};
+use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick};
 
 /// What a tick computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     ///
     /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
     /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
-    pub fn tick(&mut self, now: T, heard: Option<&Inputs<T, N, F>>) -> Tick {
+    pub fn tick(&mut self, now: T, heard: Option<&Observation<T, N, F>>) -> Tick {
         let work = match self.supervisor.hear(now, heard) {
             Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
             Err(fault) => self.abort(fault),
@@ -183,7 +183,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     }
 
     /// Contacts, events and the command at time `t` of the plan.
-    fn act(&mut self, t: T, inputs: &Inputs<T, N, F>, dt: T) -> Work {
+    fn act(&mut self, t: T, inputs: &Observation<T, N, F>, dt: T) -> Work {
         let measured = &inputs.measured;
         let (q, v) = state(measured);
         self.limbs.update(self.model, &q, &self.settings.pd.feet);
@@ -359,7 +359,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> JumpMachine<T, N,
 {
     type Work = Work;
 
-    fn tick(&mut self, now: T, observed: Option<&Inputs<T, N, F>>) -> Tick {
+    fn tick(&mut self, now: T, observed: Option<&Observation<T, N, F>>) -> Tick {
         Machine::tick(self, now, observed)
     }
 

@@ -12,6 +12,3 @@ pub struct Observation<T: Scalar, const N: usize, const F: usize> {
     /// good sensor. A humanoid's soles have six axes, and its machine does not read them.
     pub felt: [T; N],
 }
-
-/// [`Observation`] by its older name.
-pub type Inputs<T, const N: usize, const F: usize> = Observation<T, N, F>;

@@ -3,7 +3,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Measurement, Node, Phase, Plan, Torques};
-use jump_machine::{Inputs, Jump, Machine, Settings};
+use jump_machine::{Jump, Machine, Observation, Settings};
 use landing::{PreLanding, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
@@ -64,8 +64,12 @@ fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
 }
 
 /// The robot in the air, as the world has it.
-fn flying(base: Transform<f64>, vel_w: Vector3<f64>, omega_b: Vector3<f64>) -> Inputs<f64, 12, 4> {
-    Inputs {
+fn flying(
+    base: Transform<f64>,
+    vel_w: Vector3<f64>,
+    omega_b: Vector3<f64>,
+) -> Observation<f64, 12, 4> {
+    Observation {
         measured: Measurement {
             base,
             base_velocity: Motion::new(base.rotation.inverse() * vel_w, omega_b),

@@ -3,7 +3,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Fault, Measurement, Node, Phase, Plan, Torques};
-use jump_machine::{Inputs, Jump, Machine, Refusal, Settings, Work};
+use jump_machine::{Jump, Machine, Observation, Refusal, Settings, Work};
 use landing::Workspace;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
@@ -36,8 +36,8 @@ fn jump<T: Scalar>(nodes: &[Node<T, 12, 4>]) -> Jump<'_, T, 12, 4> {
     }
 }
 
-fn inputs<T: Scalar>() -> Inputs<T, 12, 4> {
-    Inputs {
+fn inputs<T: Scalar>() -> Observation<T, 12, 4> {
+    Observation {
         measured: Measurement {
             base: Transform::new(
                 Rotation3::identity(),
@@ -54,7 +54,7 @@ fn inputs<T: Scalar>() -> Inputs<T, 12, 4> {
     }
 }
 
-fn in_air() -> Inputs<f64, 12, 4> {
+fn in_air() -> Observation<f64, 12, 4> {
     let mut heard = inputs();
     heard.measured.foot_forces = [0.0; 4];
     heard.felt = [0.0; 12];
@@ -71,7 +71,7 @@ fn run(
     machine: &mut A1Machine<'_, f64>,
     from: i32,
     to: i32,
-    heard: &Inputs<f64, 12, 4>,
+    heard: &Observation<f64, 12, 4>,
 ) -> Option<jump_machine::Tick> {
     let mut last = None;
     for k in from..to {

@@ -6,7 +6,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{JointCommand, Measurement, Node, Phase, Plan, Torques};
-use jump_machine::{Inputs, Jump, Machine, Settings, Tick};
+use jump_machine::{Jump, Machine, Observation, Settings, Tick};
 use landing::Workspace;
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
@@ -130,9 +130,9 @@ impl Size {
         }
     }
 
-    fn inputs(self, small: &Inputs<f64, 12, 4>) -> Inputs<f64, 12, 4> {
+    fn inputs(self, small: &Observation<f64, 12, 4>) -> Observation<f64, 12, 4> {
         let measured = &small.measured;
-        Inputs {
+        Observation {
             measured: Measurement {
                 base: self.pose(&measured.base),
                 base_velocity: self.motion(&measured.base_velocity),
@@ -186,7 +186,7 @@ fn base(t: f64) -> (Transform<f64>, Motion<f64>, bool) {
 
 /// What A1 measures at millisecond `k`: it flies higher than planned and leans, one foot sensor is dead after the landing and another
 /// chatters.
-fn heard(k: i32) -> Inputs<f64, 12, 4> {
+fn heard(k: i32) -> Observation<f64, 12, 4> {
     let t = f64::from(k) * 1e-3;
     let (mut base, mut base_velocity, flies) = base(t * 1.02);
     if flies {
@@ -210,7 +210,7 @@ fn heard(k: i32) -> Inputs<f64, 12, 4> {
     };
     let wave = |i: usize| 0.01 * so3::math::sin(20.0 * t + i as f64);
     let q = crouch();
-    Inputs {
+    Observation {
         measured: Measurement {
             base,
             base_velocity,

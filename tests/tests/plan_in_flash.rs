@@ -4,7 +4,7 @@
 use a1_model::A1Geared;
 use jump_control::container::{Container, model_hash};
 use jump_control::{Measurement, Node, Phase};
-use jump_machine::{Inputs, Jump, Machine};
+use jump_machine::{Jump, Machine, Observation};
 use landing::Workspace;
 use saltus_probe::flight::{BYTES, PLAN, Planned, jump, settings};
 
@@ -99,7 +99,7 @@ fn a_machine_follows_the_bytes_as_it_follows_the_nodes() {
             machine.arm(jump, 0.3).unwrap();
             machine
         });
-    let mut inputs = Inputs {
+    let mut inputs = Observation {
         measured: Measurement {
             base: first.base,
             base_velocity: first.base_velocity,

@@ -5,7 +5,7 @@ use core::ffi::{c_char, c_void};
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::container::GroundStep;
 use jump_control::{JointCommand, Measurement};
-use jump_machine::{Inputs, Machine, Settings};
+use jump_machine::{Machine, Observation, Settings};
 use landing::Workspace;
 use rbd_core::Motion;
 
@@ -117,7 +117,7 @@ impl Resident for A1Machine {
 
 impl A1Observation {
     /// As the machine takes it. An impossible base is left to the machine: it aborts, and names it.
-    fn read(&self) -> Inputs<f64, N, F> {
+    fn read(&self) -> Observation<f64, N, F> {
         let ([vx, vy, vz], [wx, wy, wz]) = (self.linear_velocity_b, self.angular_velocity_b);
         let measured = Measurement {
             base: pose(&self.position_w, &self.orientation_wb).unwrap_or_else(no_pose),
@@ -127,7 +127,7 @@ impl A1Observation {
             foot_forces: self.foot_forces,
             age: self.age,
         };
-        Inputs {
+        Observation {
             measured,
             felt: self.torques,
         }

@@ -1,7 +1,7 @@
 //! The hardware behind one trait, and simulated robots behind it.
 
 use a1_model::A1Geared;
-use jump_machine::Inputs;
+use jump_machine::Observation;
 use rbd_core::Model;
 use saltus_probe::flight::{Flight, IcubFlight, Planned};
 use saltus_probe::{Numbers, Real};
@@ -33,13 +33,13 @@ impl<T: Planned> Robot<T, 12> for Flight<T>
 where
     A1Geared: Model<T, 12>,
 {
-    type Heard = Inputs<T, 12, 4>;
+    type Heard = Observation<T, 12, 4>;
 
     fn encoders(&mut self) -> ([T; 12], [T; 12]) {
         self.joints()
     }
 
-    fn sensors(&mut self) -> Inputs<T, 12, 4> {
+    fn sensors(&mut self) -> Observation<T, 12, 4> {
         self.hear()
     }
 
@@ -53,7 +53,7 @@ where
 }
 
 impl Robot<f64, 23> for IcubFlight {
-    type Heard = Inputs<f64, 23, 2>;
+    type Heard = Observation<f64, 23, 2>;
 
     fn encoders(&mut self) -> ([f64; 23], [f64; 23]) {
         self.joints()

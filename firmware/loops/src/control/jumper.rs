@@ -2,7 +2,7 @@
 
 use a1_model::A1Geared;
 use jump_control::{JointCommand, Measurement};
-use jump_machine::{Inputs, Machine};
+use jump_machine::{Machine, Observation};
 use landing::Workspace;
 use rbd_core::{Model, Motion};
 use saltus_probe::Real;
@@ -28,7 +28,7 @@ impl<T: Planned> Control<T, 12> for Jumper<T>
 where
     A1Geared: Model<T, 12>,
 {
-    type Heard = Inputs<T, 12, 4>;
+    type Heard = Observation<T, 12, 4>;
     type Memory = Workspace<T, 12, 4>;
 
     fn memory() -> Self::Memory {
@@ -57,7 +57,7 @@ where
     }
 }
 
-impl<T: Real, const N: usize, const F: usize> Heard<T> for Inputs<T, N, F> {
+impl<T: Real, const N: usize, const F: usize> Heard<T> for Observation<T, N, F> {
     fn read(mut next: impl FnMut() -> T) -> Self {
         Self {
             measured: Measurement {

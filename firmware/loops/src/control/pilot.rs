@@ -2,7 +2,7 @@
 
 use a1_model::{A1Geared, FOOT_RADIUS};
 use jump_control::{JointCommand, Measurement, Phase};
-use jump_machine::{Inputs, Machine};
+use jump_machine::{Machine, Observation};
 use landing::Workspace;
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Model, Transform};
@@ -124,7 +124,7 @@ where
             Status::Lost => T::INFINITY,
             _ => heard.age,
         };
-        let inputs = Inputs {
+        let inputs = Observation {
             measured: Measurement {
                 base: estimate.base,
                 base_velocity: estimate.velocity,

@@ -3,7 +3,7 @@
 use a1_model::{A1Geared, BUILD};
 use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
 use jump_control::{Measurement, Plan};
-use jump_machine::{Inputs, Jump, Machine, Tick, Work};
+use jump_machine::{Jump, Machine, Observation, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
 use nalgebra::Vector3;
 use rbd_core::{
@@ -82,7 +82,7 @@ where
     }
 
     /// What a controller is told, the truth, and the mean torques since it was told last.
-    pub fn hear(&mut self) -> Inputs<T, 12, 4> {
+    pub fn hear(&mut self) -> Observation<T, 12, 4> {
         let forces = self.plant.contact_forces_w();
         let measured = told(
             self.plant.configuration(),
@@ -90,7 +90,7 @@ where
             core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
         );
         let felt = core::mem::replace(&mut self.felt, [T::ZERO; 12]);
-        Inputs { measured, felt }
+        Observation { measured, felt }
     }
 
     /// 100 µs under these torques.
@@ -121,7 +121,7 @@ where
     }
 }
 
-impl<T: Real, const N: usize, const F: usize> Numbers for Inputs<T, N, F> {
+impl<T: Real, const N: usize, const F: usize> Numbers for Observation<T, N, F> {
     fn visit(&self, take: &mut dyn FnMut(f64)) {
         let Measurement {
             base,
@@ -256,7 +256,7 @@ fn wild_machine<T: Planned, R: Recorder>(
     for k in 0..WILD {
         let (q, v) = wild_state(stream);
         let on = wild_feet(k);
-        let inputs = Inputs {
+        let inputs = Observation {
             measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
             felt: stream.array(20.0),
         };

@@ -11,7 +11,7 @@ mod app {
     use embassy_sync::blocking_mutex::Mutex;
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use embassy_sync::signal::Signal;
-    use jump_machine::Inputs;
+    use jump_machine::Observation;
     use landing::Workspace;
     use saltus_loops::boards::{Board, Mps};
     use saltus_loops::control::{Control, Jumper};
@@ -25,7 +25,7 @@ mod app {
     static SHARED: Mutex<CriticalSectionRawMutex, RefCell<Option<&'static mut Shared>>> =
         Mutex::new(RefCell::new(None));
     /// What the control task is to hear; a newer one takes the place of one that it had no time for.
-    static HEARD: Signal<CriticalSectionRawMutex, Inputs<f64, 12, 4>> = Signal::new();
+    static HEARD: Signal<CriticalSectionRawMutex, Observation<f64, 12, 4>> = Signal::new();
     static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
     /// Runs `work` on what the loops share.

@@ -8,7 +8,7 @@
 #[cfg(target_os = "none")]
 #[rtic::app(device = saltus_starters::device, peripherals = false, dispatchers = [SPARE0])]
 mod app {
-    use jump_machine::Inputs;
+    use jump_machine::Observation;
     use landing::Workspace;
     use saltus_loops::boards::{Board, Mps};
     use saltus_loops::control::{Control, Jumper};
@@ -47,7 +47,7 @@ mod app {
 
     /// Every millisecond, as long as the joint task leaves time: a command.
     #[task(priority = 1, shared = [loops], local = [control])]
-    async fn control_tick(mut cx: control_tick::Context, heard: Inputs<f64, 12, 4>) {
+    async fn control_tick(mut cx: control_tick::Context, heard: Observation<f64, 12, 4>) {
         if let Some(control) = cx.local.control {
             control.tick(&heard);
             cx.shared
