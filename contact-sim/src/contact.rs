@@ -44,7 +44,7 @@ pub(crate) const FRICTION_RATIO: f64 = 10.0;
 /// ω of a contact that is alone on its link: a little below one, at which a contact alone and of that mass would be solved in one step.
 /// The less, the later the forces come, which on firm ground is most of what is left between both simulators.
 const RELAXATION: f64 = 0.9;
-/// ω on the base, and where a link has several contacts: each answers to the others too.
+/// ω where a link has several contacts: each answers to the others too.
 const SHARED_RELAXATION: f64 = 0.5;
 /// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
 const HARD: f64 = 0.0025;
@@ -134,7 +134,7 @@ impl<T: Scalar> ContactLaw<T> {
     }
 
     /// Takes one relaxation step of one contact's force, given where it touches, how its material point moves, how hard it is
-    /// to push, and whether it is alone on a link that is not the base.
+    /// to push, and whether it is alone on its link.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,

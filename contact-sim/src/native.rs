@@ -204,12 +204,12 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         }
     }
 
-    /// How many contacts each body had with the world after the last step.
-    fn pressed(&self) -> [u32; N] {
-        let mut bodies = [0; N];
+    /// How many contacts base and bodies had with the world after the last step.
+    fn pressed(&self) -> (u32, [u32; N]) {
+        let (mut base, mut bodies) = (0, [0; N]);
         for (shape, slots) in self.shapes.iter().zip(&self.contacts) {
             let count = match shape.link {
-                Link::Base => None,
+                Link::Base => Some(&mut base),
                 Link::Joint(i) => bodies.get_mut(i),
             };
             if let Some(count) = count {
@@ -219,7 +219,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                     .sum::<u32>();
             }
         }
-        bodies
+        (base, bodies)
     }
 
     /// Contacts of all shapes with floor and block.
@@ -241,12 +241,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                     continue;
                 };
                 let law = self.settings.contact;
-                // Never a corner of the base: it turns about its middle, and along its normal it may be three times as mobile as it is
-                // in the mean of all directions.
                 let alone = match shape.link {
-                    Link::Base => false,
-                    Link::Joint(i) => pressed.get(i).is_none_or(|count| *count < 2),
-                };
+                    Link::Base => pressed.0,
+                    Link::Joint(i) => pressed.1.get(i).copied().unwrap_or(0),
+                } < 2;
                 let Some(state) = self.contacts.get_mut(i).and_then(|c| c.get_mut(slot)) else {
                     continue;
                 };
