@@ -41,11 +41,8 @@ use crate::Touch;
 pub(crate) const WIDTH: f64 = 1e-3;
 /// How much harder friction is than the normal force: MuJoCo's `impratio`.
 pub(crate) const FRICTION_RATIO: f64 = 10.0;
-/// ω of a contact that is alone on its link: a little below one, at which a contact alone and of that mass would be solved in one step.
-/// The less, the later the forces come, which on firm ground is most of what is left between both simulators.
-const RELAXATION: f64 = 0.9;
-/// ω where a link has several contacts: each answers to the others too.
-const SHARED_RELAXATION: f64 = 0.5;
+/// ω: below one, since the other contacts of a link answer as well, and its effective mass changes with the posture.
+const RELAXATION: f64 = 0.5;
 /// Time constant up to which the ground is hard, s: d from 0.95 to 0.99, as MuJoCo is told; beyond it 0.9 to 0.95, its default.
 const HARD: f64 = 0.0025;
 
@@ -133,15 +130,13 @@ impl<T: Scalar> ContactLaw<T> {
         d0 + (d1 - d0) * y
     }
 
-    /// Takes one relaxation step of one contact's force, given where it touches, how its material point moves, how hard it is
-    /// to push, and whether it is alone on its link.
+    /// Takes one relaxation step of one contact's force, given where it touches, how its material point moves and how hard it is to push.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,
         touch: &Touch<T>,
         motion: &ContactMotion<T>,
         mass: ContactMass<T>,
-        alone: bool,
     ) {
         state.depth = touch.depth;
         state.point_w = motion.point_w;
@@ -160,7 +155,7 @@ impl<T: Scalar> ContactLaw<T> {
         let harder = soft / T::of(FRICTION_RATIO);
         // 1/m_p + R, of the normal force and of friction.
         let metric = [soft, harder].map(|soft| T::ONE / mass.point + soft);
-        let omega = T::of(if alone { RELAXATION } else { SHARED_RELAXATION });
+        let omega = T::of(RELAXATION);
         let last = state.force_w.dot(n);
         let normal = last + (missing_w.dot(n) - last * soft) * (omega / metric[0]);
         let across = |x: &Vector3<T>| x - n * x.dot(n);

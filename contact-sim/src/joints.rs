@@ -7,7 +7,7 @@ use so3::{Scalar, math};
 pub(crate) const FRICTION_TIME: f64 = 0.004;
 /// d₀ and d₁ of joint friction: MuJoCo's default of `solimpfriction`.
 const FRICTION_SHARES: [f64; 2] = [0.9, 0.95];
-/// ω of the relaxation, as for contacts that share a link: joints of one limb answer to each other.
+/// ω of the relaxation, as for contacts.
 const RELAXATION: f64 = 0.5;
 
 /// Inertia that each joint shows to a torque while all others are free, with the joints at zero: 1/(M⁻¹)ᵢᵢ, kg m² (kg for a sliding one).

@@ -204,27 +204,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         }
     }
 
-    /// How many contacts base and bodies had with the world after the last step.
-    fn pressed(&self) -> (u32, [u32; N]) {
-        let (mut base, mut bodies) = (0, [0; N]);
-        for (shape, slots) in self.shapes.iter().zip(&self.contacts) {
-            let count = match shape.link {
-                Link::Base => Some(&mut base),
-                Link::Joint(i) => bodies.get_mut(i),
-            };
-            if let Some(count) = count {
-                *count += slots
-                    .iter()
-                    .map(|c| u32::from(c.depth > T::ZERO))
-                    .sum::<u32>();
-            }
-        }
-        (base, bodies)
-    }
-
     /// Contacts of all shapes with floor and block.
     fn touch_world(&mut self, wrenches: &mut Wrenches<T, N>, share: T) {
-        let pressed = self.pressed();
         for i in 0..S {
             let (Some(shape), Some(swept)) = (self.shapes.get(i), self.swept.get(i)) else {
                 continue;
@@ -241,14 +222,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                     continue;
                 };
                 let law = self.settings.contact;
-                let alone = match shape.link {
-                    Link::Base => pressed.0,
-                    Link::Joint(i) => pressed.1.get(i).copied().unwrap_or(0),
-                } < 2;
                 let Some(state) = self.contacts.get_mut(i).and_then(|c| c.get_mut(slot)) else {
                     continue;
                 };
-                law.advance(state, &touch, &motion, mass, alone);
+                law.advance(state, &touch, &motion, mass);
                 if touch.depth > T::ZERO {
                     let force_w = state.force_w;
                     wrenches.add(shape.link, &xf_wl, &arm_w, &force_w);
@@ -315,7 +292,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let touch = Touch { depth, normal_w };
         self.settings
             .contact
-            .advance(&mut state, &touch, &motion, mass, false);
+            .advance(&mut state, &touch, &motion, mass);
         wrenches.add(a.link, &xf_a, &arm_a, &state.force_w);
         wrenches.add(b.link, &xf_b, &arm_b, &-state.force_w);
         let size = math::sqrt(state.force_w.norm_squared()) * share;

@@ -382,7 +382,7 @@ fn both_simulators_tell_the_same_push_off() {
         let turned = turned.to_degrees();
         assert!(ours.translation.z > 0.45, "flies");
         assert!(
-            apart < 1.5e-3 && turned < 1.0,
+            apart < 3e-3 && turned < 2.0,
             "{time_constant} s: {apart} m, {turned}°, {our_rate} {their_rate}"
         );
     }

@@ -211,7 +211,7 @@ impl Carried {
                 velocity_w: self.velocity,
                 acceleration_w: self.acceleration,
             };
-            law.advance(&mut self.state, &touch, &motion, MASS, true);
+            law.advance(&mut self.state, &touch, &motion, MASS);
             self.acceleration = (load + self.state.force_w) / MASS.link;
             self.impulse += self.state.force_w * dt;
             self.velocity += self.acceleration * dt;

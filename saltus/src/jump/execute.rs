@@ -30,8 +30,6 @@ const TOUCHDOWN: f64 = 15.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trial<'a> {
     pub(crate) sim: Sim,
-    /// Into how many its usual integration steps are cut.
-    pub(crate) finer: u32,
     /// How the lab differs from the plan.
     pub(crate) disturbance: Disturbance,
     /// Of the noise.
@@ -47,7 +45,6 @@ impl Trial<'_> {
     pub(crate) const fn nominal(sim: Sim) -> Self {
         Self {
             sim,
-            finer: 1,
             disturbance: Disturbance::NOMINAL,
             seed: 0,
             interface: Interface::Torque,
@@ -316,7 +313,7 @@ pub(crate) fn run_watched(
             limits,
             &robot.budgets,
         ),
-        world: plant((trial.sim, trial.finer), task, &trial.disturbance)?,
+        world: plant(trial.sim, task, &trial.disturbance)?,
     };
     let mut keeper = Keeper {
         run: Run::new(task, closed.world.plant().tick()),

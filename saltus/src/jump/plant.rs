@@ -53,25 +53,21 @@ fn settings(robot: &Quadruped, disturbance: &Disturbance) -> Settings<f64, JOINT
     settings
 }
 
-/// The plant at the start of a task, in a simulator whose usual integration steps are cut into so many.
-pub(crate) fn plant(
-    (sim, finer): (Sim, u32),
-    task: &Task,
-    disturbance: &Disturbance,
-) -> Result<World, String> {
-    let mut settings = settings(&task.robot, disturbance);
+/// The plant at the start of a task.
+pub(crate) fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
     let mut plant: Plant = match sim {
         Sim::Native => {
             let terrain = terrain(task, height_error(disturbance));
             let robot = lab::robot(disturbance, &task.robot)?;
-            settings.substeps *= finer;
-            let native = NativeSimulator::new(robot, task.robot.shapes, terrain, settings);
+            let native = NativeSimulator::new(
+                robot,
+                task.robot.shapes,
+                terrain,
+                settings(&task.robot, disturbance),
+            );
             Box::new(native.colliding(pairs(task)))
         }
-        Sim::Mujoco => {
-            settings.substeps = finer;
-            mujoco(task, disturbance, settings)?
-        }
+        Sim::Mujoco => mujoco(task, disturbance)?,
     };
     plant.reset(&task.start, &Tangent::ZERO);
     // A box has its own height; a floor that is start and landing has to move.
@@ -91,14 +87,12 @@ fn pairs(task: &Task) -> [u64; SHAPE_COUNT] {
 
 /// MuJoCo, with the same shapes.
 #[cfg(feature = "mujoco")]
-fn mujoco(
-    task: &Task,
-    disturbance: &Disturbance,
-    settings: Settings<f64, JOINTS>,
-) -> Result<Plant, String> {
+fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
     use contact_sim::{Geom, MujocoSimulator};
 
     let geoms = task.robot.shapes.map(Geom::Swept);
+    let mut settings = settings(&task.robot, disturbance);
+    settings.substeps = 1;
     let robot = lab::robot(disturbance, &task.robot)?;
     let terrain = terrain(task, height_error(disturbance));
     let sim = MujocoSimulator::new(&robot, (&geoms, &pairs(task)), &terrain, settings);
@@ -106,7 +100,7 @@ fn mujoco(
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn mujoco(_: &Task, _: &Disturbance, _: Settings<f64, JOINTS>) -> Result<Plant, String> {
+fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
     Err(NO_MUJOCO.into())
 }
 

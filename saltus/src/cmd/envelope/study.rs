@@ -139,7 +139,6 @@ impl Study<'_> {
         let seed = crate::noise::mix(self.seed, index).max(1);
         let trial = Trial {
             sim: self.sim,
-            finer: 1,
             disturbance: PlantArgument::plant(self.plant.as_ref(), Lab::A1, seed),
             seed,
             interface: self.interface,

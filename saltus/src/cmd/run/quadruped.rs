@@ -61,7 +61,6 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     };
     let trial = Trial {
         sim: args.sim,
-        finer: 1,
         disturbance: args.disturbance(Lab::A1),
         seed: args.seed,
         interface: args.interface,

@@ -90,11 +90,10 @@ impl Subject {
 }
 
 impl Subject {
-    /// Poses of a quadruped's base at the take-off, in the middle of the flight and at the planned touchdown; the simulator's usual
-    /// steps are cut into so many.
+    /// Poses of a quadruped's base at the take-off, in the middle of the flight and at the planned touchdown.
     pub(super) fn poses(
         &self,
-        (sim, finer): (Sim, u32),
+        sim: Sim,
         plant: PlantArgument,
     ) -> Result<[Transform<f64>; 3], String> {
         let Kind::Quadruped(task, reference) = &self.kind else {
@@ -104,7 +103,6 @@ impl Subject {
             ));
         };
         let trial = Trial {
-            finer,
             disturbance: PlantArgument::plant(Some(&plant), Lab::A1, 0),
             ..Trial::nominal(sim)
         };
