@@ -1,36 +1,25 @@
 //! Compliant contact of one point: normal force and friction, by MuJoCo's own equations.
 //!
-//! MuJoCo asks for the acceleration a_r = −b v + d k δ n of a contact with normal n, penetration δ and velocity v, where b = 2/(d₁ t_c) and
-//! k = 1/(d₁ t_c)² follow from one time constant t_c. A force f in the cone of friction C = {|f_t| ≤ μ f_n} leads to the acceleration a and
-//! costs R f on top of it; what is missing to a_r is
+//! MuJoCo asks for the acceleration a_r = −b v + d k δ of a contact with penetration δ and velocity v, where b = 2/(d₁ t_c) and k = 1/(d₁ t_c)²
+//! follow from one time constant t_c; a force f of the contact costs R f on top of the acceleration a that it leads to:
 //!
 //! ```text
-//! r = a + R f − a_r,   R = (1 − d)/(d m)
+//! a + R f = a_r,   R = (1 − d)/(d m),   f_n ≥ 0,   |f_t| ≤ μ f_n
 //! ```
 //!
 //! with the effective mass m of the contact's link and a share d that grows with the penetration from d₀ to d₁; friction has R/10 and no
 //! k (MuJoCo, computation, "solver parameters": `solref`, `solimp`, `impratio`). So a soft ground gives way, and a foot creeps on it under
-//! friction's share of its load. The force is the one with least ½ f·a + ½ R f² − f·a_r in C, so that r = 0 where the contact sticks.
+//! friction's share of its load.
 //!
-//! # Where this is MuJoCo's approximation and not Coulomb's contact
-//!
-//! Both are followed since the simulators are to agree, and both are small on hard ground, where b is large.
-//!
-//! - On the edge of the cone the least force has r perpendicular to it: r_n = μ |r_t|. A foot that slides with v_t is asked to
-//!   leave the ground with about μ v_t, as if friction dilated it (the price of a convex problem). Coulomb would have r_n = 0.
-//! - a is J ν̇, without the term J̇ ν of a turning leg: a foot that sticks creeps by J̇ ν / b.
-//!
-//! # How it is solved
-//!
-//! MuJoCo solves this for all contacts at once. Here each contact takes one relaxation step per step of the integrator, with the
-//! acceleration a that the last step's forces gave its point:
+//! MuJoCo solves this for all contacts at once. Here each contact takes one relaxation step per step of the integrator: with the
+//! acceleration that its point had in the last one under the last force,
 //!
 //! ```text
-//! f ← P(f − ω r/(1/m_p + R))
+//! f ← f + ω (a_r − a − R f)/(1/m_p + R)
 //! ```
 //!
-//! where m_p is the effective mass of the point and P the nearest force in C, in the metric 1/m_p + R of its components. What all contacts
-//! settle at within a millisecond is the solution above, however they are coupled.
+//! where m_p is the effective mass of the point. What all contacts settle at within a millisecond is the solution above, however they are
+//! coupled.
 
 use nalgebra::Vector3;
 use so3::{Scalar, math};
@@ -58,35 +47,27 @@ pub struct ContactLaw<T> {
 /// What a contact remembers and shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactState<T: Scalar> {
+    /// Velocity of the material point, world axes, m/s.
+    pub velocity_w: Vector3<T>,
     /// Force of the ground on the robot, N.
     pub force_w: Vector3<T>,
     /// Point of contact in the world, m.
     pub point_w: Vector3<T>,
     /// Penetration, m; negative is the gap.
     pub depth: T,
-    /// Whether the force is on the edge of the cone of friction.
+    /// Whether the contact slides.
     pub sliding: bool,
 }
 
 impl<T: Scalar> ContactState<T> {
     /// No contact.
     pub const NONE: Self = Self {
+        velocity_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         force_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         point_w: Vector3::new(T::ZERO, T::ZERO, T::ZERO),
         depth: T::ZERO,
         sliding: false,
     };
-}
-
-/// Where the material point of a contact is, and how it moves: world axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactMotion<T: Scalar> {
-    /// Point of contact, m.
-    pub point_w: Vector3<T>,
-    /// Velocity J ν, m/s.
-    pub velocity_w: Vector3<T>,
-    /// Acceleration J ν̇ under the last forces, without J̇ ν, m/s².
-    pub acceleration_w: Vector3<T>,
 }
 
 /// How hard it is to push a contact.
@@ -130,54 +111,55 @@ impl<T: Scalar> ContactLaw<T> {
         d0 + (d1 - d0) * y
     }
 
-    /// Takes one relaxation step of one contact's force, given where it touches, how its material point moves and how hard it is to push.
+    /// Advances one contact by `dt`, given where it touches, the velocity of its material point and how hard it is to push.
     pub fn advance(
         &self,
         state: &mut ContactState<T>,
         touch: &Touch<T>,
-        motion: &ContactMotion<T>,
+        (point_w, velocity_w): (&Vector3<T>, &Vector3<T>),
         mass: ContactMass<T>,
+        dt: T,
     ) {
-        state.depth = touch.depth;
-        state.point_w = motion.point_w;
         if touch.depth <= T::ZERO {
-            state.force_w = Vector3::zeros();
-            state.sliding = false;
+            *state = ContactState {
+                depth: touch.depth,
+                point_w: *point_w,
+                ..ContactState::NONE
+            };
             return;
         }
+        // Not in the step of the first touch: there is no force yet that an acceleration could answer to.
+        let acceleration_w = if state.depth > T::ZERO {
+            (velocity_w - state.velocity_w) / dt
+        } else {
+            Vector3::zeros()
+        };
         let n = &touch.normal_w;
         let reach = self.impedance()[1] * self.time_constant;
         let share = self.share(touch.depth);
         let spring = share * touch.depth / (reach * reach);
-        let wanted_w = n * spring - motion.velocity_w * (T::TWO / reach);
-        let missing_w = wanted_w - motion.acceleration_w;
+        let wanted_w = n * spring - velocity_w * (T::TWO / reach);
+        let missing_w = wanted_w - acceleration_w;
         let soft = (T::ONE - share) / (share * mass.link);
-        let harder = soft / T::of(FRICTION_RATIO);
-        // 1/m_p + R, of the normal force and of friction.
-        let metric = [soft, harder].map(|soft| T::ONE / mass.point + soft);
-        let omega = T::of(RELAXATION);
-        let last = state.force_w.dot(n);
-        let normal = last + (missing_w.dot(n) - last * soft) * (omega / metric[0]);
-        let across = |x: &Vector3<T>| x - n * x.dot(n);
-        let last_w = across(&state.force_w);
-        let friction_w = last_w + (across(&missing_w) - last_w * harder) * (omega / metric[1]);
-        let size = math::sqrt(friction_w.norm_squared());
-        state.sliding = normal < T::ZERO || size > self.friction * normal;
-        state.force_w = if state.sliding {
-            let nearest = self.edge([normal, size], metric);
-            // Where there is no friction to scale, nothing of it is left either.
-            let across_w = friction_w * (self.friction * nearest / math::max(size, T::of(1e-30)));
-            n * nearest + across_w
-        } else {
-            n * normal + friction_w
+        let relax = |last: &Vector3<T>, missing: &Vector3<T>, soft: T| {
+            let step = T::of(RELAXATION) / (T::ONE / mass.point + soft);
+            last + (missing - last * soft) * step
         };
-    }
-
-    /// Normal force of the force on the edge of the cone that is nearest to one outside of it: the least
-    /// m_n (x − f_n)² + m_t (μ x − |f_t|)² with x ≥ 0.
-    fn edge(&self, [normal, friction]: [T; 2], [along, across]: [T; 2]) -> T {
-        let mu = self.friction;
-        let nearest = (along * normal + across * mu * friction) / (along + across * mu * mu);
-        math::max(nearest, T::ZERO)
+        let last = state.force_w.dot(n);
+        let normal_w = relax(&(n * last), &(n * missing_w.dot(n)), soft);
+        let normal = math::max(normal_w.dot(n), T::ZERO);
+        let across = |x: &Vector3<T>| x - n * x.dot(n);
+        let harder = soft / T::of(FRICTION_RATIO);
+        let mut friction_w = relax(&across(&state.force_w), &across(&missing_w), harder);
+        let limit = self.friction * normal;
+        let size = math::sqrt(friction_w.norm_squared());
+        state.sliding = size > limit;
+        if state.sliding {
+            friction_w *= limit / size;
+        }
+        state.depth = touch.depth;
+        state.point_w = *point_w;
+        state.velocity_w = *velocity_w;
+        state.force_w = n * normal + friction_w;
     }
 }

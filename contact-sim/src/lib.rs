@@ -19,7 +19,7 @@ mod simulator;
 mod terrain;
 
 pub use collide::{MOST_SHAPES, effective_mass, gaps, self_contacts};
-pub use contact::{ContactLaw, ContactMass, ContactMotion, ContactState};
+pub use contact::{ContactLaw, ContactMass, ContactState};
 pub use error::Error;
 pub use joints::Stops;
 #[cfg(feature = "mjcf")]

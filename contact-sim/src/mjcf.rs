@@ -12,7 +12,6 @@ use nalgebra::{Matrix3, Vector3};
 use rbd_core::{BaseKind, Contact, ContactShape, Frame, GRAVITY, Inertia, JointLimits, Link, Tree};
 
 use crate::contact::{FRICTION_RATIO, WIDTH};
-use crate::joints::FRICTION_TIME;
 use crate::{ContactLaw, MOST_SHAPES, Settings, Shape, Terrain};
 
 /// Thickness given to a sole, which is a plane in the tables, m.
@@ -189,7 +188,7 @@ fn header<const N: usize>(out: &mut String, settings: &Settings<f64, N>) {
          <option timestep=\"{}\" gravity=\"{}\" integrator=\"implicitfast\" cone=\"elliptic\" impratio=\"{FRICTION_RATIO}\" \
          tolerance=\"1e-12\"><flag autoreset=\"disable\"/></option>\n\
          <default><geom condim=\"3\" friction=\"{} 0 0\" {}/>\
-         <joint solreflimit=\"0.004 1\" solreffriction=\"{FRICTION_TIME:?} 1\"/></default>",
+         <joint solreflimit=\"0.004 1\" solreffriction=\"0.004 1\"/></default>",
         settings.tick / f64::from(settings.substeps.max(1)),
         numbers(&GRAVITY),
         settings.contact.friction,

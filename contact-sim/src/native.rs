@@ -3,22 +3,19 @@
 //! One integration step of length h is a position-Verlet step: the configuration moves half a step with
 //! the old velocity, the acceleration is found there, and the configuration moves the other half with the new
 //! velocity. Forces see the velocity extrapolated to the middle, ν + ½h ν̇_last, in the smooth terms of
-//! the dynamics (second order), and the old velocity in contact and joint friction (dissipative), whose forces relax towards what
-//! MuJoCo's equations ask for by the acceleration of the last step.
+//! the dynamics (second order), and the old velocity in contact and joint friction (dissipative).
 
 use nalgebra::Vector3;
 use rbd_core::{
     AbaWorkspace, BodyMotions, Configuration, Effort, Force, Kinematics, Link, Posture, Tangent,
     Transform, Tree, aba_with_forces, forward_kinematics, forward_velocities, integrate,
+    joint_friction,
 };
 use so3::{Scalar, math, orthonormalize_step};
 
 use crate::collide::{contact_mass, place};
-use crate::joints::{coulomb, joint_inertias};
 use crate::shape::{SLOTS, Swept};
-use crate::{
-    ContactMass, ContactMotion, ContactState, Error, Settings, Shape, Simulator, Terrain, Touch,
-};
+use crate::{ContactMass, ContactState, Error, Settings, Shape, Simulator, Terrain, Touch};
 
 /// The embedded simulator: a robot `M` with `N` joints, `S` shapes and `C` owners of shapes, and all its state.
 #[derive(Clone, Debug)]
@@ -35,8 +32,6 @@ pub struct NativeSimulator<T: Scalar, M, const N: usize, const S: usize, const C
     pairs: [u64; S],
     /// How hard it is to push each shape; known from the first tick on.
     masses: [ContactMass<T>; S],
-    /// Inertia that each joint shows to its friction; known from the first tick on.
-    inertias: [T; N],
     configuration: Configuration<T, N>,
     velocity: Tangent<T, N>,
     acceleration: Tangent<T, N>,
@@ -45,14 +40,10 @@ pub struct NativeSimulator<T: Scalar, M, const N: usize, const S: usize, const C
     mean_forces_w: [Vector3<T>; C],
     mean_link_forces: [T; C],
     delivered: [T; N],
-    /// Coulomb friction of each joint.
-    friction: [T; N],
     stops: [T; N],
     ticks: u64,
     kinematics: Kinematics<T, N>,
     motions: BodyMotions<T, N>,
-    /// J ν̇ of each body under the last accelerations, in the place of velocities: linear parts are those of the material point at its origin.
-    responses: BodyMotions<T, N>,
     workspace: AbaWorkspace<T, N>,
 }
 
@@ -100,7 +91,6 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 link: T::ZERO,
                 point: T::ZERO,
             }; S],
-            inertias: [T::ONE; N],
             configuration: Configuration::NEUTRAL,
             velocity: Tangent::ZERO,
             acceleration: Tangent::ZERO,
@@ -109,12 +99,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
             mean_forces_w: [Vector3::new(T::ZERO, T::ZERO, T::ZERO); C],
             mean_link_forces: [T::ZERO; C],
             delivered: [T::ZERO; N],
-            friction: [T::ZERO; N],
             stops: [T::ZERO; N],
             ticks: 0,
             kinematics: Kinematics::IDENTITY,
             motions: BodyMotions::ZERO,
-            responses: BodyMotions::ZERO,
             workspace: AbaWorkspace::new(),
         }
     }
@@ -142,7 +130,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let half = h * T::HALF;
         let middle = integrate(&self.configuration, &(self.velocity * half));
         let posture = Posture::new(&self.model, &middle);
-        let wrenches = self.contact_forces(&posture, share);
+        let wrenches = self.contact_forces(&posture, h, share);
         let smooth = self.velocity + self.acceleration * half;
         let effort = Effort {
             base: wrenches.base,
@@ -161,14 +149,9 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
     }
 
     /// Advances the contacts; their wrenches, of which `share` goes into the means of the tick.
-    fn contact_forces(&mut self, posture: &Posture<T, N>, share: T) -> Wrenches<T, N> {
+    fn contact_forces(&mut self, posture: &Posture<T, N>, h: T, share: T) -> Wrenches<T, N> {
         forward_kinematics(&self.model, posture, &mut self.kinematics);
         forward_velocities(&self.model, posture, &self.velocity, &mut self.motions);
-        // MuJoCo's base accelerates as its origin does in the world, ours as its body coordinates do.
-        let mut rates = self.acceleration;
-        let base = &self.velocity.base;
-        rates.base.linear += base.angular.cross(&base.linear);
-        forward_velocities(&self.model, posture, &rates, &mut self.responses);
         let mut wrenches = Wrenches {
             base: Force::ZERO,
             bodies: [Force::ZERO; N],
@@ -176,36 +159,24 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         for (swept, shape) in self.swept.iter_mut().zip(&self.shapes) {
             *swept = place(&self.kinematics, shape);
         }
-        self.touch_world(&mut wrenches, share);
-        self.touch_links(&mut wrenches, share);
+        self.touch_world(&mut wrenches, h, share);
+        self.touch_links(&mut wrenches, h, share);
         wrenches
     }
 
-    /// How a link's point moves that is `arm_w` from the link's origin.
-    fn point_motion(
-        &self,
-        link: Link,
-        xf_wl: &Transform<T>,
-        arm_w: &Vector3<T>,
-    ) -> ContactMotion<T> {
-        let carry = |bodies: &BodyMotions<T, N>| {
-            let motion = match link {
-                Link::Base => Some(&bodies.base_velocity),
-                Link::Joint(i) => bodies.velocities.get(i),
-            };
-            motion.map_or_else(Vector3::zeros, |m| {
-                xf_wl.rotation * m.linear + (xf_wl.rotation * m.angular).cross(arm_w)
-            })
+    /// Velocity of a link's point that is `arm_w` from its origin, world axes.
+    fn point_velocity(&self, link: Link, xf_wl: &Transform<T>, arm_w: &Vector3<T>) -> Vector3<T> {
+        let motion = match link {
+            Link::Base => Some(&self.velocity.base),
+            Link::Joint(i) => self.motions.velocities.get(i),
         };
-        ContactMotion {
-            point_w: xf_wl.translation + arm_w,
-            velocity_w: carry(&self.motions),
-            acceleration_w: carry(&self.responses),
-        }
+        motion.map_or_else(Vector3::zeros, |m| {
+            xf_wl.rotation * m.linear + (xf_wl.rotation * m.angular).cross(arm_w)
+        })
     }
 
     /// Contacts of all shapes with floor and block.
-    fn touch_world(&mut self, wrenches: &mut Wrenches<T, N>, share: T) {
+    fn touch_world(&mut self, wrenches: &mut Wrenches<T, N>, h: T, share: T) {
         for i in 0..S {
             let (Some(shape), Some(swept)) = (self.shapes.get(i), self.swept.get(i)) else {
                 continue;
@@ -217,7 +188,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 let overlap = math::max(touch.depth, T::ZERO) * T::HALF;
                 let arm_w =
                     center_w - touch.normal_w * (swept.radius - overlap) - xf_wl.translation;
-                let motion = self.point_motion(shape.link, &xf_wl, &arm_w);
+                let velocity_w = self.point_velocity(shape.link, &xf_wl, &arm_w);
+                let point_w = xf_wl.translation + arm_w;
                 let Some(mass) = self.masses.get(i).copied() else {
                     continue;
                 };
@@ -225,7 +197,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 let Some(state) = self.contacts.get_mut(i).and_then(|c| c.get_mut(slot)) else {
                     continue;
                 };
-                law.advance(state, &touch, &motion, mass);
+                law.advance(state, &touch, (&point_w, &velocity_w), mass, h);
                 if touch.depth > T::ZERO {
                     let force_w = state.force_w;
                     wrenches.add(shape.link, &xf_wl, &arm_w, &force_w);
@@ -238,7 +210,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
     }
 
     /// Contacts of the links with each other.
-    fn touch_links(&mut self, wrenches: &mut Wrenches<T, N>, share: T) {
+    fn touch_links(&mut self, wrenches: &mut Wrenches<T, N>, h: T, share: T) {
         for i in 0..S {
             let mut left = self.pairs.get(i).copied().unwrap_or(0);
             while left != 0 {
@@ -249,14 +221,20 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
                 let ((center_a, reach_a), (center_b, reach_b)) = (a.bound(), b.bound());
                 let reach = reach_a + reach_b;
                 if (center_a - center_b).norm_squared() < reach * reach {
-                    self.touch_pair((i, j), wrenches, share);
+                    self.touch_pair((i, j), wrenches, h, share);
                 }
             }
         }
     }
 
     /// The contact of two shapes: the ground's law without a memory, which makes a stiff spring and a damper of it.
-    fn touch_pair(&mut self, (i, j): (usize, usize), wrenches: &mut Wrenches<T, N>, share: T) {
+    fn touch_pair(
+        &mut self,
+        (i, j): (usize, usize),
+        wrenches: &mut Wrenches<T, N>,
+        h: T,
+        share: T,
+    ) {
         let shapes = self.shapes.get(i).zip(self.shapes.get(j));
         let swept = self.swept.get(i).zip(self.swept.get(j));
         let masses = self.masses.get(i).zip(self.masses.get(j));
@@ -275,14 +253,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let point_w = point_b + normal_w * (at_b.radius - depth * T::HALF);
         let (xf_a, xf_b) = (self.kinematics.link(a.link), self.kinematics.link(b.link));
         let (arm_a, arm_b) = (point_w - xf_a.translation, point_w - xf_b.translation);
-        let [of_a, of_b] = [(a.link, &xf_a, &arm_a), (b.link, &xf_b, &arm_b)]
-            .map(|(link, xf_wl, arm_w)| self.point_motion(link, xf_wl, arm_w));
-        let motion = ContactMotion {
-            point_w,
-            velocity_w: of_a.velocity_w - of_b.velocity_w,
-            // Without a memory there is no last force that an acceleration could answer to.
-            acceleration_w: Vector3::zeros(),
-        };
+        let velocity_w =
+            self.point_velocity(a.link, &xf_a, &arm_a) - self.point_velocity(b.link, &xf_b, &arm_b);
         let mut state = ContactState::NONE;
         let both = |a: T, b: T| a * b / (a + b);
         let mass = ContactMass {
@@ -292,7 +264,7 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
         let touch = Touch { depth, normal_w };
         self.settings
             .contact
-            .advance(&mut state, &touch, &motion, mass);
+            .advance(&mut state, &touch, (&point_w, &velocity_w), mass, h);
         wrenches.add(a.link, &xf_a, &arm_a, &state.force_w);
         wrenches.add(b.link, &xf_b, &arm_b, &-state.force_w);
         let size = math::sqrt(state.force_w.norm_squared()) * share;
@@ -306,26 +278,19 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize>
     /// Motor, friction and stop torques.
     fn joint_torques(&mut self, command: &[T; N], q: &[T; N]) -> [T; N] {
         let s = &self.settings;
-        let mut torques = [T::ZERO; N];
+        let mut torques = joint_friction(&s.limits, &self.velocity.joints, s.friction_smoothing);
         let given = self.delivered.iter_mut().zip(command).zip(&s.motors);
-        let (speeds, rates) = (&self.velocity.joints, &self.acceleration.joints);
-        let state = q.iter().zip(speeds).zip(rates).zip(&s.limits);
-        let losses = self.friction.iter_mut().zip(&self.inertias);
-        for (
-            (((tau, ((delivered, wanted), motor)), (((q, qd), qdd), limits)), stop),
-            (friction, inertia),
-        ) in torques
+        let state = q.iter().zip(&self.velocity.joints).zip(&s.limits);
+        for (((tau, ((delivered, wanted), motor)), ((q, qd), limits)), stop) in torques
             .iter_mut()
             .zip(given)
             .zip(state)
             .zip(&mut self.stops)
-            .zip(losses)
         {
             let [low, high] = motor.torque_range(*qd);
             *delivered = math::clamp(*wanted, low, high);
             *stop = s.stops.torque(limits, *q, *qd);
-            *friction = coulomb(*friction, limits.friction, [*qd, *qdd], *inertia);
-            *tau = *delivered + *stop + *friction - limits.damping * *qd;
+            *tau += *delivered + *stop;
         }
         torques
     }
@@ -364,7 +329,6 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize> S
         self.mean_forces_w = [Vector3::zeros(); C];
         self.mean_link_forces = [T::ZERO; C];
         self.delivered = [T::ZERO; N];
-        self.friction = [T::ZERO; N];
         self.stops = [T::ZERO; N];
         self.ticks = 0;
     }
@@ -378,7 +342,6 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize, const C: usize> S
             for (mass, shape) in self.masses.iter_mut().zip(&self.shapes) {
                 *mass = contact_mass(&self.model, shape);
             }
-            self.inertias = joint_inertias(&self.model, &mut self.workspace);
         }
         let count = self.settings.substeps.max(1);
         let share = T::ONE / T::of(f64::from(count));

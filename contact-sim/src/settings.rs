@@ -20,6 +20,8 @@ pub struct Settings<T, const N: usize> {
     pub motors: [Motor<T>; N],
     /// Joint stops.
     pub stops: Stops<T>,
+    /// Speed below which Coulomb friction in the joints fades, rad/s.
+    pub friction_smoothing: T,
 }
 
 impl<T: Scalar, const N: usize> Settings<T, N> {
@@ -37,6 +39,7 @@ impl<T: Scalar, const N: usize> Settings<T, N> {
                 stiffness: T::of(800.0),
                 damping: T::of(2.0),
             },
+            friction_smoothing: T::of(0.1),
         }
     }
 }
