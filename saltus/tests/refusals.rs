@@ -2,42 +2,19 @@
 //! (`cargo xtask fuzz`) has found.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod command;
+
+use command::saltus;
 use core::time::Duration;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::Instant;
 
-fn saltus(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
-    command
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap()
-}
-
-/// A new folder of a test's own.
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("refusals-{name}"));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
+    command::folder(&format!("refusals-{name}"))
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
-    let clock = Instant::now();
-    let output = saltus(folder, arguments);
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-    for word in words {
-        assert!(
-            said.contains(word),
-            "{arguments:?} does not say `{word}`: {said}"
-        );
-    }
-    assert!(clock.elapsed() < Duration::from_secs(20), "{arguments:?}");
+    command::refused(Duration::from_secs(20), folder, arguments, words);
 }
 
 /// Every command that reads a file names it, whatever is in it, and says what to do.

@@ -1,44 +1,20 @@
 //! Values that cannot be: named with their key, what they are and what is allowed, before anything is computed; nothing is left behind.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod command;
+
+use command::saltus;
 use core::time::Duration;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::time::Instant;
 
-/// A new folder of a test's own.
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("values-{name}"));
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
+    command::folder(&format!("values-{name}"))
 }
 
-fn saltus(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saltus"));
-    command
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-/// Runs what must be refused, at once and by name; what it said.
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
-    let clock = Instant::now();
-    let output = saltus(folder, arguments);
-    let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-    for word in words {
-        assert!(
-            said.contains(word),
-            "{arguments:?} does not say `{word}`: {said}"
-        );
-    }
-    assert!(clock.elapsed() < Duration::from_secs(60), "{arguments:?}");
-    said
+    command::refused(Duration::from_secs(60), folder, arguments, words)
 }
 
 /// The shipped problem file with one value changed.
