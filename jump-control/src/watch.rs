@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use rbd_core::{Motion, Transform};
+use rbd_core::{Configuration, Motion, Tangent, Transform};
 use so3::Scalar;
 
 /// What the controller is told about the robot, with `N` joints and `F` feet.
@@ -20,6 +20,22 @@ pub struct Measurement<T: Scalar, const N: usize, const F: usize> {
     pub foot_forces: [T; F],
     /// Age of the oldest of these numbers, s.
     pub age: T,
+}
+
+impl<T: Scalar, const N: usize, const F: usize> Measurement<T, N, F> {
+    /// Configuration and velocity as measured.
+    #[must_use]
+    pub fn state(&self) -> (Configuration<T, N>, Tangent<T, N>) {
+        let q = Configuration {
+            base: self.base,
+            joints: self.joints,
+        };
+        let v = Tangent {
+            base: self.base_velocity,
+            joints: self.joint_velocities,
+        };
+        (q, v)
+    }
 }
 
 /// Why a measurement may not be acted on.

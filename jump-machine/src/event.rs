@@ -4,7 +4,7 @@ use jump_control::{Event, Measurement, Phase};
 use rbd_core::Tree;
 use so3::Scalar;
 
-use crate::{Machine, Refusal};
+use crate::Machine;
 
 impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M, N, F> {
     /// The event of this tick, if any, at time `t` of the plan.
@@ -21,13 +21,11 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         };
         match (phase, &self.jump) {
             (Phase::Hold, Some(_)) if t < T::ZERO => None,
-            (Phase::Hold, Some(_)) => match self.misplaced(measured) {
-                None => Some(Event::Start),
-                Some(joint) => {
-                    self.refusal = Some(Refusal::Posture(joint));
-                    Some(Event::Misplaced)
-                }
-            },
+            (Phase::Hold, Some(jump)) => {
+                let (joints, tolerance) = (&measured.joints, settings.start_tolerance);
+                let first = jump.plan.start().unwrap_or(*joints);
+                Some(self.supervisor.begin(joints, &first, tolerance))
+            }
             (Phase::Stance, Some(jump)) => (t >= jump.plan.takeoff).then_some(Event::Takeoff),
             (Phase::Flight, Some(jump)) => (t >= jump.plan.posing).then_some(Event::Posing),
             (Phase::PreLanding, _) if self.contact.any() => Some(Event::Touchdown),
@@ -38,13 +36,5 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
             (Phase::Stand, _) => (self.calm == T::ZERO).then_some(Event::Disturbed),
             _ => None,
         }
-    }
-
-    /// The first joint that is not where the plan begins.
-    fn misplaced(&self, measured: &Measurement<T, N, F>) -> Option<usize> {
-        let first = self.jump.as_ref()?.plan.start()?;
-        let mut joints = measured.joints.iter().zip(&first);
-        joints
-            .position(|(q, planned)| so3::math::abs(*q - *planned) > self.settings.start_tolerance)
     }
 }

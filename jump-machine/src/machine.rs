@@ -1,8 +1,6 @@
 //! The machine: memory, and one method per rate.
 
-use jump_control::{
-    Event, Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, sample,
-};
+use jump_control::{Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, sample};
 use landing::{DetectorState, Grip, Landing, Outcome, PreLanding, Target, Turning, Workspace};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
@@ -33,7 +31,6 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) contact: DetectorState<T, N, F>,
     /// Time at rest so far, s.
     pub(crate) calm: T,
-    pub(crate) refusal: Option<Refusal>,
     model: &'a M,
     landing: Landing<T, N, F>,
     workspace: &'a mut Workspace<T, N, F>,
@@ -76,7 +73,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             }),
             contact: DetectorState::new(),
             calm: T::ZERO,
-            refusal: None,
             model,
             landing: Landing::new(settings.pd.feet, settings.landing, torques),
             workspace,
@@ -100,24 +96,15 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// # Errors
     /// A robot that does not stand and a start that is too near are refused: nothing changes then.
     pub fn arm(&mut self, jump: Jump<'a, T, N, F>, start: T) -> Result<(), Refusal> {
-        if self.supervisor.phase != Phase::Stand {
-            return Err(Refusal::NotStanding);
-        }
-        let soon = self
-            .supervisor
-            .last_tick
-            .is_some_and(|now| start - now < self.settings.weighing);
-        if soon || !start.is_finite_number() {
-            return Err(Refusal::TooLate);
-        }
+        self.supervisor.may_arm(start, self.settings.weighing)?;
         self.posture.joints = jump.landing_joints;
         self.level_feet = self.posture.level_feet(self.model);
         self.legs = jump.landing_joints;
         self.jump = Some(jump);
-        (self.start, self.node, self.refusal) = (start, 0, None);
+        (self.start, self.node) = (start, 0);
         (self.late, self.tucked) = (T::ZERO, T::ZERO);
         self.scales = Scales::new();
-        self.supervisor.happened(Event::Armed);
+        self.supervisor.armed();
         Ok(())
     }
 
@@ -130,13 +117,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
             Err(fault) => self.abort(fault),
         };
-        self.supervisor.heard_from();
-        Tick {
-            phase: self.supervisor.phase,
-            work,
-            fault: self.supervisor.fault,
-            refusal: self.refusal,
-        }
+        self.supervisor.ticked(work)
     }
 
     /// One tick of 10 kHz, `dt` seconds after the last: torques for the motors, N m, from joint positions and velocities of
@@ -185,7 +166,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// Contacts, events and the command at time `t` of the plan.
     fn act(&mut self, t: T, inputs: &Observation<T, N, F>, dt: T) -> Work {
         let measured = &inputs.measured;
-        let (q, v) = state(measured);
+        let (q, v) = measured.state();
         self.limbs.update(self.model, &q, &self.settings.pd.feet);
         self.settings.detector.update_at(
             self.model,
@@ -401,19 +382,4 @@ fn turning<T: Scalar, const N: usize, const F: usize>(
         since: moment.1 - plan.takeoff,
         left: plan.posing - moment.1,
     })
-}
-
-/// Configuration and velocity as measured.
-fn state<T: Scalar, const N: usize, const F: usize>(
-    measured: &Measurement<T, N, F>,
-) -> (Configuration<T, N>, Tangent<T, N>) {
-    let q = Configuration {
-        base: measured.base,
-        joints: measured.joints,
-    };
-    let v = Tangent {
-        base: measured.base_velocity,
-        joints: measured.joint_velocities,
-    };
-    (q, v)
 }

@@ -1,10 +1,11 @@
-//! What keeps every machine safe: the clock, the age of what is observed, the command in force, and the first fault.
+//! What keeps every machine safe: the clock, the age of what is observed, the command in force, the first fault, and when a jump may
+//! begin.
 
 use jump_control::{Event, Fault, JointCommand, Phase, Slew, Watch, next_phase};
 use rbd_core::Motor;
 use so3::{Scalar, math};
 
-use crate::Observation;
+use crate::{Observation, Refusal, Tick};
 
 /// Limits on time and on the safe command.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +28,10 @@ pub(crate) struct Supervisor<T: Scalar, const N: usize, const F: usize> {
     pub(crate) phase: Phase,
     pub(crate) command: JointCommand<T, N>,
     pub(crate) fault: Option<Fault>,
+    /// Why the last jump was not begun.
+    refusal: Option<Refusal>,
     /// When the last tick was, on the caller's clock, s.
-    pub(crate) last_tick: Option<T>,
+    last_tick: Option<T>,
     limits: Limits<T>,
     heard: Option<Observation<T, N, F>>,
     /// Time since the command was made, s.
@@ -43,11 +46,42 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
             phase: Phase::Stand,
             command: JointCommand::damp(limits.safe_damping),
             fault: None,
+            refusal: None,
             last_tick: None,
             heard: None,
             silence: T::ZERO,
             slew: Slew::new(limits.slew),
             limits,
+        }
+    }
+
+    /// Whether a jump may be armed that begins at `start` on the caller's clock, `ahead` seconds from now at the earliest.
+    pub(crate) fn may_arm(&self, start: T, ahead: T) -> Result<(), Refusal> {
+        if self.phase != Phase::Stand {
+            return Err(Refusal::NotStanding);
+        }
+        let soon = self.last_tick.is_some_and(|now| start - now < ahead);
+        if soon || !start.is_finite_number() {
+            return Err(Refusal::TooLate);
+        }
+        Ok(())
+    }
+
+    /// A jump has been armed.
+    pub(crate) fn armed(&mut self) {
+        self.refusal = None;
+        self.happened(Event::Armed);
+    }
+
+    /// Whether the robot is where its jump begins; the first joint that is not is the reason why the jump is not begun.
+    pub(crate) fn begin(&mut self, joints: &[T; N], first: &[T; N], tolerance: T) -> Event {
+        let mut pairs = joints.iter().zip(first);
+        match pairs.position(|(q, first)| math::abs(*q - *first) > tolerance) {
+            None => Event::Start,
+            Some(joint) => {
+                self.refusal = Some(Refusal::Posture(joint));
+                Event::Misplaced
+            }
         }
     }
 
@@ -114,9 +148,15 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         self.command = self.safe();
     }
 
-    /// The 1 kHz loop has run.
-    pub(crate) const fn heard_from(&mut self) {
+    /// What came of a tick of the 1 kHz loop that has now run.
+    pub(crate) fn ticked<W>(&mut self, work: W) -> Tick<W> {
         self.silence = T::ZERO;
+        Tick {
+            phase: self.phase,
+            work,
+            fault: self.fault,
+            refusal: self.refusal,
+        }
     }
 
     /// Before the torques of a joint tick `dt` after the last: looks at clock, silence and encoders. Returns the time by which torques may

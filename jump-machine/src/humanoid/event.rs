@@ -5,7 +5,6 @@ use rbd_core::{GRAVITY, Tree};
 use so3::Scalar;
 
 use super::Machine;
-use crate::Refusal;
 
 impl<
     T: Scalar,
@@ -31,13 +30,13 @@ impl<
         };
         match (phase, &self.armed) {
             (Phase::Hold, Some(_)) if t < T::ZERO => None,
-            (Phase::Hold, Some(_)) => match self.misplaced(measured) {
-                None => Some(Event::Start),
-                Some(joint) => {
-                    self.refusal = Some(Refusal::Posture(joint));
-                    Some(Event::Misplaced)
-                }
-            },
+            (Phase::Hold, Some(armed)) => {
+                let first = &armed.jump.start.joints;
+                Some(
+                    self.supervisor
+                        .begin(&measured.joints, first, s.start_tolerance),
+                )
+            }
             (Phase::Stance, Some(armed)) => {
                 (t >= armed.jump.profile.duration).then_some(Event::Takeoff)
             }
@@ -54,13 +53,6 @@ impl<
             (Phase::Stand, _) => (self.calm == T::ZERO).then_some(Event::Disturbed),
             _ => None,
         }
-    }
-
-    /// The first joint that is not where the jump begins.
-    fn misplaced(&self, measured: &Measurement<T, N, F>) -> Option<usize> {
-        let start = &self.armed.as_ref()?.jump.start;
-        let mut joints = measured.joints.iter().zip(&start.joints);
-        joints.position(|(q, first)| so3::math::abs(*q - *first) > self.settings.start_tolerance)
     }
 }
 

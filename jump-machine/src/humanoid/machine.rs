@@ -34,7 +34,6 @@ pub struct Machine<
     pub(super) settings: Settings<T, N, F>,
     pub(super) supervisor: Supervisor<T, N, F>,
     pub(super) armed: Option<Armed<T, N>>,
-    pub(super) refusal: Option<Refusal>,
     /// Time at rest so far, s.
     pub(super) calm: T,
     /// When the robot left the ground as planned, on the clock of the jump, s.
@@ -97,7 +96,6 @@ impl<
                 slew: settings.slew,
             }),
             armed: None,
-            refusal: None,
             calm: T::ZERO,
             took_off: T::ZERO,
             model,
@@ -121,19 +119,13 @@ impl<
     /// A robot that does not stand, a start that is past, and a jump with a number that is not finite are refused: nothing changes
     /// then.
     pub fn arm(&mut self, jump: &Jump<T, N>, start: T) -> Result<(), Refusal> {
-        if self.supervisor.phase != Phase::Stand {
-            return Err(Refusal::NotStanding);
-        }
-        let past = self.supervisor.last_tick.is_some_and(|now| start < now);
-        if past || !start.is_finite_number() {
-            return Err(Refusal::TooLate);
-        }
+        self.supervisor.may_arm(start, T::ZERO)?;
         let armed = Armed::new(self.model, &self.settings.feet, jump);
         self.armed = Some(armed.ok_or(Refusal::NotFinite)?);
         self.workspace.restart(&jump.start.joints);
-        (self.start, self.refusal) = (start, None);
+        self.start = start;
         (self.servo, self.recovery) = (jump.start.joints, None);
-        self.supervisor.happened(Event::Armed);
+        self.supervisor.armed();
         Ok(())
     }
 
@@ -147,13 +139,7 @@ impl<
             Ok((observed, dt)) => self.act(now - self.start, &observed, dt),
             Err(fault) => self.abort(fault),
         };
-        self.supervisor.heard_from();
-        Tick {
-            phase: self.supervisor.phase,
-            work,
-            fault: self.supervisor.fault,
-            refusal: self.refusal,
-        }
+        self.supervisor.ticked(work)
     }
 
     /// One tick of 10 kHz, `dt` seconds after the last: torques for the motors, N m, from joint positions and velocities of
@@ -203,17 +189,12 @@ impl<
                 self.take_off(t, &measured.joints, &measured.joint_velocities);
             }
         }
+        let (q, v) = measured.state();
         let now = Now {
             t,
             dt,
-            q: Configuration {
-                base: measured.base,
-                joints: measured.joints,
-            },
-            v: Tangent {
-                base: measured.base_velocity,
-                joints: measured.joint_velocities,
-            },
+            q,
+            v,
             foot_forces: &measured.foot_forces,
         };
         let (command, work) = match (self.supervisor.phase, self.armed) {
