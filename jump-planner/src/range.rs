@@ -38,6 +38,23 @@ impl Range {
     }
 }
 
+/// A value of a file that cannot be: `(key, what it must be)`.
+pub(crate) type Unusable = (String, String);
+
+/// Fails with the key where a value does not meet its condition.
+pub(crate) fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
+    if ok {
+        Ok(())
+    } else {
+        Err((key.to_owned(), what.to_owned()))
+    }
+}
+
+/// Fails with the key where a value is out of its range.
+pub(crate) fn within(x: f64, range: Range, key: &str) -> Result<(), Unusable> {
+    range.check(x).map_err(|what| (key.to_owned(), what))
+}
+
 #[cfg(test)]
 mod tests {
     use super::Range::{Above, From};

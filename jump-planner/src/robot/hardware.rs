@@ -43,15 +43,12 @@ impl Quadruped {
     /// Its size, from which the gains of its controllers follow; the inertia is that of the standing robot.
     #[must_use]
     pub fn build(&self, standing: &State) -> Build<f64> {
-        if let Some(build) = self.build {
-            return build;
-        }
         let inertia = self.locked_inertia(standing);
-        Build {
+        self.build.over(Build {
             mass: self.mass(),
             leg_length: self.leg_length,
             inertia_b: [inertia[(0, 0)], inertia[(1, 1)], inertia[(2, 2)]],
-        }
+        })
     }
 
     /// Length, width and height of the trunk's box, m.
@@ -110,11 +107,11 @@ pub(crate) fn geared(
     TableModel::with_any_inertia(table.base_kind(), *table.base(), &bodies)
 }
 
-/// Corners of a box, in the order of `Data::corners`.
-pub(crate) fn corners(size: &Vector3<f64>, centre: &Vector3<f64>) -> [Vector3<f64>; 8] {
+/// Corners of a box around the origin of half this size, in the order of `Data::corners`.
+pub(crate) fn corners(half: &Vector3<f64>) -> [Vector3<f64>; 8] {
     core::array::from_fn(|i| {
-        let side = |bit: usize| if (i >> bit) & 1 == 0 { 0.5 } else { -0.5 };
-        centre + size.component_mul(&Vector3::new(side(2), side(1), side(0)))
+        let side = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
+        half.component_mul(&Vector3::new(side(2), side(1), side(0)))
     })
 }
 

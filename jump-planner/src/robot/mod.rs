@@ -11,8 +11,8 @@ use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
 use rbd_core::{
-    BaseBody, BaseKind, Body, Budgets, Build, Frame, Inertia, JointLimits, MassMatrix, Model,
-    Motor, Posture, Shape, TableModel, Tree, crba,
+    BaseBody, BaseKind, Body, Budgets, Frame, Inertia, JointLimits, MassMatrix, Model, Motor,
+    Posture, Shape, TableModel, Tree, crba,
 };
 
 pub use posture::State;
@@ -61,8 +61,8 @@ pub struct Data {
     pub owners: [&'static str; OWNER_COUNT],
     /// What the hardware may be asked for.
     pub budgets: Budgets,
-    /// What its gains follow from, where that was measured or written down; otherwise it is derived.
-    build: Option<Build<f64>>,
+    /// What its gains follow from, as far as it was measured or written down; the rest is derived.
+    build: profile::KnownBuild,
     /// Whether the centre of mass stands at a task's height, as in paper A, or the hips do.
     stands_by_com: bool,
     /// Thickness of its limbs, where it is written down.
@@ -94,10 +94,6 @@ impl Quadruped {
         // Paper A, Table I: hips, their offset to the leg's plane, and half the trunk.
         let side = |leg: usize| if leg.is_multiple_of(2) { 1.0 } else { -1.0 };
         let end = |leg: usize| if leg < 2 { 1.0 } else { -1.0 };
-        let corner = |i: usize| {
-            let sign = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
-            Vector3::new(0.1805 * sign(2), 0.097 * sign(1), 0.057 * sign(0))
-        };
         Ok(Self::leak(Data {
             name: "a1",
             table,
@@ -109,11 +105,11 @@ impl Quadruped {
             foot_radius: FOOT_RADIUS,
             hips: core::array::from_fn(|i| Vector3::new(0.1805 * end(i), 0.1308 * side(i), 0.0)),
             leg_length: 0.4,
-            corners: core::array::from_fn(corner),
+            corners: hardware::corners(&Vector3::new(0.1805, 0.097, 0.057)),
             shapes: SHAPES,
             owners: OWNERS,
             budgets: BUDGETS,
-            build: Some(BUILD),
+            build: profile::KnownBuild::all(&BUILD),
             stands_by_com: true,
             limbs: profile::LimbsTable::default(),
             seed: core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]),

@@ -3,8 +3,10 @@
 //! Everything but `urdf` may be missing; the rules for a URDF alone then hold. `models/a1.toml` is such a file, of the robot that is also
 //! built in: a test holds both against each other.
 
-use super::{Data, JOINTS, Quadruped, RobotError, State, hardware};
+use super::{Data, JOINTS, RobotError, hardware};
 use crate::range::Range::{self, Above, From};
+use crate::range::{Unusable, require, within};
+use nalgebra::Vector3;
 use rbd_core::{Budgets, Build, Motor};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -112,30 +114,21 @@ struct BuildTable {
     inertia_kgm2: Option<[f64; 3]>,
 }
 
-/// A value that cannot be.
-fn check(key: &str, x: f64, range: Range) -> Result<(), RobotError> {
-    range.check(x).map_err(|what| RobotError::Profile {
-        key: key.to_owned(),
-        what,
-    })
-}
-
 impl MotorTable {
-    fn motor(&self, joint: &str) -> Result<Motor<f64>, RobotError> {
+    fn motor(&self, joint: &str) -> Result<Motor<f64>, Unusable> {
         let key = |name: &str| format!("motors.{joint}.{name}");
-        check(&key("gear"), self.gear, Above(0.0, 1e4))?;
-        check(&key("torque_nm"), self.torque_nm, TORQUE)?;
+        within(self.gear, Above(0.0, 1e4), &key("gear"))?;
+        within(self.torque_nm, TORQUE, &key("torque_nm"))?;
         let (corner, no_load) = (self.corner_speed_rad_s, self.no_load_speed_rad_s);
-        check(&key("corner_speed_rad_s"), corner, SPEED)?;
-        check(&key("no_load_speed_rad_s"), no_load, SPEED)?;
-        if no_load <= corner {
-            return Err(RobotError::Profile {
-                key: key("no_load_speed_rad_s"),
-                what: format!("must be above corner_speed_rad_s, {corner}, not {no_load}"),
-            });
-        }
+        within(corner, SPEED, &key("corner_speed_rad_s"))?;
+        within(no_load, SPEED, &key("no_load_speed_rad_s"))?;
+        require(
+            no_load > corner,
+            &key("no_load_speed_rad_s"),
+            &format!("must be above corner_speed_rad_s, {corner}, not {no_load}"),
+        )?;
         let rotor = self.rotor_inertia_kgm2;
-        check(&key("rotor_inertia_kgm2"), rotor, From(0.0, 1e3))?;
+        within(rotor, From(0.0, 1e3), &key("rotor_inertia_kgm2"))?;
         Ok(Motor {
             gear: self.gear,
             torque: self.torque_nm,
@@ -148,7 +141,7 @@ impl MotorTable {
 
 impl MotorsTable {
     /// The motor of every joint.
-    fn motors(&self) -> Result<[Motor<f64>; JOINTS], RobotError> {
+    fn motors(&self) -> Result<[Motor<f64>; JOINTS], Unusable> {
         let leg = match (self.all, self.hip, self.thigh, self.calf) {
             (Some(all), None, None, None) => [all.motor("all")?; 3],
             (None, Some(hip), Some(thigh), Some(calf)) => [
@@ -157,10 +150,8 @@ impl MotorsTable {
                 calf.motor("calf")?,
             ],
             _ => {
-                return Err(RobotError::Profile {
-                    key: "motors".to_owned(),
-                    what: "give either [motors.all] or all of hip, thigh and calf".to_owned(),
-                });
+                let what = "give either [motors.all] or all of hip, thigh and calf";
+                return Err(("motors".to_owned(), what.to_owned()));
             }
         };
         Ok(core::array::from_fn(|i| leg[i % 3]))
@@ -169,9 +160,9 @@ impl MotorsTable {
 
 impl BudgetsTable {
     /// Budgets by rule, and what is written down instead.
-    fn over(&self, rule: Budgets) -> Result<Budgets, RobotError> {
+    fn over(&self, rule: Budgets) -> Result<Budgets, Unusable> {
         let number = |key: &str, x: Option<f64>, range: Range, rule: f64| match x {
-            Some(x) => check(&format!("budgets.{key}"), x, range).map(|()| x),
+            Some(x) => within(x, range, &format!("budgets.{key}")).map(|()| x),
             None => Ok(rule),
         };
         let time = |key: &str, x: Option<f64>, rule: f64| {
@@ -251,63 +242,87 @@ impl ProfileFile {
             data.motors = Some(motors);
         }
         if let Some(foot) = self.foot {
-            check("foot.radius_m", foot.radius_m, SIZE)?;
+            within(foot.radius_m, SIZE, "foot.radius_m")?;
             data.foot_radius = foot.radius_m;
         }
         if let Some(trunk) = self.trunk {
             for (size, centre) in trunk.size_m.iter().zip(trunk.centre_m) {
-                check("trunk.size_m", *size, SIZE)?;
-                check("trunk.centre_m", centre, From(-10.0, 10.0))?;
+                within(*size, SIZE, "trunk.size_m")?;
+                within(centre, From(-10.0, 10.0), "trunk.centre_m")?;
             }
-            data.corners = hardware::corners(&trunk.size_m.into(), &trunk.centre_m.into());
+            let half = Vector3::from(trunk.size_m) * 0.5;
+            let centre = Vector3::from(trunk.centre_m);
+            data.corners = hardware::corners(&half).map(|corner| centre + corner);
         }
         for (key, radius) in [
             ("limbs.shank_radius_m", self.limbs.shank_radius_m),
             ("limbs.thigh_radius_m", self.limbs.thigh_radius_m),
             ("limbs.hip_radius_m", self.limbs.hip_radius_m),
         ] {
-            radius.map_or(Ok(()), |radius| check(key, radius, SIZE))?;
+            radius.map_or(Ok(()), |radius| within(radius, SIZE, key))?;
         }
         data.limbs = self.limbs;
         let strongest = data.limits.iter().map(|limit| limit.effort);
         let strongest = strongest.fold(0.0, f64::max);
         data.budgets = self.budgets.over(hardware::budgets(strongest))?;
+        data.build = self.build.known()?;
         Ok(())
     }
+}
 
-    /// What its gains follow from, where something of it is written down.
-    pub(crate) fn build(&self, robot: &Quadruped) -> Result<Option<Build<f64>>, RobotError> {
-        let table = self.build;
-        if let Some(mass) = table.mass_kg {
-            check("build.mass_kg", mass, Above(0.0, 1e4))?;
+impl BuildTable {
+    /// What is written down, looked at.
+    fn known(&self) -> Result<KnownBuild, Unusable> {
+        for (key, x, range) in [
+            ("build.mass_kg", self.mass_kg, Above(0.0, 1e4)),
+            ("build.leg_length_m", self.leg_length_m, SIZE),
+        ] {
+            x.map_or(Ok(()), |x| within(x, range, key))?;
         }
-        if let Some(length) = table.leg_length_m {
-            check("build.leg_length_m", length, SIZE)?;
+        for inertia in self.inertia_kgm2.iter().flatten() {
+            within(*inertia, INERTIA, "build.inertia_kgm2")?;
         }
-        for inertia in table.inertia_kgm2.iter().flatten() {
-            check("build.inertia_kgm2", *inertia, INERTIA)?;
+        Ok(KnownBuild {
+            mass: self.mass_kg,
+            leg_length: self.leg_length_m,
+            inertia_b: self.inertia_kgm2,
+        })
+    }
+}
+
+/// What is known of a robot's build; the rest follows from its tables.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct KnownBuild {
+    mass: Option<f64>,
+    leg_length: Option<f64>,
+    inertia_b: Option<[f64; 3]>,
+}
+
+impl KnownBuild {
+    /// All of it.
+    pub(crate) const fn all(build: &Build<f64>) -> Self {
+        Self {
+            mass: Some(build.mass),
+            leg_length: Some(build.leg_length),
+            inertia_b: Some(build.inertia_b),
         }
-        if table.mass_kg.is_none() && table.leg_length_m.is_none() && table.inertia_kgm2.is_none() {
-            return Ok(None);
+    }
+
+    /// The build with what is known in the place of what the tables say.
+    pub(crate) fn over(&self, rule: Build<f64>) -> Build<f64> {
+        Build {
+            mass: self.mass.unwrap_or(rule.mass),
+            leg_length: self.leg_length.unwrap_or(rule.leg_length),
+            inertia_b: self.inertia_b.unwrap_or(rule.inertia_b),
         }
-        let standing = State {
-            joints: robot.seed,
-            ..State::NEUTRAL
-        };
-        let rule = robot.build(&standing);
-        Ok(Some(Build {
-            mass: table.mass_kg.unwrap_or(rule.mass),
-            leg_length: table.leg_length_m.unwrap_or(rule.leg_length),
-            inertia_b: table.inertia_kgm2.unwrap_or(rule.inertia_b),
-        }))
     }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::super::LEGS;
-    use super::{JOINTS, Quadruped, State};
+    use super::super::{LEGS, Quadruped, State};
+    use super::JOINTS;
     use rbd_core::Model;
     use std::path::{Path, PathBuf};
 

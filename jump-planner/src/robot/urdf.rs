@@ -5,9 +5,9 @@
 //! from the knee; the radius of its ball is that of the sphere in the foot link's `<collision>`, else 1 mm. The trunk is the
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
-use super::profile::{LimbsTable, ProfileFile};
+use super::profile::{KnownBuild, LimbsTable, ProfileFile};
 use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
-use crate::range::Range;
+use crate::range::{Range, Unusable};
 use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
@@ -229,19 +229,22 @@ impl Quadruped {
             shapes: SHAPES,
             owners: OWNERS,
             budgets: hardware::budgets(strongest),
-            build: None,
+            build: KnownBuild::default(),
             stands_by_com: false,
             limbs: LimbsTable::default(),
             seed: [0.0; JOINTS],
         };
         profile.map_or(Ok(()), |profile| profile.apply(&mut data))?;
         data.seed = seed(&data)?;
-        if let Some(profile) = profile {
-            data.build = profile.build(&Self::leak(data.clone()))?;
-        }
         data.shapes = hardware::shapes(&data);
         data.owners = hardware::owners(&Self::leak(data.clone()));
         Ok(Self::leak(data))
+    }
+}
+
+impl From<Unusable> for RobotError {
+    fn from((key, what): Unusable) -> Self {
+        Self::Profile { key, what }
     }
 }
 
@@ -389,12 +392,5 @@ fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f6
             }
         }
     }
-    core::array::from_fn(|i| {
-        let sign = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
-        pose.point(&Vector3::new(
-            half.x * sign(2),
-            half.y * sign(1),
-            half.z * sign(0),
-        ))
-    })
+    hardware::corners(&half).map(|corner| pose.point(&corner))
 }

@@ -8,8 +8,9 @@ mod guess;
 mod values;
 
 use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
-use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN, Unusable, require, within};
+use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
+use crate::range::{Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, State};
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Solver, Stage, Status};

@@ -3,6 +3,7 @@
 
 use super::file::{LimitsTable, WeightsTable};
 use crate::range::Range::{self, Above, From};
+use crate::range::{Unusable, within};
 
 /// Lengths and displacements, m.
 pub(crate) const LENGTH: Range = From(-100.0, 100.0);
@@ -18,23 +19,6 @@ pub(crate) const TOTAL: Range = Above(0.0, 10.0);
 const SHARE: Range = Above(0.0, 1.0);
 /// Weights of costs.
 const WEIGHT: Range = From(1e-12, 1e12);
-
-/// A value of a task file that cannot be: `(key, what it must be)`.
-pub(crate) type Unusable = (String, String);
-
-/// Fails with the key where a value does not meet its condition.
-pub(crate) fn require(ok: bool, key: &str, what: &str) -> Result<(), Unusable> {
-    if ok {
-        Ok(())
-    } else {
-        Err((key.to_owned(), what.to_owned()))
-    }
-}
-
-/// Fails with the key where a value is out of its range.
-pub(crate) fn within(x: f64, range: Range, key: &str) -> Result<(), Unusable> {
-    range.check(x).map_err(|what| (key.to_owned(), what))
-}
 
 pub(crate) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
     within(limits.friction, From(0.0, 10.0), "limits.friction")?;
