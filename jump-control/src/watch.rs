@@ -23,18 +23,22 @@ pub struct Measurement<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> Measurement<T, N, F> {
-    /// Configuration and velocity as measured.
+    /// Configuration as measured.
     #[must_use]
-    pub fn state(&self) -> (Configuration<T, N>, Tangent<T, N>) {
-        let q = Configuration {
+    pub const fn configuration(&self) -> Configuration<T, N> {
+        Configuration {
             base: self.base,
             joints: self.joints,
-        };
-        let v = Tangent {
+        }
+    }
+
+    /// Velocity as measured, base part in base axes.
+    #[must_use]
+    pub const fn velocity(&self) -> Tangent<T, N> {
+        Tangent {
             base: self.base_velocity,
             joints: self.joint_velocities,
-        };
-        (q, v)
+        }
     }
 }
 

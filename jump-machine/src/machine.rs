@@ -166,8 +166,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// Contacts, events and the command at time `t` of the plan.
     fn act(&mut self, t: T, inputs: &Observation<T, N, F>, dt: T) -> Work {
         let measured = &inputs.measured;
-        let (q, v) = measured.state();
-        self.limbs.update(self.model, &q, &self.settings.pd.feet);
+        let feet = &self.settings.pd.feet;
+        self.limbs
+            .update(self.model, &measured.configuration(), feet);
+        let v = measured.velocity();
         self.settings.detector.update_at(
             self.model,
             &mut self.contact,

@@ -189,12 +189,11 @@ impl<
                 self.take_off(t, &measured.joints, &measured.joint_velocities);
             }
         }
-        let (q, v) = measured.state();
         let now = Now {
             t,
             dt,
-            q,
-            v,
+            q: measured.configuration(),
+            v: measured.velocity(),
             foot_forces: &measured.foot_forces,
         };
         let (command, work) = match (self.supervisor.phase, self.armed) {
