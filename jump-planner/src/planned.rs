@@ -163,7 +163,7 @@ fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, Str
 }
 
 /// What the controller follows: what stands in the bytes, and nothing else.
-fn follow(
+pub(crate) fn follow(
     task: &Task,
     robot: &Quadruped,
     bytes: &[u8],

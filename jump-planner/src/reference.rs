@@ -5,7 +5,8 @@
 //! forces, changed as little as the whole-body dynamics of the base require (they differ from those of a rigid body by the
 //! moving legs and the rolling contact points). In flight the legs go to the pre-landing posture.
 
-use super::planned::Origin;
+use super::planned::{Origin, follow};
+use super::stored::Content;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
 use super::{FOOT_COUNT, JOINTS, Node, State, Velocity};
 use crate::robot::Quadruped;
@@ -25,6 +26,8 @@ const FRICTION_SMOOTHING: f64 = 0.1;
 
 /// The reference and its margins.
 pub struct Reference {
+    /// The container: what the machine flies. All else is read from it, for judges and reports.
+    pub bytes: Vec<u8>,
     /// From the posture in which the robot waits to the touchdown.
     pub nodes: Vec<Node>,
     /// When the last foot leaves the ground, s.
@@ -57,6 +60,7 @@ struct Interval {
     /// Angular momentum at both ends, world axes.
     momentum: (Vector3<f64>, Vector3<f64>),
     rotation: nalgebra::Rotation3<f64>,
+    phase: usize,
     contacts: [bool; FOOT_COUNT],
     forces_w: [Vector3<f64>; FOOT_COUNT],
 }
@@ -94,6 +98,7 @@ fn intervals(task: &Task, stages: &[SrbStage]) -> Vec<Interval> {
             acc: total / problem.mass - Vector3::z() * problem.gravity,
             momentum: (momentum(state), momentum(next)),
             rotation: nalgebra::Rotation3::from_matrix(&state.rot_wb),
+            phase,
             contacts: data.contacts,
             forces_w,
         });
@@ -212,7 +217,7 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let mut swing = [0.0; JOINTS];
     let mut nodes = Vec::new();
     nodes.push(standing(task)?);
-    let (mut peak_torque, mut peak_friction, mut base_residual) = (0.0, 0.0, 0.0);
+    let mut base_residual = 0.0;
     let stance = intervals
         .iter()
         .take_while(|i| i.contacts.contains(&true))
@@ -245,13 +250,6 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         let rate = (end - begin) * (1.0 / interval.dt);
         let load = load(robot, &middle.0, &middle.1, &rate, interval)?;
         base_residual = f64::max(base_residual, load.residual);
-        peak_torque = load
-            .torques
-            .iter()
-            .fold(peak_torque, |m, t| f64::max(m, t.abs()));
-        for f in load.forces_w.iter().filter(|f| f.z > 5.0) {
-            peak_friction = f64::max(peak_friction, f.xy().norm() / f.z);
-        }
         nodes.push(Node {
             time: interval.start,
             base: first.base,
@@ -267,9 +265,7 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         .filter(|f| !f.is_empty())
         .ok_or("the task has no flight")?;
     let takeoff = flight[0].start;
-    let touchdown = intervals
-        .last()
-        .map_or(takeoff, |last| last.start + last.dt);
+    let touchdown = end(&intervals);
     let posing = takeoff + POSING_SHARE * (touchdown - takeoff);
     fly(
         robot,
@@ -279,19 +275,43 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         [takeoff, posing],
         &landing_joints,
     );
-    let used = &plan.stages[0].state.durations[..task.problem.phase_count];
+    let bytes = container(task, &intervals, nodes, posing)?;
     Ok(Reference {
-        nodes,
-        takeoff,
-        posing,
-        touchdown,
-        landing_joints,
-        durations: used.to_vec(),
-        peak_torque,
-        peak_friction,
         base_residual,
-        origin: Origin::Kinematics,
+        ..follow(task, robot, &bytes, Origin::Kinematics)?
     })
+}
+
+/// When the last interval ends, s.
+fn end(intervals: &[Interval]) -> f64 {
+    intervals.last().map_or(0.0, |last| last.start + last.dt)
+}
+
+/// The container of these nodes: the robot waiting, one per interval, and the end.
+fn container(
+    task: &Task,
+    intervals: &[Interval],
+    nodes: Vec<Node>,
+    posing: f64,
+) -> Result<Vec<u8>, String> {
+    let mut phases: Vec<([bool; FOOT_COUNT], f64)> = Vec::new();
+    let mut phase_of = vec![0];
+    for interval in intervals {
+        phases.resize(interval.phase + 1, (interval.contacts, 0.0));
+        phases[interval.phase].1 += interval.dt;
+        phase_of.push(interval.phase);
+    }
+    phase_of.push(phases.len().saturating_sub(1));
+    let nodes: Vec<_> = phase_of.into_iter().zip(nodes).collect();
+    let shares = task.limits.torque_shares.iter();
+    let content = Content {
+        nodes: &nodes,
+        phases: &phases,
+        posing,
+        // Nothing is kept to here: what the motors have.
+        torque_share: shares.fold(0.0, |most: f64, share| most.max(*share)),
+    };
+    content.write(task)
 }
 
 /// Flight nodes: the base as planned, the legs on cubics from rest at take-off to the pre-landing posture. The

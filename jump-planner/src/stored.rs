@@ -21,65 +21,97 @@ pub type Stored<'a> = Container<'a, JOINTS, FOOT_COUNT>;
 /// Joint angles that differ by less are the same posture: what single precision leaves, and more, rad.
 const SAME_POSTURE: f64 = 1e-4;
 
-/// The container of a plan; its nodes begin with the posture in which the robot waits.
+/// What a planner says of a jump, beyond what its task says.
+pub(crate) struct Content<'a> {
+    /// Nodes with their contact phase; they begin with the posture in which the robot waits.
+    pub(crate) nodes: &'a [(usize, Node)],
+    /// Which feet stand in each phase, and how long it is, s.
+    pub(crate) phases: &'a [([bool; FOOT_COUNT], f64)],
+    /// When the landing posture stands, s.
+    pub(crate) posing: f64,
+    /// Share of the motors' torque that was planned with.
+    pub(crate) torque_share: f64,
+}
+
+/// The container of a whole-body plan.
 ///
 /// # Errors
 /// More nodes or a longer name than a container takes, or a robot that cannot stand or land.
 pub fn store(task: &Task, plan: &WholeBodyPlan) -> Result<Vec<u8>, String> {
-    let robot = &task.robot;
-    let mut nodes = vec![record(robot, 0, &standing(task)?)];
+    let mut nodes = vec![(0, standing(task)?)];
     let contacts = plan.phases.iter().enumerate();
-    let phase_of = contacts.flat_map(|(i, phase)| core::iter::repeat_n(i as u8, phase.intervals));
+    let phase_of = contacts.flat_map(|(i, phase)| core::iter::repeat_n(i, phase.intervals));
     for (interval, phase) in plan.intervals.iter().zip(phase_of) {
         let at = node(interval.start, &interval.state, Some(interval));
-        nodes.push(record(robot, phase, &at));
+        nodes.push((phase, at));
     }
-    let duration = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
-    let touchdown: f64 = plan.phases.iter().map(duration).sum();
-    let last = plan.phases.len().saturating_sub(1) as u8;
-    let end = node(touchdown, &plan.end, None);
-    nodes.push(record(robot, last, &end));
-    let takeoff: f64 = plan
-        .phases
-        .iter()
-        .take_while(|phase| phase.contacts.contains(&true))
-        .map(duration)
-        .sum();
-    let mut phases = [PlanPhase::default(); MOST_PHASES];
-    for (slot, phase) in phases.iter_mut().zip(&plan.phases) {
-        let bits = phase.contacts.iter().enumerate();
-        *slot = PlanPhase {
-            contacts: bits.fold(0, |bits, (i, on)| bits | (u8::from(*on) << i)),
-            duration: duration(phase) as f32,
-        };
-    }
-    let header = Header {
-        task: short(&task.name),
-        robot: robot.name,
-        torques: Torques::Hold,
-        takeoff: takeoff as f32,
-        posing: (touchdown - POSED) as f32,
-        touchdown: touchdown as f32,
-        phase_count: plan.phases.len() as u8,
-        phases,
-        ground: ground(task),
-        margins: Margins {
-            friction: task.limits.friction as f32,
-            friction_share: task.limits.friction_share as f32,
-            max_force: task.problem.max_force as f32,
-            torque_share: plan.torque_share as f32,
-            speed_share: task.limits.speed_share as f32,
-            weight: (task.problem.mass * task.problem.gravity) as f32,
-        },
-        goal_w: goal(task).0,
-        heading: goal(task).1,
-        landing_joints: robot.landing_joints(&task.start)?.map(|x| x as f32),
-        // What is written counts them.
-        nodes: 0,
+    let span = |phase: &Phase<f64, FOOT_COUNT>| phase.dt * phase.intervals as f64;
+    let phases: Vec<_> = plan.phases.iter().map(|p| (p.contacts, span(p))).collect();
+    let touchdown: f64 = phases.iter().map(|(_, duration)| duration).sum();
+    let last = phases.len().saturating_sub(1);
+    nodes.push((last, node(touchdown, &plan.end, None)));
+    let content = Content {
+        nodes: &nodes,
+        phases: &phases,
+        posing: touchdown - POSED,
+        torque_share: plan.torque_share,
     };
-    let mut out = vec![0; Stored::size(nodes.len())];
-    write(&mut out, hash(robot), &header, &nodes).map_err(|error| error.to_string())?;
-    Ok(out)
+    content.write(task)
+}
+
+impl Content<'_> {
+    /// The container.
+    pub(crate) fn write(&self, task: &Task) -> Result<Vec<u8>, String> {
+        let robot = &task.robot;
+        let records = self.nodes.iter();
+        let nodes: Vec<_> = records
+            .map(|(phase, node)| record(robot, *phase as u8, node))
+            .collect();
+        let mut out = vec![0; Stored::size(nodes.len())];
+        let header = self.header(task)?;
+        write(&mut out, hash(robot), &header, &nodes).map_err(|error| error.to_string())?;
+        Ok(out)
+    }
+
+    fn header<'t>(&self, task: &'t Task) -> Result<Header<'t, JOINTS>, String> {
+        let robot = &task.robot;
+        let standing = |(contacts, _): &&([bool; FOOT_COUNT], f64)| contacts.contains(&true);
+        let pushing = self.phases.iter().take_while(standing);
+        let takeoff: f64 = pushing.map(|(_, duration)| duration).sum();
+        let touchdown: f64 = self.phases.iter().map(|(_, duration)| duration).sum();
+        let mut phases = [PlanPhase::default(); MOST_PHASES];
+        for (slot, (contacts, duration)) in phases.iter_mut().zip(self.phases) {
+            let bits = contacts.iter().enumerate();
+            *slot = PlanPhase {
+                contacts: bits.fold(0, |bits, (i, on)| bits | (u8::from(*on) << i)),
+                duration: *duration as f32,
+            };
+        }
+        Ok(Header {
+            task: short(&task.name),
+            robot: robot.name,
+            torques: Torques::Hold,
+            takeoff: takeoff as f32,
+            posing: self.posing as f32,
+            touchdown: touchdown as f32,
+            phase_count: self.phases.len() as u8,
+            phases,
+            ground: ground(task),
+            margins: Margins {
+                friction: task.limits.friction as f32,
+                friction_share: task.limits.friction_share as f32,
+                max_force: task.problem.max_force as f32,
+                torque_share: self.torque_share as f32,
+                speed_share: task.limits.speed_share as f32,
+                weight: (task.problem.mass * task.problem.gravity) as f32,
+            },
+            goal_w: goal(task).0,
+            heading: goal(task).1,
+            landing_joints: robot.landing_joints(&task.start)?.map(|x| x as f32),
+            // What is written counts them.
+            nodes: 0,
+        })
+    }
 }
 
 /// A task's name as far as there is room: where the path of its file is too long, the file's own name, for which `--task` makes up.
@@ -140,6 +172,7 @@ pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
     let [peak_torque, peak_friction] = peaks(&nodes, takeoff);
     let phases = header.phases.iter().take(header.phase_count.into());
     Ok(Reference {
+        bytes: plan.bytes().to_vec(),
         takeoff,
         posing: f64::from(header.posing),
         touchdown: f64::from(header.touchdown),
@@ -151,6 +184,25 @@ pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
         origin: Origin::Stored,
         nodes,
     })
+}
+
+impl Reference {
+    /// Writes the torques of [`Reference::nodes`] into the bytes, for a study that changed them.
+    ///
+    /// # Errors
+    /// Bytes that are no plan.
+    pub fn store_torques(&mut self) -> Result<(), String> {
+        let show = |error: ContainerError| error.to_string();
+        let stored = Stored::read(&self.bytes).map_err(show)?;
+        let mut nodes: Vec<_> = stored.nodes().collect();
+        for (stored, node) in nodes.iter_mut().zip(&self.nodes) {
+            stored.torques = node.torques.map(|x| x as f32);
+        }
+        let mut bytes = vec![0; self.bytes.len()];
+        write(&mut bytes, stored.robot(), stored.header(), &nodes).map_err(show)?;
+        self.bytes = bytes;
+        Ok(())
+    }
 }
 
 /// Opens a container for a robot.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod command;
+mod refused;
 
 use command::saltus;
 use core::time::Duration;
@@ -14,7 +15,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
-    command::refused(Duration::from_secs(20), folder, arguments, words);
+    refused::refused(Duration::from_secs(20), folder, arguments, words);
 }
 
 /// Every command that reads a file names it, whatever is in it, and says what to do.

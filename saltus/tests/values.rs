@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod command;
+mod refused;
 
 use command::saltus;
 use core::time::Duration;
@@ -14,7 +15,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
-    command::refused(Duration::from_secs(60), folder, arguments, words)
+    refused::refused(Duration::from_secs(60), folder, arguments, words)
 }
 
 /// The shipped problem file with one value changed.

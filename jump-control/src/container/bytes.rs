@@ -8,10 +8,6 @@ impl<'a> Reader<'a> {
         Self(bytes)
     }
 
-    pub(super) const fn rest(&self) -> &'a [u8] {
-        self.0
-    }
-
     pub(super) const fn take<const K: usize>(&mut self) -> [u8; K] {
         match self.0.split_first_chunk() {
             Some((chunk, rest)) => {

@@ -79,7 +79,8 @@ const CHECKSUM: usize = 20;
 pub struct Container<'a, const N: usize, const F: usize> {
     robot: u64,
     header: Header<'a, N>,
-    nodes: &'a [u8],
+    /// All of it.
+    bytes: &'a [u8],
 }
 
 impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
@@ -148,7 +149,7 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
         Ok(Self {
             robot,
             header,
-            nodes: from.rest(),
+            bytes: whole,
         })
     }
 
@@ -162,6 +163,18 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
     #[must_use]
     pub const fn robot(&self) -> u64 {
         self.robot
+    }
+
+    /// All its bytes, and no others.
+    #[must_use]
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// Its CRC-32: plans with different ones are different plans.
+    #[must_use]
+    pub const fn checksum(&self) -> u32 {
+        checksum(self.bytes)
     }
 
     /// What holds for the whole plan.
@@ -184,7 +197,12 @@ impl<'a, const N: usize, const F: usize> Container<'a, N, F> {
 
     /// The bytes of the nodes.
     pub(crate) const fn stored(&self) -> StoredNodes<'a, N, F> {
-        StoredNodes { bytes: self.nodes }
+        let header = PREFIX + Header::<N>::BYTES;
+        let bytes = match self.bytes.split_at_checked(header) {
+            Some((_, nodes)) => nodes,
+            None => &[],
+        };
+        StoredNodes { bytes }
     }
 
     /// Nodes in order.

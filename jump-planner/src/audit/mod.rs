@@ -51,6 +51,8 @@ pub struct Margin {
 /// What an audit found.
 #[derive(Clone, Debug)]
 pub struct Audit {
+    /// Checksum of the container that was audited.
+    pub checksum: u32,
     /// Angle between the planned and the integrated base at touchdown, rad.
     pub flight_orientation_error: f64,
     /// Distance between them, m.
@@ -128,6 +130,7 @@ impl Audit {
         margins.retain(|margin| margin.value.is_finite());
         margins.sort_by(|a, b| a.value.total_cmp(&b.value));
         Ok(Self {
+            checksum: plan.checksum(),
             flight_orientation_error: so3::log(&turn).norm(),
             flight_position_error: (end.base.translation - landed.base.translation).norm(),
             saturation: limits.saturation,
@@ -219,6 +222,7 @@ impl Audit {
     #[must_use]
     pub fn json(&self) -> Value {
         json!({
+            "crc32": self.checksum,
             "flight_orientation_error_deg": self.flight_orientation_error.to_degrees(),
             "flight_position_error_m": self.flight_position_error,
             "torque_saturation_ms": self.any_saturation * 1e3,

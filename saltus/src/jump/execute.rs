@@ -7,10 +7,11 @@ use super::{FOOT_COUNT, JOINTS, OWNERS, Told, World};
 use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::lab::{Disturbance, Interface};
 use crate::verdict::{Hardware, Tick as HardwareTick};
-use jump_control::{Fault, Phase, Plan, Torques, sample};
+use jump_control::{Fault, Phase, Plan, sample};
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
-use jump_planner::reference::{Reference, heading_matrix};
+use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
+use jump_planner::stored::Stored;
 use jump_planner::task::Task;
 use landing::Outcome;
 use nalgebra::Vector3;
@@ -61,6 +62,8 @@ impl Trial<'_> {
 /// Everything a run leaves behind.
 pub(crate) struct Run {
     robot: Quadruped,
+    /// Of the container whose bytes the machine followed.
+    pub(crate) plan_checksum: u32,
     pub(crate) samples: Vec<Sample>,
     pub(crate) final_phase: Phase,
     pub(crate) fault: Option<Fault>,
@@ -77,11 +80,12 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    pub(super) fn new(task: &Task, tick: f64) -> Self {
+    pub(super) fn new(task: &Task, plan_checksum: u32, tick: f64) -> Self {
         let robot = &task.robot;
         let weight = task.problem.mass * task.problem.gravity;
         Self {
             robot: *robot,
+            plan_checksum,
             samples: Vec::new(),
             final_phase: Phase::Hold,
             fault: None,
@@ -179,26 +183,6 @@ pub(crate) fn run(
     run_watched(task, reference, trial, |_, _| {}, progress, |_| {})
 }
 
-/// The jump as the machine takes it, of a plan that borrows the reference.
-fn jump<'a>(
-    task: &Task,
-    reference: &'a Reference,
-) -> Result<Jump<'a, f64, JOINTS, FOOT_COUNT>, String> {
-    let plan = Plan::new(
-        &reference.nodes,
-        reference.takeoff,
-        reference.posing,
-        reference.touchdown,
-        Torques::Hold,
-    );
-    Ok(Jump {
-        plan: plan.map_err(|error| error.to_string())?,
-        weight: task.problem.mass * task.problem.gravity,
-        rot_goal: heading_matrix(task.heading),
-        landing_joints: reference.landing_joints,
-    })
-}
-
 /// Force of the ground on each foot, N.
 fn foot_forces(world: &World) -> [f64; FOOT_COUNT] {
     let forces = world.plant().contact_forces_w();
@@ -292,7 +276,8 @@ pub(crate) fn run_watched(
     for measure in trial.without {
         measure.leave(&mut settings);
     }
-    let jump = jump(task, reference)?;
+    let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
+    let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
     let mut workspace = landing::Workspace::new();
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
@@ -316,7 +301,7 @@ pub(crate) fn run_watched(
         world: plant(trial.sim, task, &trial.disturbance)?,
     };
     let mut keeper = Keeper {
-        run: Run::new(task, closed.world.plant().tick()),
+        run: Run::new(task, stored.checksum(), closed.world.plant().tick()),
         plan: &jump.plan,
         node: 0,
         delayed: !trial.without.contains(&Measure::Delay),

@@ -196,6 +196,7 @@ impl Judged {
             },
         });
         out["plan"] = plan_json(plan, reference);
+        out["plan"]["crc32"] = json!(run.plan_checksum);
         out
     }
 }
@@ -255,7 +256,7 @@ mod tests {
     #[test]
     fn a_lean_towards_the_goal_does_not_count() {
         let task = Task::load("a1/lateral").unwrap();
-        let mut run = Run::new(&task, 1e-4);
+        let mut run = Run::new(&task, 0, 1e-4);
         run.final_phase = Phase::Stand;
         let mut there = task.start;
         there.base.translation += task.goal;

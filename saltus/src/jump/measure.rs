@@ -98,6 +98,7 @@ impl Measure {
                 return Err("only whole-body plans can do without drives".into());
             }
             forget_drives(&task.robot, &mut reference.nodes);
+            reference.store_torques()?;
         }
         Ok(reference)
     }
