@@ -1,6 +1,8 @@
 //! The machine: memory, and one method per rate.
 
-use jump_control::{Fault, JointCommand, JointGains, Measurement, Phase, Plan, Scales, sample};
+use jump_control::{
+    Fault, JointCommand, JointGains, Measurement, Phase, Plan, Reference, Scales, sample,
+};
 use landing::{DetectorState, Grip, Landing, Outcome, PreLanding, Target, Turning, Workspace};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
@@ -230,36 +232,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let mut reference = sample(&jump.plan, t, then.node);
         reference.torques = sample(&jump.plan, t + s.lookahead, then.node).torques;
         self.node = then.node;
+        let moment = (then.node, t - measured.age);
         match self.supervisor.phase {
             // Its weight has settled on the feet by then.
             Phase::Hold if t > -s.weighing => self.scales.add(&measured.foot_forces),
-            Phase::Stance => {
-                let factor = self.scales.factor(jump.weight, s.max_payload);
-                reference.torques = reference.torques.map(|torque| torque * factor);
-                let feet_b = self.limbs.ends.map(|end| end.position);
-                let moment = (then.node, t - measured.age);
-                let mass = jump.weight / T::of(-GRAVITY[2]);
-                let forces = s.steady.forces(&jump.plan, moment, mass, measured, &feet_b);
-                for (end, force) in self.limbs.ends.iter().zip(&forces) {
-                    end.add_tr_mul(&-force, &mut reference.torques);
-                }
-                let share = s.steady.grip(&jump.plan, then.node);
-                if let Some(planned) = jump.plan.base(moment).filter(|_| share > T::ZERO) {
-                    let grip = Grip {
-                        turn: measured.base.rotation.inverse() * planned.rot_wb,
-                        rate_b: planned.omega_b - measured.base_velocity.angular,
-                        // The same legs are moved likewise in flight.
-                        damping: s.tuck.damping,
-                    };
-                    let (moved, speeds) = grip.joints(share, &self.wanted, &then.joint_velocities);
-                    add(&mut then.joints, &moved);
-                    add(&mut reference.joints, &moved);
-                    add(&mut then.joint_velocities, &speeds);
-                    add(&mut reference.joint_velocities, &speeds);
-                }
-            }
+            Phase::Stance => self.push_off(jump, moment, measured, &mut then, &mut reference),
             Phase::Flight => {
-                let moment = (then.node, t - measured.age);
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.tucked = s.tuck.share(self.tucked, &turning, dt);
                     let moved = s.tuck.joints(self.tucked, &turning, &self.wanted);
@@ -268,24 +246,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 }
             }
             Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
-                let left = jump.plan.touchdown - t;
-                let turn = so3::exp(
-                    &(measured.base_velocity.angular * math::clamp(left, T::ZERO, s.foresight)),
-                )
-                .inverse();
-                let up_b = turn * (measured.base.rotation.inverse() * Vector3::z());
-                let velocity_b = turn * measured.base_velocity.linear;
-                self.legs = self.posture.follow(
-                    self.model,
-                    &self.level_feet,
-                    (&up_b, &velocity_b),
-                    &self.legs,
-                    &mut self.wanted,
-                );
+                self.level(jump.plan.touchdown - t, measured);
                 (then.joints, reference.joints) = (self.legs, self.legs);
             }
             _ => {}
         }
+        let s = &self.settings;
         let q = Configuration {
             joints: then.joints,
             ..Configuration::NEUTRAL
@@ -298,6 +264,60 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &reference,
             &then,
         )
+    }
+
+    /// Feedback of the push-off at a `moment` of the plan: torques as the weight on the feet was, forces that keep the base on its
+    /// plan, and feet that keep their places in the world while the body leans. `then` is the plan as the legs were measured,
+    /// `reference` as it is now.
+    #[inline(always)]
+    fn push_off(
+        &self,
+        jump: &Jump<'a, T, N, F>,
+        moment: (usize, T),
+        measured: &Measurement<T, N, F>,
+        then: &mut Reference<T, N>,
+        reference: &mut Reference<T, N>,
+    ) {
+        let s = &self.settings;
+        let factor = self.scales.factor(jump.weight, s.max_payload);
+        reference.torques = reference.torques.map(|torque| torque * factor);
+        let feet_b = self.limbs.ends.map(|end| end.position);
+        let mass = jump.weight / T::of(-GRAVITY[2]);
+        let forces = s.steady.forces(&jump.plan, moment, mass, measured, &feet_b);
+        for (end, force) in self.limbs.ends.iter().zip(&forces) {
+            end.add_tr_mul(&-force, &mut reference.torques);
+        }
+        let share = s.steady.grip(&jump.plan, moment.0);
+        let Some(planned) = jump.plan.base(moment).filter(|_| share > T::ZERO) else {
+            return;
+        };
+        let grip = Grip {
+            turn: measured.base.rotation.inverse() * planned.rot_wb,
+            rate_b: planned.omega_b - measured.base_velocity.angular,
+            // The same legs are moved likewise in flight.
+            damping: s.tuck.damping,
+        };
+        let (moved, speeds) = grip.joints(share, &self.wanted, &then.joint_velocities);
+        add(&mut then.joints, &moved);
+        add(&mut reference.joints, &moved);
+        add(&mut then.joint_velocities, &speeds);
+        add(&mut reference.joint_velocities, &speeds);
+    }
+
+    /// The landing posture as the body will be turned at touchdown, `left` seconds from now.
+    #[inline(always)]
+    fn level(&mut self, left: T, measured: &Measurement<T, N, F>) {
+        let foresight = math::clamp(left, T::ZERO, self.settings.foresight);
+        let turn = so3::exp(&(measured.base_velocity.angular * foresight)).inverse();
+        let up_b = turn * (measured.base.rotation.inverse() * Vector3::z());
+        let velocity_b = turn * measured.base_velocity.linear;
+        self.legs = self.posture.follow(
+            self.model,
+            &self.level_feet,
+            (&up_b, &velocity_b),
+            &self.legs,
+            &mut self.wanted,
+        );
     }
 
     /// On the ground: forces on the feet in contact that bring the body to rest over them.

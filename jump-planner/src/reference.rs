@@ -205,6 +205,34 @@ pub fn standing(task: &Task) -> Result<Node, String> {
     })
 }
 
+/// Rolls the robot through an interval of the push-off by the midpoint rule: its velocity in the beginning, configuration and velocity in the
+/// middle, and its velocity at the end. Legs in the air move with `swing`.
+fn roll(
+    robot: &Quadruped,
+    interval: &Interval,
+    q: &mut State,
+    swing: &[f64; JOINTS],
+) -> Result<(Velocity, (State, Velocity), Velocity), String> {
+    let speed = |q: &State, s: f64| {
+        let [pos, vel, momentum] = interval.at(s);
+        let pulled = vel + (pos - robot.com(q)) / PULL;
+        robot.rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
+    };
+    let begin = speed(q, 0.0)?;
+    let steps = 2 * (0.5 * interval.dt / STEP).ceil() as usize;
+    let h = interval.dt / steps as f64;
+    let mut middle = (*q, begin);
+    for i in 0..steps {
+        let s = i as f64 * h;
+        let ahead = integrate(q, &(speed(q, s)? * (0.5 * h)));
+        *q = integrate(q, &(speed(&ahead, s + 0.5 * h)? * h));
+        if i + 1 == steps / 2 {
+            middle = (*q, speed(q, s + h)?);
+        }
+    }
+    Ok((begin, middle, speed(q, interval.dt)?))
+}
+
 /// The whole-body reference of a solved plan.
 ///
 /// # Errors
@@ -223,30 +251,14 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         .take_while(|i| i.contacts.contains(&true))
         .count();
     for interval in &intervals[..stance] {
-        let speed = |q: &State, s: f64, swing: &[f64; JOINTS]| {
-            let [pos, vel, momentum] = interval.at(s);
-            let pulled = vel + (pos - robot.com(q)) / PULL;
-            robot.rolling_velocity(q, &interval.contacts, &pulled, &momentum, swing)
-        };
         // Legs that have left the ground early fold towards the pre-landing posture.
         for leg in (0..FOOT_COUNT).filter(|leg| !interval.contacts[*leg]) {
             for i in 3 * leg..3 * leg + 3 {
                 swing[i] = (landing_joints[i] - q.joints[i]) / 0.1;
             }
         }
-        let begin = speed(&q, 0.0, &swing)?;
-        let (first, steps) = (q, 2 * (0.5 * interval.dt / STEP).ceil() as usize);
-        let h = interval.dt / steps as f64;
-        let mut middle = (q, begin);
-        for i in 0..steps {
-            let s = i as f64 * h;
-            let ahead = integrate(&q, &(speed(&q, s, &swing)? * (0.5 * h)));
-            q = integrate(&q, &(speed(&ahead, s + 0.5 * h, &swing)? * h));
-            if i + 1 == steps / 2 {
-                middle = (q, speed(&q, s + h, &swing)?);
-            }
-        }
-        let end = speed(&q, interval.dt, &swing)?;
+        let first = q;
+        let (begin, middle, end) = roll(robot, interval, &mut q, &swing)?;
         let rate = (end - begin) * (1.0 / interval.dt);
         let load = load(robot, &middle.0, &middle.1, &rate, interval)?;
         base_residual = f64::max(base_residual, load.residual);

@@ -6,12 +6,13 @@
 use dense_qp::Status;
 use nalgebra::{Matrix3, Vector3};
 use rbd_core::{
-    Configuration, Frame, GRAVITY, Limbs, Tangent, Tree, centroidal_state, generalized_gravity,
+    Configuration, Frame, GRAVITY, LimbEnd, Limbs, Tangent, Tree, centroidal_state,
+    generalized_gravity,
 };
 use so3::{Scalar, math};
 
 use crate::forces::Forces;
-use crate::wrench::{Arm, Wrench};
+use crate::wrench::Wrench;
 use crate::{Settings, Target};
 
 /// The landing controller of a robot with `N` joints and `F` feet.
@@ -89,6 +90,33 @@ pub struct Command<T: Scalar, const N: usize, const F: usize> {
     pub forces_w: [Vector3<T>; F],
     /// What came of the QP.
     pub outcome: Outcome,
+}
+
+impl<T: Scalar, const N: usize, const F: usize> Command<T, N, F> {
+    /// Legs that stand bear their own gravity and damp, without stiffness. Returned is what their joints do beside the forces of the
+    /// feet, −Jᵀf: the limits on these count it.
+    #[inline(always)]
+    fn bear(
+        &mut self,
+        settings: &Settings<T>,
+        limbs: &Limbs<T, N, F>,
+        contacts: &[bool; F],
+        (gravity, speeds): (&[T; N], &[T; N]),
+    ) -> [T; N] {
+        let mut other = [T::ZERO; N];
+        for (j, _) in standing(limbs, contacts).flat_map(LimbEnd::columns) {
+            let slots = self.feed_forward.get_mut(j).zip(other.get_mut(j));
+            let gains = self.stiffness.get_mut(j).zip(self.damping.get_mut(j));
+            let known = gravity.get(j).zip(speeds.get(j));
+            if let (Some((tau, other)), Some((stiffness, damping)), Some((gravity, qd))) =
+                (slots, gains, known)
+            {
+                (*tau, *other) = (*gravity, *gravity - settings.stance_damping * *qd);
+                (*stiffness, *damping) = (T::ZERO, settings.stance_damping);
+            }
+        }
+        other
+    }
 }
 
 impl<T: Scalar, const N: usize, const F: usize> Landing<T, N, F> {
@@ -174,42 +202,18 @@ impl<T: Scalar, const N: usize, const F: usize> Landing<T, N, F> {
             rot_wb.matrix(),
             body.mass,
         );
-        // Stance joints carry, beside −Jᵀf, the gravity of the legs, and damp.
         let gravity = generalized_gravity(model, posture).joints;
-        let mut other = [T::ZERO; N];
-        let stance = || {
-            let feet = limbs.ends.iter().zip(contacts);
-            feet.filter(|(_, on)| **on).map(|(end, _)| end)
-        };
-        for (j, _) in stance().flat_map(rbd_core::LimbEnd::columns) {
-            let slots = command.feed_forward.get_mut(j).zip(other.get_mut(j));
-            let gains = command.stiffness.get_mut(j).zip(command.damping.get_mut(j));
-            let known = gravity.get(j).zip(velocity.joints.get(j));
-            if let (Some((tau, other)), Some((stiffness, damping)), Some((gravity, qd))) =
-                (slots, gains, known)
-            {
-                (*tau, *other) = (*gravity, *gravity - s.stance_damping * *qd);
-                (*stiffness, *damping) = (T::ZERO, s.stance_damping);
-            }
-        }
+        let other = command.bear(s, limbs, contacts, (&gravity, &velocity.joints));
         let forces = &mut workspace.forces;
         let cone = (s.friction, s.max_normal_force);
         let torques = (&other, &self.max_torques);
         forces.limits.write(cone, limbs, contacts, torques);
         forces.on = *contacts;
-        let (force, moment) = (math::sqrt(s.force_weight), math::sqrt(s.moment_weight));
-        forces.arms = arms_w.map(|arm_w| Arm {
-            force,
-            moment_w: arm_w * moment,
-        });
-        forces.effort = s.effort_weight;
-        forces.wanted = Wrench {
-            force_w: wanted.force_w * force,
-            moment_w: wanted.moment_w * moment,
-        };
+        forces.aim(s, &arms_w, &wanted);
         (command.forces_w, command.outcome) = forces.solve();
         let forces_w = command.forces_w.iter().zip(contacts);
-        for (end, (force, _)) in stance().zip(forces_w.filter(|(_, on)| **on)) {
+        let forces_w = forces_w.filter(|(_, on)| **on).map(|(force, _)| force);
+        for (end, force) in standing(limbs, contacts).zip(forces_w) {
             end.add_tr_mul(&-(rot_wb.inverse() * force), &mut command.feed_forward);
         }
         command
@@ -269,6 +273,15 @@ impl<T: Scalar, const N: usize, const F: usize> Landing<T, N, F> {
         }
         torques
     }
+}
+
+/// The legs whose feet are on the ground.
+fn standing<'a, T: Scalar, const N: usize, const F: usize>(
+    limbs: &'a Limbs<T, N, F>,
+    contacts: &'a [bool; F],
+) -> impl Iterator<Item = &'a LimbEnd<T, N>> {
+    let ends = limbs.ends.iter().zip(contacts);
+    ends.filter(|(_, on)| **on).map(|(end, _)| end)
 }
 
 /// Arms of the feet from the centre of mass, and the support: the middle of all feet horizontally, the mean of those in contact

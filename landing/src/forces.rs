@@ -14,10 +14,10 @@ use dense_qp::Status;
 use nalgebra::Vector3;
 use so3::{Scalar, math};
 
-use crate::Outcome;
 use crate::face::{Face, MOST};
 use crate::limits::{Limits, Row};
 use crate::wrench::{Arm, Inverse, Square, Wrench};
+use crate::{Outcome, Settings};
 
 /// Factorisations in one tick. A tick that needs more ends with forces that keep every limit, and the next goes on from its rows.
 pub(crate) const MAX_STEPS: u32 = 20;
@@ -71,6 +71,26 @@ impl<T: Scalar, const N: usize, const F: usize> Forces<T, N, F> {
             forces: [Vector3::new(T::ZERO, T::ZERO, T::ZERO); F],
             pull: T::ZERO,
         }
+    }
+
+    /// What is to be solved: the wanted wrench about the centre of mass, for feet at `arms_w` from it, m, each part with its weight.
+    pub(crate) fn aim(
+        &mut self,
+        settings: &Settings<T>,
+        arms_w: &[Vector3<T>; F],
+        wanted: &Wrench<T>,
+    ) {
+        let force = math::sqrt(settings.force_weight);
+        let moment = math::sqrt(settings.moment_weight);
+        self.arms = arms_w.map(|arm_w| Arm {
+            force,
+            moment_w: arm_w * moment,
+        });
+        self.effort = settings.effort_weight;
+        self.wanted = Wrench {
+            force_w: wanted.force_w * force,
+            moment_w: wanted.moment_w * moment,
+        };
     }
 
     /// Forces for the feet, world axes: optimal, or inside all limits and said not to be.

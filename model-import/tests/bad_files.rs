@@ -129,42 +129,28 @@ fn numbers_that_are_none() {
 
 #[test]
 fn missing_parts() {
-    fails!(
-        r#"<mass value="1"/>"#,
-        "",
-        ["link `trunk`", "<mass>"],
-        ImportError::Missing { .. }
-    );
-    fails!(
-        r#"izz="0.1""#,
-        "",
-        ["link `trunk`", "izz"],
-        ImportError::Missing { .. }
-    );
-    fails!(
-        r#"<link name="upper">"#,
-        "<link>",
-        ["link in line 11", "name"],
-        ImportError::Missing { .. }
-    );
-    fails!(
-        r#"<parent link="trunk"/>"#,
-        "",
-        ["joint `shoulder`", "parent"],
-        ImportError::Missing { .. }
-    );
-    fails!(
-        r#"type="revolute""#,
-        "",
-        ["joint `shoulder`", "type"],
-        ImportError::Missing { .. }
-    );
-    fails!(
-        r#"<axis xyz="0 1 0"/>"#,
-        "<axis/>",
-        ["joint `shoulder`", "axis"],
-        ImportError::Missing { .. }
-    );
+    for (from, to, words) in [
+        (r#"<mass value="1"/>"#, "", ["link `trunk`", "<mass>"]),
+        (r#"izz="0.1""#, "", ["link `trunk`", "izz"]),
+        (
+            r#"<link name="upper">"#,
+            "<link>",
+            ["link in line 11", "name"],
+        ),
+        (
+            r#"<parent link="trunk"/>"#,
+            "",
+            ["joint `shoulder`", "parent"],
+        ),
+        (r#"type="revolute""#, "", ["joint `shoulder`", "type"]),
+        (
+            r#"<axis xyz="0 1 0"/>"#,
+            "<axis/>",
+            ["joint `shoulder`", "axis"],
+        ),
+    ] {
+        fails!(from, to, words, ImportError::Missing { .. });
+    }
 }
 
 #[test]

@@ -54,40 +54,21 @@ pub fn derivative_errors<
     problem.differentiate(k, state, control, next, at, &mut d);
 
     let mut errors = DerivativeErrors::default();
-    let compare = |worst: &mut T, plus: T, minus: T, exact: T| {
-        let difference = (plus - minus) / (T::TWO * h) - exact;
-        *worst = crate::kernel::larger(*worst, abs(difference) / (T::ONE + abs(exact)));
-    };
-    let mut column = |plus: &Values<T, NX, NI>,
-                      minus: &Values<T, NX, NI>,
-                      cost: T,
-                      dynamics: &[T; NX],
-                      row: &dyn Fn(usize) -> T| {
-        compare(&mut errors.cost, plus.cost, minus.cost, cost);
-        if next.is_some() {
-            for ((p, m), exact) in plus.gap.iter().zip(&minus.gap).zip(dynamics) {
-                compare(&mut errors.dynamics, *p, *m, *exact);
-            }
-        }
-        for (i, (p, m)) in plus
-            .rows
-            .iter()
-            .zip(&minus.rows)
-            .enumerate()
-            .take(dims.rows())
-        {
-            compare(&mut errors.rows, *p, *m, row(i));
-        }
-    };
+    let gaps = next.map_or(0, |_| NX);
+    let mut column =
+        |plus: &_, minus: &_, exact: &_| errors.add(plus, minus, exact, h, [gaps, dims.rows()]);
     for j in 0..NX {
         let mut step = [T::ZERO; NX];
         step[j] = h;
         let plus = values_at(&problem.retract(k, state, &step, None), control);
         step[j] = -h;
         let minus = values_at(&problem.retract(k, state, &step, None), control);
-        column(&plus, &minus, d.cost_x[j], &d.dynamics_x[j], &|i| {
-            d.rows_x.get(i).map_or(T::ZERO, |row| row[j])
-        });
+        let exact = Values {
+            cost: d.cost_x[j],
+            gap: d.dynamics_x[j],
+            rows: d.rows_x.map(|row| row[j]),
+        };
+        column(&plus, &minus, &exact);
     }
     for j in 0..dims.controls.min(NU) {
         let mut moved = *control;
@@ -95,14 +76,41 @@ pub fn derivative_errors<
         let plus = values_at(state, &moved);
         moved[j] = control[j] - h;
         let minus = values_at(state, &moved);
-        column(&plus, &minus, d.cost_u[j], &d.dynamics_u[j], &|i| {
-            d.rows_u.get(i).map_or(T::ZERO, |row| row[j])
-        });
+        let exact = Values {
+            cost: d.cost_u[j],
+            gap: d.dynamics_u[j],
+            rows: d.rows_u.map(|row| row[j]),
+        };
+        column(&plus, &minus, &exact);
     }
     errors
 }
 
 impl<T: Scalar> DerivativeErrors<T> {
+    /// Compares a column of the Jacobians with the values a width `h` to either side, over so many entries of the gap and so many rows.
+    fn add<const NX: usize, const NI: usize>(
+        &mut self,
+        plus: &Values<T, NX, NI>,
+        minus: &Values<T, NX, NI>,
+        exact: &Values<T, NX, NI>,
+        h: T,
+        [gaps, rows]: [usize; 2],
+    ) {
+        let compare = |worst: &mut T, plus: T, minus: T, exact: T| {
+            let difference = (plus - minus) / (T::TWO * h) - exact;
+            *worst = crate::kernel::larger(*worst, abs(difference) / (T::ONE + abs(exact)));
+        };
+        compare(&mut self.cost, plus.cost, minus.cost, exact.cost);
+        let of_gap = plus.gap.iter().zip(&minus.gap).zip(&exact.gap);
+        for ((p, m), exact) in of_gap.take(gaps) {
+            compare(&mut self.dynamics, *p, *m, *exact);
+        }
+        let of_rows = plus.rows.iter().zip(&minus.rows).zip(&exact.rows);
+        for ((p, m), exact) in of_rows.take(rows) {
+            compare(&mut self.rows, *p, *m, *exact);
+        }
+    }
+
     /// The largest of the three.
     #[must_use]
     pub fn worst(&self) -> T {

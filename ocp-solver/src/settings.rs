@@ -1,7 +1,7 @@
 //! Options, progress and outcome of a solve.
 
 use so3::Scalar;
-use so3::math::max;
+use so3::math::{max, min};
 
 /// How the barrier parameter µ goes to zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -242,3 +242,85 @@ impl core::fmt::Display for Error {
 }
 
 impl core::error::Error for Error {}
+
+impl<T: Scalar> Settings<T> {
+    /// Rules to try in turn: whether it is the adaptive one, and its first µ.
+    pub(crate) fn attempts(&self) -> [Option<(bool, T)>; 3] {
+        let mu = self.initial_mu;
+        match self.barrier {
+            Barrier::Adaptive => [Some((true, mu)), None, None],
+            Barrier::Monotone => [Some((false, mu)), None, None],
+            Barrier::Portfolio => [
+                Some((false, mu)),
+                Some((true, mu)),
+                Some((false, mu * T::of(30.0))),
+            ],
+        }
+    }
+
+    /// Factor on multipliers, which grow with the inverse of the give of the rows.
+    pub(crate) fn relief(elastic: T) -> T {
+        if elastic > T::ZERO {
+            max(min(T::of(1e3) * elastic, T::ONE), T::of(1e-3))
+        } else {
+            T::ONE
+        }
+    }
+
+    pub(crate) fn smallest_mu(&self, elastic: T) -> T {
+        self.complementarity_tolerance * T::of(0.1) / Self::relief(elastic)
+    }
+
+    /// The largest residual in units of its tolerance.
+    pub(crate) fn score(&self, residual: &Residual<T>) -> T {
+        max(
+            max(
+                residual.primal / self.primal_tolerance,
+                residual.dual / self.dual_tolerance,
+            ),
+            residual.complementarity / self.complementarity_tolerance,
+        )
+    }
+
+    /// Whether all residuals are within tolerance; a wider one for points of least violation.
+    pub(crate) fn is_solved(&self, residual: &Residual<T>, elastic: T) -> bool {
+        let (relief, wider) = if elastic > T::ZERO {
+            (Self::relief(elastic), T::of(100.0))
+        } else {
+            (T::ONE, T::ONE)
+        };
+        residual.primal <= self.primal_tolerance * wider
+            && residual.dual * relief <= self.dual_tolerance * wider
+            && residual.complementarity * relief <= self.complementarity_tolerance
+    }
+
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (value, name) in [
+            (self.primal_tolerance, "primal_tolerance"),
+            (self.dual_tolerance, "dual_tolerance"),
+            (self.complementarity_tolerance, "complementarity_tolerance"),
+            (self.initial_mu, "initial_mu"),
+            (self.mu_factor, "mu_factor"),
+            (self.mu_power, "mu_power"),
+            (self.mu_margin, "mu_margin"),
+            (self.adaptive_factor, "adaptive_factor"),
+            (self.initial_multiplier, "initial_multiplier"),
+            (self.bound_push, "bound_push"),
+            (self.rank_tolerance, "rank_tolerance"),
+            (self.stall_step, "stall_step"),
+        ] {
+            if !(value > T::ZERO && value.is_finite_number()) {
+                return Err(Error::Setting(name));
+            }
+        }
+        for (value, name) in [
+            (self.max_iterations, "max_iterations"),
+            (self.attempt_iterations, "attempt_iterations"),
+        ] {
+            if value == 0 {
+                return Err(Error::Setting(name));
+            }
+        }
+        Ok(())
+    }
+}

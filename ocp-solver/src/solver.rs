@@ -6,7 +6,7 @@ use crate::iterate::{self, Merit};
 use crate::keep::Keep;
 use crate::problem::Problem;
 use crate::rows::Complementarity;
-use crate::settings::{Barrier, Error, Progress, Residual, Settings, Solution, Status};
+use crate::settings::{Error, Progress, Residual, Settings, Solution, Status};
 use crate::stage::Stage;
 use core::ops::ControlFlow;
 use so3::Scalar;
@@ -177,11 +177,7 @@ impl<T: Scalar> Solver<T> {
             let violation = largest_violation(stages);
             if violation < run.best.primal {
                 // Where nothing better comes out, this is what the answer is about.
-                run.best = Residual {
-                    primal: violation,
-                    ..run.best
-                };
-                run.best_cost = iterate::merit(stages).cost;
+                run.answer_with(violation, stages);
                 for stage in stages.iter_mut() {
                     stage.best = (stage.state, stage.control);
                 }
@@ -191,11 +187,7 @@ impl<T: Scalar> Solver<T> {
             }
             if elastic < T::of(2e-5) && violation > before * T::HALF {
                 run.elastic = T::ZERO;
-                run.best = Residual {
-                    primal: violation,
-                    ..run.best
-                };
-                run.best_cost = iterate::merit(stages).cost;
+                run.answer_with(violation, stages);
                 return Status::LocallyInfeasible;
             }
             before = violation;
@@ -229,23 +221,8 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         let settings = &self.settings;
-        run.mu = initial_mu;
-        run.shift = T::ZERO;
-        run.short_steps = 0;
         let last_iteration = run.iterations.saturating_add(settings.attempt_iterations);
-        for stage in stages.iter_mut() {
-            let node = &mut stage.node;
-            node.elastic = run.elastic;
-            if run.warm {
-                continue;
-            }
-            node.costate = [T::ZERO; NX];
-            let mu = (!run.adaptive).then_some(initial_mu);
-            node.start_rows(settings.bound_push, settings.initial_multiplier, mu);
-        }
-        let mut point = iterate::merit(stages);
-        run.recent = [point.sum; 4];
-        (run.filter, run.leaps) = (Filter::new(point.sum), 0);
+        let mut point = run.begin(settings, stages, initial_mu);
         let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
         loop {
             let mut complementarity = Complementarity::new();
@@ -302,17 +279,7 @@ impl<T: Scalar> Solver<T> {
             } else {
                 trial
             };
-            if primal_step < settings.stall_step {
-                run.short_steps = run.short_steps.saturating_add(1);
-            } else {
-                run.short_steps = 0;
-            }
-            let patience = if run.adaptive {
-                settings.stall_count
-            } else {
-                settings.stall_count.saturating_mul(10)
-            };
-            if run.short_steps >= patience {
+            if run.stalls(settings, primal_step) {
                 return Status::Stalled;
             }
         }
@@ -411,6 +378,57 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
         sum > T::of(2.0) * worst
     }
 
+    /// Sets out from the iterate in the stages: multipliers and slacks, unless those of the last attempt are kept, and the filter.
+    fn begin<X: Copy, K, const NU: usize, const NI: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        stages: &mut [Stage<T, X, NX, NU, NI, K>],
+        initial_mu: T,
+    ) -> Merit<T> {
+        self.mu = initial_mu;
+        self.shift = T::ZERO;
+        self.short_steps = 0;
+        for stage in stages.iter_mut() {
+            let node = &mut stage.node;
+            node.elastic = self.elastic;
+            if self.warm {
+                continue;
+            }
+            node.costate = [T::ZERO; NX];
+            let mu = (!self.adaptive).then_some(initial_mu);
+            node.start_rows(settings.bound_push, settings.initial_multiplier, mu);
+        }
+        let point = iterate::merit(stages);
+        self.recent = [point.sum; 4];
+        (self.filter, self.leaps) = (Filter::new(point.sum), 0);
+        point
+    }
+
+    /// The answer is about the iterate in the stages, which violates its rows by so much.
+    fn answer_with<X: Copy, K, const NU: usize, const NI: usize>(
+        &mut self,
+        violation: T,
+        stages: &[Stage<T, X, NX, NU, NI, K>],
+    ) {
+        self.best.primal = violation;
+        self.best_cost = iterate::merit(stages).cost;
+    }
+
+    /// Whether so many steps in a row were as short as this one that the attempt is given up.
+    fn stalls(&mut self, settings: &Settings<T>, step: T) -> bool {
+        if step < settings.stall_step {
+            self.short_steps = self.short_steps.saturating_add(1);
+        } else {
+            self.short_steps = 0;
+        }
+        let patience = if self.adaptive {
+            settings.stall_count
+        } else {
+            settings.stall_count.saturating_mul(10)
+        };
+        self.short_steps >= patience
+    }
+
     /// Keeps the iterate if it is the closest to a solution so far.
     fn remember<X: Copy, K, const NU: usize, const NI: usize>(
         &mut self,
@@ -419,13 +437,7 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
         point: &Merit<T>,
         residual: &Residual<T>,
     ) {
-        let score = max(
-            max(
-                residual.primal / settings.primal_tolerance,
-                residual.dual / settings.dual_tolerance,
-            ),
-            residual.complementarity / settings.complementarity_tolerance,
-        );
+        let score = settings.score(residual);
         if score < self.best_score || self.best_cost == T::INFINITY {
             self.best_score = score;
             self.best = *residual;
@@ -434,77 +446,6 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
                 stage.best = (stage.state, stage.control);
             }
         }
-    }
-}
-
-impl<T: Scalar> Settings<T> {
-    /// Rules to try in turn: whether it is the adaptive one, and its first µ.
-    fn attempts(&self) -> [Option<(bool, T)>; 3] {
-        let mu = self.initial_mu;
-        match self.barrier {
-            Barrier::Adaptive => [Some((true, mu)), None, None],
-            Barrier::Monotone => [Some((false, mu)), None, None],
-            Barrier::Portfolio => [
-                Some((false, mu)),
-                Some((true, mu)),
-                Some((false, mu * T::of(30.0))),
-            ],
-        }
-    }
-
-    /// Factor on multipliers, which grow with the inverse of the give of the rows.
-    fn relief(elastic: T) -> T {
-        if elastic > T::ZERO {
-            max(min(T::of(1e3) * elastic, T::ONE), T::of(1e-3))
-        } else {
-            T::ONE
-        }
-    }
-
-    fn smallest_mu(&self, elastic: T) -> T {
-        self.complementarity_tolerance * T::of(0.1) / Self::relief(elastic)
-    }
-
-    /// Whether all residuals are within tolerance; a wider one for points of least violation.
-    fn is_solved(&self, residual: &Residual<T>, elastic: T) -> bool {
-        let (relief, wider) = if elastic > T::ZERO {
-            (Self::relief(elastic), T::of(100.0))
-        } else {
-            (T::ONE, T::ONE)
-        };
-        residual.primal <= self.primal_tolerance * wider
-            && residual.dual * relief <= self.dual_tolerance * wider
-            && residual.complementarity * relief <= self.complementarity_tolerance
-    }
-
-    fn check(&self) -> Result<(), Error> {
-        for (value, name) in [
-            (self.primal_tolerance, "primal_tolerance"),
-            (self.dual_tolerance, "dual_tolerance"),
-            (self.complementarity_tolerance, "complementarity_tolerance"),
-            (self.initial_mu, "initial_mu"),
-            (self.mu_factor, "mu_factor"),
-            (self.mu_power, "mu_power"),
-            (self.mu_margin, "mu_margin"),
-            (self.adaptive_factor, "adaptive_factor"),
-            (self.initial_multiplier, "initial_multiplier"),
-            (self.bound_push, "bound_push"),
-            (self.rank_tolerance, "rank_tolerance"),
-            (self.stall_step, "stall_step"),
-        ] {
-            if !(value > T::ZERO && value.is_finite_number()) {
-                return Err(Error::Setting(name));
-            }
-        }
-        for (value, name) in [
-            (self.max_iterations, "max_iterations"),
-            (self.attempt_iterations, "attempt_iterations"),
-        ] {
-            if value == 0 {
-                return Err(Error::Setting(name));
-            }
-        }
-        Ok(())
     }
 }
 

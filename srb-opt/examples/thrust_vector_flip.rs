@@ -195,26 +195,56 @@ impl Problem<f64, NX, NU, NI> for Flip {
         d: &mut Derivatives<f64, NX, NU, NI>,
     ) {
         let Some(next) = next else {
-            d.cost_x[TIME] = 1.0;
-            for i in 0..12 {
-                d.rows_x[i][i] = 1.0;
-            }
-            let by_rotation = so3::right_jacobian_inverse(&log(&x.rot_wb));
-            for i in 0..3 {
-                put(&mut d.rows_x[6 + i], 6, &by_rotation.row(i).transpose());
-            }
-            return;
+            return differentiate_end(x, d);
         };
-        let m = Motion::new(x, u);
-        let (dt, share) = (m.dt, 1.0 / N as f64);
-        let (one, w) = (Matrix3::identity(), x.omega_b * dt);
-        // Multiplied by the Jacobian of the gap the rows are exact for large gaps as well.
+        let flow = Flow::new(x, u, next);
+        flow.jacobian(x, u, d);
+        flow.hessian(x, u, at.dynamics_multiplier, d);
+
+        let scale = [MAX_THRUST, MAX_MOMENT, MAX_MOMENT, MAX_MOMENT];
+        let first = usize::from(k == 0);
+        for i in 0..NU {
+            let weight = 2.0 * EFFORT / (scale[i] * scale[i]);
+            (d.cost_u[i], d.hessian_uu[i][i]) = (weight * u[i], weight);
+            d.rows_u[first + i][i] = 1.0;
+        }
+        if k == 0 {
+            d.rows_x[0][TIME] = 1.0;
+        }
+    }
+}
+
+/// One interval's dynamics, and what their first and second derivatives share.
+struct Flow {
+    motion: Motion,
+    /// ∂(rotation gap)/∂(rotation): multiplied by it the rows are exact for large gaps as well.
+    turn: Matrix3<f64>,
+    /// ∂(rotation gap)/∂(ω dt).
+    jacobian: Matrix3<f64>,
+    /// I⁻¹ ∂(ω × I ω)/∂ω.
+    gyration: Matrix3<f64>,
+}
+
+impl Flow {
+    fn new(x: &State, u: &[f64; NU], next: &State) -> Self {
+        let motion = Motion::new(x, u);
+        let w = x.omega_b * motion.dt;
         let turn = (x.rot_wb.inverse() * next.rot_wb).inverse().into_inner();
-        let jacobian = turn * exp(&w).into_inner() * right_jacobian(&w);
+        let momentum = inertia() * x.omega_b;
+        Self {
+            motion,
+            turn,
+            jacobian: turn * exp(&w).into_inner() * right_jacobian(&w),
+            gyration: inverse_inertia() * (hat(&x.omega_b) * inertia() - hat(&momentum)),
+        }
+    }
+
+    /// Jacobian of the gap.
+    fn jacobian(&self, x: &State, u: &[f64; NU], d: &mut Derivatives<f64, NX, NU, NI>) {
+        let (m, jacobian) = (&self.motion, &self.jacobian);
+        let (dt, share, one) = (m.dt, 1.0 / N as f64, Matrix3::identity());
         let thrust_b = -hat(&Vector3::z()) * (u[0] / MASS);
         let by_rotation = x.rot_wb.matrix() * thrust_b;
-        let momentum = inertia() * x.omega_b;
-        let gyration = inverse_inertia() * (hat(&x.omega_b) * inertia() - hat(&momentum));
 
         let a = &mut d.dynamics_x;
         put_block(a, 0, 0, &one);
@@ -222,9 +252,9 @@ impl Problem<f64, NX, NU, NI> for Flip {
         put_block(a, 0, 6, &(by_rotation * (dt * dt / 2.0)));
         put_block(a, 3, 3, &one);
         put_block(a, 3, 6, &(by_rotation * dt));
-        put_block(a, 6, 6, &turn);
+        put_block(a, 6, 6, &self.turn);
         put_block(a, 6, 9, &(jacobian * dt));
-        put_block(a, 9, 9, &(one - gyration * dt));
+        put_block(a, 9, 9, &(one - self.gyration * dt));
         put(&mut a[TIME], 0, &((x.vel_w + m.acceleration * dt) * share));
         put(&mut a[TIME], 3, &(m.acceleration * share));
         put(&mut a[TIME], 6, &(jacobian * x.omega_b * share));
@@ -239,9 +269,18 @@ impl Problem<f64, NX, NU, NI> for Flip {
                 &(inverse_inertia().column(j) * dt),
             );
         }
+    }
 
-        // Second derivatives: bilinear in the duration, and thrust × rotation.
-        let l = at.dynamics_multiplier;
+    /// Hessian of the gap times its multipliers `l`: bilinear in the duration, and thrust × rotation.
+    fn hessian(
+        &self,
+        x: &State,
+        u: &[f64; NU],
+        l: &[f64; NX],
+        d: &mut Derivatives<f64, NX, NU, NI>,
+    ) {
+        let (m, jacobian) = (&self.motion, &self.jacobian);
+        let (dt, share, one) = (m.dt, 1.0 / N as f64, Matrix3::identity());
         let part = |at: usize| Vector3::new(l[at], l[at + 1], l[at + 2]);
         let (l_p, l_v, l_r, l_w) = (part(0), part(3), part(6), part(9));
         let push_b = x.rot_wb.inverse() * (l_v * dt + l_p * (dt * dt / 2.0)) / MASS;
@@ -263,7 +302,8 @@ impl Problem<f64, NX, NU, NI> for Flip {
             (6, z.cross(&rate_b) * u[0]),
             (
                 9,
-                (jacobian.transpose() * l_r + l_w - (one + gyration.transpose()) * l_w) * share,
+                (jacobian.transpose() * l_r + l_w - (one + self.gyration.transpose()) * l_w)
+                    * share,
             ),
         ];
         for (row, value) in on_time {
@@ -278,17 +318,18 @@ impl Problem<f64, NX, NU, NI> for Flip {
         for j in 0..3 {
             d.hessian_xu[1 + j][TIME] = share * q[j];
         }
+    }
+}
 
-        let scale = [MAX_THRUST, MAX_MOMENT, MAX_MOMENT, MAX_MOMENT];
-        let first = usize::from(k == 0);
-        for i in 0..NU {
-            let weight = 2.0 * EFFORT / (scale[i] * scale[i]);
-            (d.cost_u[i], d.hessian_uu[i][i]) = (weight * u[i], weight);
-            d.rows_u[first + i][i] = 1.0;
-        }
-        if k == 0 {
-            d.rows_x[0][TIME] = 1.0;
-        }
+/// The last node: the duration is the cost, and the state is where it should be.
+fn differentiate_end(x: &State, d: &mut Derivatives<f64, NX, NU, NI>) {
+    d.cost_x[TIME] = 1.0;
+    for i in 0..12 {
+        d.rows_x[i][i] = 1.0;
+    }
+    let by_rotation = so3::right_jacobian_inverse(&log(&x.rot_wb));
+    for i in 0..3 {
+        put(&mut d.rows_x[6 + i], 6, &by_rotation.row(i).transpose());
     }
 }
 

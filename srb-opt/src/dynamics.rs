@@ -32,7 +32,7 @@ pub(crate) struct Interval<T: Scalar> {
     moment_b: Vector3<T>,
 }
 
-/// Newtons per unit of control: about half the weight of an A1, so that controls are of order one.
+/// Newtons per unit of control: half the robot's weight, so that controls are of order one.
 pub(crate) fn force_unit<T: Scalar, const FEET: usize, const PHASES: usize>(
     problem: &Problem<T, FEET, PHASES>,
 ) -> T {
@@ -125,20 +125,57 @@ impl<T: Scalar> Interval<T> {
         multiplier: &[T; NX],
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
-        let Self { dt, rate, .. } = *self;
-        let time = TIMES + self.phase;
-        let (omega, rot) = (&state.omega_b, &state.rot_wb);
         let inverse_inertia = problem.inverse_inertia();
-        let identity = Matrix3::identity();
-        let force_b = rot.transpose() * hat(&self.force);
+        let body_from_world = state.rot_wb.transpose();
+        let turn = body_from_world * next.rot_wb;
+        let shared = Shared {
+            inverse_inertia,
+            force_b: body_from_world * hat(&self.force),
+            momentum: problem.inertia_b * state.omega_b,
+            turn: exp_inverse_times(&turn, problem.exponential, &(state.omega_b * self.dt)),
+        };
+        let part = |at: usize| Vector3::new(multiplier[at], multiplier[at + 1], multiplier[at + 2]);
+        let q = inverse_inertia * part(OMEGA);
+        let pull = Pull {
+            position: part(POSITION),
+            velocity: part(VELOCITY),
+            rotation: part(ROTATION),
+            q,
+            z: state.rot_wb * q,
+        };
+        self.state_jacobian(problem, state, &shared, d);
+        self.state_hessian(problem, state, &shared, &pull, d);
+        self.forces(problem, state, &inverse_inertia, &pull, d);
+    }
 
-        // Jacobian in the state.
+    /// Jacobian in the state.
+    #[inline(always)]
+    fn state_jacobian<
+        const FEET: usize,
+        const PHASES: usize,
+        const NX: usize,
+        const NU: usize,
+        const NI: usize,
+    >(
+        &self,
+        problem: &Problem<T, FEET, PHASES>,
+        state: &State<T, PHASES>,
+        shared: &Shared<T>,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let Self { dt, rate, .. } = *self;
+        let Shared {
+            inverse_inertia,
+            force_b,
+            momentum,
+            turn,
+        } = shared;
+        let omega = &state.omega_b;
+        let identity = Matrix3::identity();
         let a = &mut d.dynamics_x;
         put_column(a, POSITION, POSITION, &identity);
         put_column(a, POSITION, VELOCITY, &(identity * dt));
         put_column(a, VELOCITY, VELOCITY, &identity);
-        let turn = rot.transpose() * next.rot_wb;
-        let turn = exp_inverse_times(&turn, problem.exponential, &(omega * dt));
         put_column(a, ROTATION, ROTATION, &turn.next_from_body);
         put_column(a, ROTATION, OMEGA, &(turn.jacobian * dt));
         put_column(a, OMEGA, POSITION, &(inverse_inertia * force_b * dt));
@@ -148,8 +185,7 @@ impl<T: Scalar> Interval<T> {
             ROTATION,
             &(inverse_inertia * hat(&self.moment_b) * dt),
         );
-        let momentum = problem.inertia_b * omega;
-        let gyration = hat(omega) * problem.inertia_b - hat(&momentum);
+        let gyration = hat(omega) * problem.inertia_b - hat(momentum);
         put_column(
             a,
             OMEGA,
@@ -159,7 +195,7 @@ impl<T: Scalar> Interval<T> {
         for i in 0..PHASES {
             a[TIMES + i][TIMES + i] = T::ONE;
         }
-        let by_time = &mut a[time];
+        let by_time = &mut a[TIMES + self.phase];
         put(
             by_time,
             POSITION,
@@ -169,31 +205,45 @@ impl<T: Scalar> Interval<T> {
         let turned = turn.jacobian * omega * rate;
         put(by_time, ROTATION, &turned);
         put(by_time, OMEGA, &(self.alpha * rate));
+    }
 
-        // Second derivatives: everything bilinear in the duration, and force × position or rotation.
-        let part = |at: usize| Vector3::new(multiplier[at], multiplier[at + 1], multiplier[at + 2]);
-        let (l_p, l_v, l_r, l_w) = (part(POSITION), part(VELOCITY), part(ROTATION), part(OMEGA));
-        let q = inverse_inertia * l_w;
-        let z = rot * q;
+    /// Second derivatives in the state: everything bilinear in the duration, and force × position or rotation.
+    #[inline(always)]
+    fn state_hessian<
+        const FEET: usize,
+        const PHASES: usize,
+        const NX: usize,
+        const NU: usize,
+        const NI: usize,
+    >(
+        &self,
+        problem: &Problem<T, FEET, PHASES>,
+        state: &State<T, PHASES>,
+        shared: &Shared<T>,
+        pull: &Pull<T>,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let Self { dt, rate, .. } = *self;
+        let time = TIMES + self.phase;
+        let (q, m, omega) = (&pull.q, &self.moment_b, &state.omega_b);
         let h = &mut d.hessian_xx;
         put_column(h, POSITION, POSITION, &Matrix3::zeros());
-        let mixed = hat(&q) * force_b * dt;
+        let mixed = hat(q) * shared.force_b * dt;
         put_column(h, ROTATION, POSITION, &mixed);
         put_column(h, POSITION, ROTATION, &mixed.transpose());
-        let m = &self.moment_b;
         let outer = (q * m.transpose() + m * q.transpose()) * T::HALF;
         let tilt = outer - Matrix3::from_diagonal_element(q.dot(m));
         put_column(h, ROTATION, ROTATION, &(tilt * dt));
-        let spin = hat(&q) * problem.inertia_b;
+        let spin = hat(q) * problem.inertia_b;
         put_column(h, OMEGA, OMEGA, &((spin + spin.transpose()) * dt));
         let on_time = [
-            (POSITION, z.cross(&self.force) * rate),
-            (VELOCITY, l_p * rate),
+            (POSITION, pull.z.cross(&self.force) * rate),
+            (VELOCITY, pull.position * rate),
             (ROTATION, q.cross(m) * rate),
             (
                 OMEGA,
-                (q.cross(&momentum) - problem.inertia_b * q.cross(omega)
-                    + turn.jacobian.transpose() * l_r)
+                (q.cross(&shared.momentum) - problem.inertia_b * q.cross(omega)
+                    + shared.turn.jacobian.transpose() * pull.rotation)
                     * rate,
             ),
         ];
@@ -203,9 +253,27 @@ impl<T: Scalar> Interval<T> {
                 h[at + i][time] = value[i];
             }
         }
-        h[time][time] = l_p.dot(&self.acceleration) * rate * rate;
+        h[time][time] = pull.position.dot(&self.acceleration) * rate * rate;
+    }
 
-        // Jacobian and second derivatives in the forces.
+    /// Jacobian and second derivatives in the forces.
+    #[inline(always)]
+    fn forces<
+        const FEET: usize,
+        const PHASES: usize,
+        const NX: usize,
+        const NU: usize,
+        const NI: usize,
+    >(
+        &self,
+        problem: &Problem<T, FEET, PHASES>,
+        state: &State<T, PHASES>,
+        inverse_inertia: &Matrix3<T>,
+        pull: &Pull<T>,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let Self { dt, rate, .. } = *self;
+        let time = TIMES + self.phase;
         let unit = force_unit(problem);
         let Some(data) = problem.phases.get(self.phase) else {
             return;
@@ -221,14 +289,14 @@ impl<T: Scalar> Interval<T> {
             dt * dt * T::HALF / problem.mass * unit,
             dt / problem.mass * unit,
         );
-        let linear = (l_p * dt + l_v) * (rate * unit / problem.mass);
+        let linear = (pull.position * dt + pull.velocity) * (rate * unit / problem.mass);
         for (((foot, _), b), h) in in_contact.zip(b_triples).zip(h_triples) {
             let lever = foot.pos_wf - state.pos_w;
-            let lever_b = rot.transpose() * hat(&lever);
+            let lever_b = state.rot_wb.transpose() * hat(&lever);
             let on_omega = inverse_inertia * lever_b * (dt * unit);
-            let on_rotation = hat(&q) * lever_b * (dt * unit);
-            let on_position = hat(&z) * (dt * unit);
-            let on_time = linear - lever.cross(&z) * (rate * unit);
+            let on_rotation = hat(&pull.q) * lever_b * (dt * unit);
+            let on_position = hat(&pull.z) * (dt * unit);
+            let on_time = linear - lever.cross(&pull.z) * (rate * unit);
             for j in 0..3 {
                 b[j][POSITION + j] = by_p;
                 b[j][VELOCITY + j] = by_v;
@@ -239,6 +307,28 @@ impl<T: Scalar> Interval<T> {
             }
         }
     }
+}
+
+/// What Jacobian and Hessian in the state share.
+struct Shared<T: Scalar> {
+    /// I⁻¹.
+    inverse_inertia: Matrix3<T>,
+    /// Rᵀ [Σ f]×.
+    force_b: Matrix3<T>,
+    /// I ω.
+    momentum: Vector3<T>,
+    turn: Turn<T>,
+}
+
+/// λ, in its parts.
+struct Pull<T: Scalar> {
+    position: Vector3<T>,
+    velocity: Vector3<T>,
+    rotation: Vector3<T>,
+    /// I⁻¹ λ_ω.
+    q: Vector3<T>,
+    /// The same in world axes.
+    z: Vector3<T>,
 }
 
 /// How rotation steps travel over an interval with the rotation gap `d`.

@@ -9,6 +9,50 @@ use ocp_solver::Stage;
 use so3::Scalar;
 use so3::math::sin_cos;
 
+/// The centre of mass rests at the start until lift-off, while its velocity ramps up, and then flies to the goal.
+struct Ballistic<T: Scalar> {
+    start_w: Vector3<T>,
+    gravity: T,
+    /// When the last phase begins, s.
+    lift_off: T,
+    /// Velocity there.
+    take_off: Vector3<T>,
+}
+
+impl<T: Scalar> Ballistic<T> {
+    fn new<const FEET: usize, const PHASES: usize>(problem: &Problem<T, FEET, PHASES>) -> Self {
+        let (mut total, mut flight) = (T::ZERO, T::ZERO);
+        for phase in problem.used_phases() {
+            flight = phase.duration_guess;
+            total += flight;
+        }
+        let across = problem.goal_w - problem.start_w;
+        let up = Vector3::new(T::ZERO, T::ZERO, problem.gravity * T::HALF * flight);
+        Self {
+            start_w: problem.start_w,
+            gravity: problem.gravity,
+            lift_off: total - flight,
+            take_off: across / flight + up,
+        }
+    }
+
+    /// Position and velocity.
+    fn at(&self, time: T) -> (Vector3<T>, Vector3<T>) {
+        let in_flight = time - self.lift_off;
+        if in_flight <= T::of(1e-12) {
+            let share = if self.lift_off > T::ZERO {
+                time / self.lift_off
+            } else {
+                T::ZERO
+            };
+            return (self.start_w, self.take_off * share);
+        }
+        let fall = Vector3::new(T::ZERO, T::ZERO, self.gravity * in_flight);
+        let pos_w = self.start_w + (self.take_off - fall * T::HALF) * in_flight;
+        (pos_w, self.take_off - fall)
+    }
+}
+
 impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
     /// Writes this problem's reference rotation into stages that another one guessed or solved; nothing else of them changes.
     pub fn write_reference<const NX: usize, const NU: usize, const NI: usize, K>(
@@ -31,16 +75,11 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
         mut perturb: impl FnMut() -> T,
     ) {
-        let (mut durations, mut total, mut flight) = ([T::ZERO; PHASES], T::ZERO, T::ZERO);
+        let mut durations = [T::ZERO; PHASES];
         for (slot, phase) in durations.iter_mut().zip(self.used_phases()) {
             *slot = phase.duration_guess;
-            total += *slot;
-            flight = *slot;
         }
-        let lift_off = total - flight;
-        let across = self.goal_w - self.start_w;
-        let up = Vector3::new(T::ZERO, T::ZERO, self.gravity * T::HALF * flight);
-        let take_off = across / flight + up;
+        let way = Ballistic::new(self);
         // The guess of the durations is moved inside their bounds after the noise.
         let mut moved = durations;
         for (slot, phase) in moved.iter_mut().zip(self.used_phases()) {
@@ -58,20 +97,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
             let angle = self.reference_angle(k);
             state.durations = moved;
             state.reference = sin_cos(angle);
-            let in_flight = time - lift_off;
-            if in_flight <= T::of(1e-12) {
-                state.pos_w = self.start_w;
-                state.vel_w = take_off
-                    * (if lift_off > T::ZERO {
-                        time / lift_off
-                    } else {
-                        T::ZERO
-                    });
-            } else {
-                let fall = Vector3::new(T::ZERO, T::ZERO, self.gravity * in_flight);
-                state.pos_w = self.start_w + (take_off - fall * T::HALF) * in_flight;
-                state.vel_w = take_off - fall;
-            }
+            (state.pos_w, state.vel_w) = way.at(time);
             let mut step_dt = dt;
             let mut turn = angle - self.reference_angle(k.saturating_sub(1));
             let mut moved_dt = dt;

@@ -102,7 +102,7 @@ impl<T: Scalar> Default for Workspace<T> {
     }
 }
 
-/// A jump of 30 cm to the left by A1 as paper A, Table I has it, on 18 intervals of stance and 12 of flight.
+/// A jump of 30 cm to the left by the quadruped of paper A, Table I, on 18 intervals of stance and 12 of flight.
 #[must_use]
 pub fn example<T: Scalar>() -> Jump<T> {
     let s = T::of;

@@ -210,78 +210,47 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
     /// # Errors
     /// [`Error::Parameter`] names the first number that is not usable.
     pub fn check(&self) -> Result<(), Error> {
-        let positive = |value: T, name| {
-            if value > T::ZERO && value.is_finite_number() {
-                Ok(())
-            } else {
-                Err(Error::Parameter(name))
-            }
-        };
-        let finite = |ok: bool, name| {
-            if ok {
-                Ok(())
-            } else {
-                Err(Error::Parameter(name))
-            }
-        };
         let all = |v: &Vector3<T>| v.iter().all(|x| x.is_finite_number());
         positive(self.mass, "mass: must be positive")?;
         positive(self.gravity, "gravity: must be positive")?;
-        finite(
+        require(
             nalgebra::Cholesky::new(self.inertia_b).is_some(),
             "inertia_b: must be positive definite",
         )?;
         positive(self.friction, "friction: must be positive")?;
         positive(self.max_force, "max_force: must be positive")?;
-        finite(
+        require(
             self.clearance.is_finite_number(),
             "clearance: must be finite",
         )?;
-        finite(all(&self.start_w), "start_w: must be finite")?;
-        finite(all(&self.goal_w), "goal_w: must be finite")?;
-        finite(self.angle.is_finite_number(), "angle: must be finite")?;
+        require(all(&self.start_w), "start_w: must be finite")?;
+        require(all(&self.goal_w), "goal_w: must be finite")?;
+        require(self.angle.is_finite_number(), "angle: must be finite")?;
         let unit = (self.axis.norm_squared() - T::ONE).to_f64().abs() < 1e-6;
-        finite(unit, "axis: must be a unit vector")?;
+        require(unit, "axis: must be a unit vector")?;
         for foot in &self.feet {
-            finite(
+            require(
                 all(&foot.pos_wf) && all(&foot.nominal_b),
                 "feet: must be finite",
             )?;
         }
-        finite(self.corners.iter().all(all), "corners: must be finite")?;
+        require(self.corners.iter().all(all), "corners: must be finite")?;
         for i in 0..3 {
-            finite(
+            require(
                 self.reach_lower[i] < self.reach_upper[i],
                 "reach_lower: must be below reach_upper",
             )?;
         }
         if let Some(edge) = &self.edge {
-            finite(edge.axis < 2, "edge.axis: must be 0 or 1")?;
+            require(edge.axis < 2, "edge.axis: must be 0 or 1")?;
             positive(edge.width, "edge.width: must be positive")?;
-            finite(edge.drop.is_finite_number(), "edge.drop: must be finite")?;
-            finite(
+            require(edge.drop.is_finite_number(), "edge.drop: must be finite")?;
+            require(
                 edge.distance.is_finite_number(),
                 "edge.distance: must be finite",
             )?;
         }
-        let counted = self.phase_count > 0 && self.phase_count <= PHASES;
-        finite(counted, "phase_count: must be between 1 and PHASES")?;
-        for phase in self.used_phases() {
-            finite(phase.intervals > 0, "phases.intervals: must be at least 1")?;
-            positive(phase.min_duration, "phases.min_duration: must be positive")?;
-            finite(
-                phase.min_duration <= phase.max_duration,
-                "phases.max_duration: below min_duration",
-            )?;
-            positive(
-                phase.duration_guess,
-                "phases.duration_guess: must be positive",
-            )?;
-        }
-        finite(
-            self.min_total <= self.max_total,
-            "max_total: must not be below min_total",
-        )?;
+        self.check_phases()?;
         for (value, name) in [
             (self.weights.omega, "weights.omega: must be positive"),
             (self.weights.force, "weights.force: must be positive"),
@@ -292,4 +261,39 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         }
         Ok(())
     }
+
+    /// Phases, their durations and how long they may take together.
+    fn check_phases(&self) -> Result<(), Error> {
+        let counted = self.phase_count > 0 && self.phase_count <= PHASES;
+        require(counted, "phase_count: must be between 1 and PHASES")?;
+        for phase in self.used_phases() {
+            require(phase.intervals > 0, "phases.intervals: must be at least 1")?;
+            positive(phase.min_duration, "phases.min_duration: must be positive")?;
+            require(
+                phase.min_duration <= phase.max_duration,
+                "phases.max_duration: below min_duration",
+            )?;
+            positive(
+                phase.duration_guess,
+                "phases.duration_guess: must be positive",
+            )?;
+        }
+        require(
+            self.min_total <= self.max_total,
+            "max_total: must not be below min_total",
+        )
+    }
+}
+
+/// Refuses the number of this name.
+fn require(ok: bool, name: &'static str) -> Result<(), Error> {
+    if ok {
+        Ok(())
+    } else {
+        Err(Error::Parameter(name))
+    }
+}
+
+fn positive<T: Scalar>(value: T, name: &'static str) -> Result<(), Error> {
+    require(value > T::ZERO && value.is_finite_number(), name)
 }

@@ -6,7 +6,7 @@
 //! the normal force.
 
 use crate::dynamics::force_unit;
-use crate::problem::Problem;
+use crate::problem::{Foot, Problem};
 use crate::rotation::{hat, vee, vee_derivative};
 use crate::state::{POSITION, ROTATION, State, TIMES, add_block, put};
 use nalgebra::{Matrix3, Vector3};
@@ -27,7 +27,7 @@ pub const fn row_capacity(feet: usize, phases: usize) -> usize {
 impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES> {
     /// Feet in contact over interval `k`; none at the last node.
     #[inline(always)]
-    pub(crate) fn contacts(&self, k: usize) -> impl Iterator<Item = &crate::problem::Foot<T>> {
+    pub(crate) fn contacts(&self, k: usize) -> impl Iterator<Item = &Foot<T>> {
         let on = if k < self.intervals() {
             self.phase_of(k)
         } else {
@@ -175,53 +175,14 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         y: &[T; NI],
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
-        let rot = &state.rot_wb;
-        let body_from_world = rot.transpose();
         let mut at = 0usize;
         if k > 0 {
             for foot in self.contacts(k) {
-                let seen = body_from_world * (foot.pos_wf - state.pos_w);
-                let turned = hat(&seen);
-                for i in 0..3 {
-                    let Some(row) = d.rows_x.get_mut(at + i) else {
-                        return;
-                    };
-                    put(row, POSITION, &(-body_from_world.row(i).transpose()));
-                    put(row, ROTATION, &turned.row(i).transpose());
-                }
-                let part = |i: usize| y.get(at + i).copied().unwrap_or(T::ZERO);
-                let y = Vector3::new(part(0), part(1), part(2));
-                bend(&mut d.hessian_xx, &y, &seen);
-                let mixed = -(hat(&y) * body_from_world);
-                add_block(&mut d.hessian_xx, ROTATION, POSITION, &mixed);
-                add_block(&mut d.hessian_xx, POSITION, ROTATION, &mixed.transpose());
+                differentiate_reach(state, foot, at, y, d);
                 at += 3;
             }
             for corner in &self.corners {
-                let (Some(row), Some(value), Some(y)) =
-                    (d.rows_x.get_mut(at), values.rows.get(at), y.get(at))
-                else {
-                    return;
-                };
-                let mut normal = Vector3::new(T::ZERO, T::ZERO, T::ONE);
-                if let Some(edge) = &self.edge {
-                    // The ground's tanh is known from the row value: no second evaluation.
-                    let height = state.pos_w.z + (rot * corner).z - *value;
-                    if edge.drop != T::ZERO {
-                        let t = -T::TWO * height / edge.drop - T::ONE;
-                        let slope = edge.drop * T::HALF * (T::ONE - t * t) * edge.sign / edge.width;
-                        let axis = edge.axis.min(1);
-                        normal[axis] = slope;
-                        // The ground's curvature over the edge, along the way that the corner takes across it.
-                        let bent = T::TWO * t * slope * edge.sign / edge.width;
-                        let turned = corner.cross(&body_from_world.column(axis).into_owned());
-                        add_curvature(&mut d.hessian_xx, axis, &turned, -bent * *y);
-                    }
-                }
-                let normal_b = body_from_world * normal;
-                put(row, POSITION, &normal);
-                put(row, ROTATION, &corner.cross(&normal_b));
-                bend(&mut d.hessian_xx, &(normal_b * *y), corner);
+                self.differentiate_clearance(state, corner, at, values, y, d);
                 at += 1;
             }
         }
@@ -237,21 +198,82 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
             at += self.phase_count + 1;
         }
         if k == self.intervals() {
-            let error = self.final_error(rot);
-            let by_rotation = vee_derivative(&error);
-            for i in 0..3 {
-                if let Some(row) = d.rows_x.get_mut(at + i) {
-                    row[POSITION + i] = T::ONE;
-                }
-                if let Some(row) = d.rows_x.get_mut(at + 3 + i) {
-                    put(row, ROTATION, &by_rotation.row(i).transpose());
-                }
-            }
-            if let Some(row) = d.rows_x.get_mut(at + 6) {
-                put(row, ROTATION, &(vee(&error) * -T::TWO));
-            }
+            self.differentiate_goal(state, at, d);
             at += 7;
         }
+        for (slot, _) in self.contacts(k).enumerate() {
+            self.differentiate_friction(slot, at, d);
+            at += 5;
+        }
+    }
+
+    /// The row from `at` on of the height of a corner over the ground.
+    #[inline(always)]
+    fn differentiate_clearance<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        state: &State<T, PHASES>,
+        corner: &Vector3<T>,
+        at: usize,
+        values: &Values<T, NX, NI>,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let (Some(row), Some(value), Some(y)) =
+            (d.rows_x.get_mut(at), values.rows.get(at), y.get(at))
+        else {
+            return;
+        };
+        let body_from_world = state.rot_wb.transpose();
+        let mut normal = Vector3::new(T::ZERO, T::ZERO, T::ONE);
+        if let Some(edge) = self.edge.filter(|edge| edge.drop != T::ZERO) {
+            // The ground's tanh is known from the row value: no second evaluation.
+            let height = state.pos_w.z + (state.rot_wb * corner).z - *value;
+            let t = -T::TWO * height / edge.drop - T::ONE;
+            let slope = edge.drop * T::HALF * (T::ONE - t * t) * edge.sign / edge.width;
+            let axis = edge.axis.min(1);
+            normal[axis] = slope;
+            // The ground's curvature over the edge, along the way that the corner takes across it.
+            let bent = T::TWO * t * slope * edge.sign / edge.width;
+            let turned = corner.cross(&body_from_world.column(axis).into_owned());
+            add_curvature(&mut d.hessian_xx, axis, &turned, -bent * *y);
+        }
+        let normal_b = body_from_world * normal;
+        put(row, POSITION, &normal);
+        put(row, ROTATION, &corner.cross(&normal_b));
+        bend(&mut d.hessian_xx, &(normal_b * *y), corner);
+    }
+
+    /// The rows from `at` on of the goal's position, rotation and trace.
+    #[inline(always)]
+    fn differentiate_goal<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        state: &State<T, PHASES>,
+        at: usize,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let error = self.final_error(&state.rot_wb);
+        let by_rotation = vee_derivative(&error);
+        for i in 0..3 {
+            if let Some(row) = d.rows_x.get_mut(at + i) {
+                row[POSITION + i] = T::ONE;
+            }
+            if let Some(row) = d.rows_x.get_mut(at + 3 + i) {
+                put(row, ROTATION, &by_rotation.row(i).transpose());
+            }
+        }
+        if let Some(row) = d.rows_x.get_mut(at + 6) {
+            put(row, ROTATION, &(vee(&error) * -T::TWO));
+        }
+    }
+
+    /// The rows from `at` on of the friction pyramid of the foot whose force is the `slot`-th of the control.
+    #[inline(always)]
+    fn differentiate_friction<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        slot: usize,
+        at: usize,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
         let mu = self.friction;
         let sides = [
             [-T::ONE, T::ZERO, mu],
@@ -260,18 +282,45 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
             [T::ZERO, T::ONE, mu],
             [T::ZERO, T::ZERO, T::ONE],
         ];
-        for (slot, _) in self.contacts(k).enumerate() {
-            for side in &sides {
-                let Some(row) = d.rows_u.get_mut(at) else {
-                    return;
-                };
-                for (entry, value) in row.iter_mut().skip(3 * slot).zip(side) {
-                    *entry = *value;
-                }
-                at += 1;
+        for (row, side) in d.rows_u.iter_mut().skip(at).zip(&sides) {
+            for (entry, value) in row.iter_mut().skip(3 * slot).zip(side) {
+                *entry = *value;
             }
         }
     }
+}
+
+/// The rows from `at` on of where a foot is seen from the body.
+#[inline(always)]
+fn differentiate_reach<
+    T: Scalar,
+    const PHASES: usize,
+    const NX: usize,
+    const NU: usize,
+    const NI: usize,
+>(
+    state: &State<T, PHASES>,
+    foot: &Foot<T>,
+    at: usize,
+    y: &[T; NI],
+    d: &mut Derivatives<T, NX, NU, NI>,
+) {
+    let body_from_world = state.rot_wb.transpose();
+    let seen = body_from_world * (foot.pos_wf - state.pos_w);
+    let turned = hat(&seen);
+    for i in 0..3 {
+        let Some(row) = d.rows_x.get_mut(at + i) else {
+            return;
+        };
+        put(row, POSITION, &(-body_from_world.row(i).transpose()));
+        put(row, ROTATION, &turned.row(i).transpose());
+    }
+    let part = |i: usize| y.get(at + i).copied().unwrap_or(T::ZERO);
+    let y = Vector3::new(part(0), part(1), part(2));
+    bend(&mut d.hessian_xx, &y, &seen);
+    let mixed = -(hat(&y) * body_from_world);
+    add_block(&mut d.hessian_xx, ROTATION, POSITION, &mixed);
+    add_block(&mut d.hessian_xx, POSITION, ROTATION, &mixed.transpose());
 }
 
 /// Adds `weight w wᵀ` for the direction `w` of a world axis and a rotation.

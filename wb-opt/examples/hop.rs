@@ -11,6 +11,25 @@ use wb_opt::{BASE, Foot, Friction, Phase, Pose, Problem, Robot, State, Weights, 
 const N: usize = 18;
 const NI: usize = row_capacity(N, 4, 4, 0, false);
 
+/// Point feet under the hips.
+fn feet() -> [Foot<f64>; 4] {
+    let frames = [
+        frame::FL_FOOT,
+        frame::FR_FOOT,
+        frame::RL_FOOT,
+        frame::RR_FOOT,
+    ];
+    core::array::from_fn(|i| Foot {
+        point: Robot::<f64, N>::point(&frames[i]),
+        pos_wf: Vector3::new(
+            if i < 2 { 0.18 } else { -0.18 },
+            if i % 2 == 0 { 0.13 } else { -0.13 },
+            0.0,
+        ),
+        radius: 0.0,
+    })
+}
+
 fn main() -> Result<(), wb_opt::Error> {
     // A hop on the spot: 0.25 s on four feet, 0.15 s in the air.
     let joints = [0.0, 0.9, -1.8];
@@ -32,24 +51,9 @@ fn main() -> Result<(), wb_opt::Error> {
         },
     ];
     let reference = vec![crouch; 40];
-    let frames = [
-        frame::FL_FOOT,
-        frame::FR_FOOT,
-        frame::RL_FOOT,
-        frame::RR_FOOT,
-    ];
-    let feet = core::array::from_fn(|i| Foot {
-        point: Robot::<f64, N>::point(&frames[i]),
-        pos_wf: Vector3::new(
-            if i < 2 { 0.18 } else { -0.18 },
-            if i % 2 == 0 { 0.13 } else { -0.13 },
-            0.0,
-        ),
-        radius: 0.0,
-    });
     let problem = Problem {
         robot: Robot::on_free_base(&A1Reference),
-        feet,
+        feet: feet(),
         clearances: &[],
         swing_height: -0.01,
         swing_rise: 0.0,

@@ -83,15 +83,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         self.problem.add_friction(&self.mid.v, &mut effort);
         let mut jacobian = EffortJacobian::<T, N, FEET>::ZERO;
         self.sweep.differentiate(self.contacts, &mut jacobian);
-        let mut bends = [T::ZERO; N];
-        let mut explicit = [T::ZERO; N];
-        for (i, bent) in bends.iter_mut().enumerate().skip(BASE) {
-            let (limit, v) = (&self.problem.robot.limits[i], self.mid.v[i]);
-            let smoothing = self.problem.friction_smoothing;
-            let [_, slope, bend] = crate::drive::friction(limit, v, smoothing);
-            jacobian.by_v[i][i] += slope;
-            *bent = bend;
-        }
+        let bends = self.differentiate_friction(&mut jacobian);
 
         let mut hessian = Hessian::<T, N, FEET>::ZERO;
         let mut cost = Gradient::<T, N, FEET>::ZERO;
@@ -119,29 +111,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             cost.add(by_effort, &gradient);
             hessian.add_outer(T::TWO * weights.effort, &gradient, support());
         }
-        if self.problem.groups(self.k).lines > 0 {
-            for offset in self.problem.ends(self.k) {
-                for (i, multiplier) in multipliers.iter_mut().enumerate().skip(BASE) {
-                    let mut gradient = jacobian.row(i);
-                    let slope = Line::of(self.problem.robot.motors[i].as_ref()).slope;
-                    gradient.v[i] += slope;
-                    gradient.a[i] += slope * offset;
-                    let end = self.sweep.bodies[i].subtree_end;
-                    let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
-                    let y = self.push(units.moment, &gradient, support, y, d);
-                    *multiplier += y;
-                    // The speed at an end of the interval knows its length besides.
-                    if let Some(stretch) = &self.stretch {
-                        let side = stretch.rate * if offset < T::ZERO { -T::HALF } else { T::HALF };
-                        explicit[i] += y * slope * side;
-                        let row = self.row.checked_sub(1).and_then(|i| d.rows_x.get_mut(i));
-                        if let Some(slot) = row.and_then(|row| row.get_mut(stretch.column)) {
-                            *slot += slope * side * self.mid.a[i] / units.moment;
-                        }
-                    }
-                }
-            }
-        }
+        let explicit = self.motor_lines(&jacobian, &mut multipliers, y, d);
         for i in BASE..N {
             hessian.vv[i][i] += multipliers[i] * bends[i];
         }
@@ -166,6 +136,59 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             }
             stretch.bend((&hessian, &self.whole), &explicit, &self.map, d);
         }
+    }
+
+    /// Adds the slope of the joints' friction to the Jacobian of the efforts; its curvature in each speed.
+    #[inline(always)]
+    fn differentiate_friction(&self, jacobian: &mut EffortJacobian<T, N, FEET>) -> [T; N] {
+        let mut bends = [T::ZERO; N];
+        for (i, bent) in bends.iter_mut().enumerate().skip(BASE) {
+            let (limit, v) = (&self.problem.robot.limits[i], self.mid.v[i]);
+            let smoothing = self.problem.friction_smoothing;
+            let [_, slope, bend] = crate::drive::friction(limit, v, smoothing);
+            jacobian.by_v[i][i] += slope;
+            *bent = bend;
+        }
+        bends
+    }
+
+    /// Rows of what the motors can give at the speeds at both ends of the interval; their multipliers are added to those of the efforts.
+    /// Returned is what the Lagrangian gains with the duration at each joint's acceleration besides.
+    #[inline(always)]
+    fn motor_lines<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        jacobian: &EffortJacobian<T, N, FEET>,
+        multipliers: &mut [T; N],
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) -> [T; N] {
+        let units = Units::new();
+        let mut explicit = [T::ZERO; N];
+        if self.problem.groups(self.k).lines == 0 {
+            return explicit;
+        }
+        for offset in self.problem.ends(self.k) {
+            for (i, multiplier) in multipliers.iter_mut().enumerate().skip(BASE) {
+                let mut gradient = jacobian.row(i);
+                let slope = Line::of(self.problem.robot.motors[i].as_ref()).slope;
+                gradient.v[i] += slope;
+                gradient.a[i] += slope * offset;
+                let end = self.sweep.bodies[i].subtree_end;
+                let support = self.sweep.path(i).chain(i.saturating_add(1)..end.min(N));
+                let y = self.push(units.moment, &gradient, support, y, d);
+                *multiplier += y;
+                // The speed at an end of the interval knows its length besides.
+                if let Some(stretch) = &self.stretch {
+                    let side = stretch.rate * if offset < T::ZERO { -T::HALF } else { T::HALF };
+                    explicit[i] += y * slope * side;
+                    let row = self.row.checked_sub(1).and_then(|i| d.rows_x.get_mut(i));
+                    if let Some(slot) = row.and_then(|row| row.get_mut(stretch.column)) {
+                        *slot += slope * side * self.mid.a[i] / units.moment;
+                    }
+                }
+            }
+        }
+        explicit
     }
 
     /// Positions and speeds of the joints, as far as the length of the interval moves them.

@@ -213,6 +213,23 @@ impl<T: Scalar> Map<T> {
                 self.gradient(by_a, &row_a, x, u);
             }
         }
+        self.force_hessian(h, d);
+    }
+
+    /// Writes the columns of the contact forces of a Hessian.
+    #[inline(always)]
+    fn force_hessian<
+        const N: usize,
+        const FEET: usize,
+        const NX: usize,
+        const NU: usize,
+        const NI: usize,
+    >(
+        &self,
+        h: &Hessian<T, N, FEET>,
+        d: &mut Derivatives<T, NX, NU, NI>,
+    ) {
+        let layout = self.layout;
         for (f, rows) in h.force.iter().enumerate().take(layout.feet) {
             for (c, row) in rows.iter().enumerate() {
                 let j = Layout::force(f).saturating_add(c);

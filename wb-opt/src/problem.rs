@@ -196,33 +196,52 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// # Errors
     /// [`Error::Parameter`] names the first number that is not usable and what it must be.
     pub fn check(&self) -> Result<(), Error> {
-        let require = |ok: bool, what| {
-            if ok {
-                Ok(())
-            } else {
-                Err(Error::Parameter(what))
-            }
-        };
-        let positive = |x: T| x > T::ZERO && x.is_finite_number();
-        let finite = |x: &T| x.is_finite_number();
         require(
             N >= BASE,
             "N: a robot has at least the six coordinates of its base",
         )?;
+        self.check_settings()?;
+        self.check_poses()?;
+        self.check_intervals()?;
+        self.check_points()?;
+        if let Some(edge) = &self.edge {
+            require(edge.axis < 2, "edge.axis: must be 0 or 1")?;
+            require(positive(edge.width), "edge.width: must be positive")?;
+        }
+        self.check_robot()
+    }
+
+    /// Numbers of their own.
+    fn check_settings(&self) -> Result<(), Error> {
         let diagonals = self.friction.diagonals.unwrap_or(T::ONE);
-        require(
-            positive(self.friction.axes) && positive(diagonals),
-            "friction: must be positive",
-        )?;
-        require(
-            self.least_force >= T::ZERO && finite(&self.least_force),
-            "least_force: must not be negative",
-        )?;
-        require(
-            self.swing_rise >= T::ZERO && finite(&self.swing_rise),
-            "swing_rise: must not be negative",
-        )?;
-        require(positive(self.drift), "drift: must be positive")?;
+        let w = &self.weights;
+        let natural = |x: T| x >= T::ZERO && x.is_finite_number();
+        for (ok, what) in [
+            (
+                positive(self.friction.axes) && positive(diagonals),
+                "friction: must be positive",
+            ),
+            (
+                natural(self.least_force),
+                "least_force: must not be negative",
+            ),
+            (natural(self.swing_rise), "swing_rise: must not be negative"),
+            (positive(self.drift), "drift: must be positive"),
+            (
+                positive(self.friction_smoothing),
+                "friction_smoothing: must be positive",
+            ),
+            (positive(w.position), "weights.position: must be positive"),
+            (positive(w.effort), "weights.effort: must be positive"),
+            (positive(w.goal), "weights.goal: must be positive"),
+        ] {
+            require(ok, what)?;
+        }
+        Ok(())
+    }
+
+    /// Start, goal and reference.
+    fn check_poses(&self) -> Result<(), Error> {
         let pose = |pose: &Pose<T, N>| {
             let defect = so3::orthogonality_defect(pose.rot_wc.matrix());
             let idle = if self.robot.turns_freely() {
@@ -230,7 +249,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             } else {
                 pose.rot_wc == Rotation3::identity()
             };
-            pose.q.iter().all(finite) && defect < T::of(1e-3) && idle
+            finite(&pose.q) && defect < T::of(1e-3) && idle
         };
         require(
             pose(&self.start),
@@ -247,7 +266,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.reference.iter().all(pose),
             "reference: must be finite, and Poses of the robot's base coordinates",
-        )?;
+        )
+    }
+
+    /// Phases and how many intervals they have together.
+    fn check_intervals(&self) -> Result<(), Error> {
         require(
             self.phases.iter().all(|phase| phase.intervals > 0),
             "phases.intervals: must be at least 1",
@@ -255,16 +278,6 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.phases.iter().all(|phase| positive(phase.dt)),
             "phases.dt: must be positive",
-        )?;
-        require(
-            self.feet
-                .iter()
-                .all(|foot| foot.radius >= T::ZERO && finite(&foot.radius)),
-            "feet.radius: must not be negative",
-        )?;
-        require(
-            positive(self.friction_smoothing),
-            "friction_smoothing: must be positive",
         )?;
         let total = self
             .phases
@@ -277,12 +290,18 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.landing_intervals < total,
             "landing_intervals: must be fewer than all intervals",
+        )
+    }
+
+    /// Points of the robot.
+    fn check_points(&self) -> Result<(), Error> {
+        let inside = |point: &Point<T>| point.link < N && finite(point.offset_l.as_slice());
+        require(
+            self.feet
+                .iter()
+                .all(|foot| foot.radius >= T::ZERO && foot.radius.is_finite_number()),
+            "feet.radius: must not be negative",
         )?;
-        let w = &self.weights;
-        require(positive(w.position), "weights.position: must be positive")?;
-        require(positive(w.effort), "weights.effort: must be positive")?;
-        require(positive(w.goal), "weights.goal: must be positive")?;
-        let inside = |point: &Point<T>| point.link < N && point.offset_l.iter().all(finite);
         require(
             self.feet.iter().all(|foot| inside(&foot.point)),
             "feet.point: must be on a body of the robot",
@@ -290,11 +309,11 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.clearances.iter().all(|c| inside(&c.point)),
             "clearances.point: must be on a body of the robot",
-        )?;
-        if let Some(edge) = &self.edge {
-            require(edge.axis < 2, "edge.axis: must be 0 or 1")?;
-            require(positive(edge.width), "edge.width: must be positive")?;
-        }
+        )
+    }
+
+    /// Motors and joint limits.
+    fn check_robot(&self) -> Result<(), Error> {
         for motor in self.robot.motors.iter().flatten() {
             require(
                 motor.torque > T::ZERO && motor.no_load_speed > motor.corner_speed,
@@ -313,6 +332,22 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         }
         Ok(())
     }
+}
+
+fn require(ok: bool, what: &'static str) -> Result<(), Error> {
+    if ok {
+        Ok(())
+    } else {
+        Err(Error::Parameter(what))
+    }
+}
+
+fn positive<T: Scalar>(x: T) -> bool {
+    x > T::ZERO && x.is_finite_number()
+}
+
+fn finite<T: Scalar>(values: &[T]) -> bool {
+    values.iter().all(|x| x.is_finite_number())
 }
 
 /// Height of a point over the ground, with derivatives in its position.

@@ -6,14 +6,13 @@
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
 use super::profile::{KnownBuild, LimbsTable, ProfileFile};
-use super::{Data, JOINTS, LEGS, PLACES, Quadruped, State, hardware};
+use super::{Data, JOINTS, LEGS, OWNER_COUNT, PLACES, Quadruped, SHAPE_COUNT, State, hardware};
 use crate::range::{Range, Unusable};
-use a1_model::{OWNERS, SHAPES};
 use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
 use nalgebra::Vector3;
 use rbd_core::{
-    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, TableError, TableModel, Transform,
-    forward_kinematics,
+    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, Shape, TableError, TableModel,
+    Transform, forward_kinematics,
 };
 use roxmltree::{Document, Node};
 use std::path::{Path, PathBuf};
@@ -158,42 +157,12 @@ impl Quadruped {
     }
 
     fn of(robot: &Robot, text: &str, profile: Option<&ProfileFile>) -> Result<Self, RobotError> {
-        let names = || robot.joints.iter().map(|joint| joint.name.as_str());
-        if robot.joints.len() != JOINTS {
-            return Err(RobotError::Joints {
-                count: robot.joints.len(),
-                names: names().collect::<Vec<_>>().join(", "),
-            });
-        }
-        for (i, body) in robot.bodies.iter().enumerate() {
-            let parent = match i % 3 {
-                0 => Link::Base,
-                _ => Link::Joint(i - 1),
-            };
-            if body.parent != parent || !body.kind.is_revolute() {
-                return Err(RobotError::NotALeg(robot.joints[i].name.clone()));
-            }
-        }
+        check_legs(robot)?;
         robot.joints.iter().try_for_each(check_limits)?;
         size("mass, kg", Range::Above(0.01, 1e4), robot.mass())?;
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
-        let mut feet = [Frame::IDENTITY; LEGS];
-        let mut foot_radius = POINT;
-        for (leg, foot) in feet.iter_mut().enumerate() {
-            let last = Link::Joint(3 * leg + 2);
-            let reach = |frame: &Frame<f64>| Vector3::from(frame.offset).norm();
-            let tips = robot.frames.iter().filter(|f| f.frame.link == last);
-            let tip = tips
-                .max_by(|a, b| reach(&a.frame).total_cmp(&reach(&b.frame)))
-                .ok_or_else(|| RobotError::NotALeg(robot.joints[3 * leg + 2].name.clone()))?;
-            *foot = tip.frame;
-            if let Some((radius, centre)) = ball(&document, &tip.name) {
-                foot_radius = radius;
-                foot.offset = tip.frame.placement().point(&centre).into();
-            }
-            foot.rotation = Frame::IDENTITY.rotation;
-        }
+        let (feet, foot_radius) = feet(robot, &document)?;
         // Where joints and feet are with all joints at zero: frames of links need not be parallel to the base's.
         let mut zero: Kinematics<f64, JOINTS> = Kinematics::IDENTITY;
         forward_kinematics(&table, &Posture::new(&table, &State::NEUTRAL), &mut zero);
@@ -226,8 +195,8 @@ impl Quadruped {
             hips,
             leg_length,
             corners: trunk(&document, robot, leg_length),
-            shapes: SHAPES,
-            owners: OWNERS,
+            shapes: [Shape::ball(Link::Base, [0.0; 3], 0.0, 0); SHAPE_COUNT],
+            owners: [""; OWNER_COUNT],
             budgets: hardware::budgets(strongest),
             build: KnownBuild::default(),
             stands_by_com: false,
@@ -253,6 +222,48 @@ fn size(what: &'static str, range: Range, x: f64) -> Result<(), RobotError> {
     range
         .check(x)
         .map_err(|error| RobotError::Size { what, error })
+}
+
+/// Refuses what is no floating base with four legs of three revolute joints.
+fn check_legs(robot: &Robot) -> Result<(), RobotError> {
+    let names = || robot.joints.iter().map(|joint| joint.name.as_str());
+    if robot.joints.len() != JOINTS {
+        return Err(RobotError::Joints {
+            count: robot.joints.len(),
+            names: names().collect::<Vec<_>>().join(", "),
+        });
+    }
+    for (i, body) in robot.bodies.iter().enumerate() {
+        let parent = match i % 3 {
+            0 => Link::Base,
+            _ => Link::Joint(i - 1),
+        };
+        if body.parent != parent || !body.kind.is_revolute() {
+            return Err(RobotError::NotALeg(robot.joints[i].name.clone()));
+        }
+    }
+    Ok(())
+}
+
+/// The feet and their radius: of each leg the frame farthest from the last joint, or the ball there.
+fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f64), RobotError> {
+    let mut feet = [Frame::IDENTITY; LEGS];
+    let mut foot_radius = POINT;
+    for (leg, foot) in feet.iter_mut().enumerate() {
+        let last = Link::Joint(3 * leg + 2);
+        let reach = |frame: &Frame<f64>| Vector3::from(frame.offset).norm();
+        let tips = robot.frames.iter().filter(|f| f.frame.link == last);
+        let tip = tips
+            .max_by(|a, b| reach(&a.frame).total_cmp(&reach(&b.frame)))
+            .ok_or_else(|| RobotError::NotALeg(robot.joints[3 * leg + 2].name.clone()))?;
+        *foot = tip.frame;
+        if let Some((radius, centre)) = ball(document, &tip.name) {
+            foot_radius = radius;
+            foot.offset = tip.frame.placement().point(&centre).into();
+        }
+        foot.rotation = Frame::IDENTITY.rotation;
+    }
+    Ok((feet, foot_radius))
 }
 
 /// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.

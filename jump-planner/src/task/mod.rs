@@ -152,13 +152,7 @@ impl Task {
         let (axis, angle) = turn(file)?;
         let edge = edge(file, &robot)?;
         let total = file.total;
-        within(total.min_s, TOTAL, "total.min_s")?;
-        within(total.max_s, TOTAL, "total.max_s")?;
-        require(
-            total.min_s <= total.max_s,
-            "total",
-            "min_s must not be above max_s",
-        )?;
+        check_total(total.min_s, total.max_s)?;
         check_height(&goal, edge)?;
         let (phases, reference) = phases(file, &robot, edge)?;
         let limits = &file.limits;
@@ -362,6 +356,13 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
         distance,
         width: EDGE_WIDTH,
     }))
+}
+
+/// Bounds of the whole jump's duration, s.
+fn check_total(min: f64, max: f64) -> Result<(), Unusable> {
+    within(min, TOTAL, "total.min_s")?;
+    within(max, TOTAL, "total.max_s")?;
+    require(min <= max, "total", "min_s must not be above max_s")
 }
 
 /// The ground decides how high the goal is: a goal in the air, or in the ground, is none.

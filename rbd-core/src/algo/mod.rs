@@ -25,10 +25,13 @@ pub mod kinematics;
 pub mod limbs;
 pub mod minv;
 pub mod motion;
+mod pairs;
 pub mod rnea;
 pub mod rnea_derivatives;
 pub mod second_order;
+mod subtree;
 mod sweep;
+mod table;
 
 use nalgebra::Vector3;
 use so3::Scalar;

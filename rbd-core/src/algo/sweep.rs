@@ -30,43 +30,19 @@
 use nalgebra::{Matrix3, Vector3};
 use so3::{Scalar, math};
 
+use super::subtree::{COMPOSITE, Composite};
+use super::table::{column, set_column};
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Link;
-use crate::spatial::{Force, Inertia, Motion, Symmetric3, cross, product};
+use crate::spatial::{Force, Inertia, Motion, Symmetric3, product};
 use crate::state::Posture;
 use crate::tree::{At, Fold, Nothing, Tree};
 
 /// Numbers in a [`Moving`].
 const MOVING: usize = 40;
-/// Numbers in a [`Composite`].
-const COMPOSITE: usize = 28;
 /// Numbers in the answer of a subtree: P, Q, F, G.
 const ANSWER: usize = 21;
-
-/// Column `i` of a table by quantity.
-#[inline(always)]
-fn column<T: Scalar, const K: usize, const N: usize>(table: &[[T; N]; K], i: usize) -> [T; K] {
-    let mut out = [T::ZERO; K];
-    for (x, row) in out.iter_mut().zip(table) {
-        *x = at(row, i);
-    }
-    out
-}
-
-/// Writes column `i` of a table by quantity.
-#[inline(always)]
-fn set_column<T: Scalar, const K: usize, const N: usize>(
-    table: &mut [[T; N]; K],
-    i: usize,
-    values: [T; K],
-) {
-    for (row, x) in table.iter_mut().zip(values) {
-        if let Some(slot) = row.get_mut(i) {
-            *slot = x;
-        }
-    }
-}
 
 /// A body in the base's axes: where it is, how it moves, what it weighs, and the axis of its joint.
 #[derive(Clone, Copy, Debug)]
@@ -127,106 +103,6 @@ impl<T: Scalar> Moving<T> {
     fn carried(&self) -> Inertia<T> {
         let (r, i) = (&self.rotation, &self.inertia);
         i.assembled(r * i.first, i.second.rotated(r), &self.origin)
-    }
-}
-
-/// A subtree moving as it does, in base axes about the base's origin.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Composite<T> {
-    /// Mass moments.
-    pub(crate) inertia: Inertia<T>,
-    /// p = ∫ ṙ dm.
-    pub(crate) momentum: Vector3<T>,
-    /// K = ∫ ṙ rᵀ dm.
-    pub(crate) stir: Matrix3<T>,
-    /// f: net force, without what acts from outside.
-    pub(crate) force: Force<T>,
-}
-
-impl<T: Scalar> Composite<T> {
-    /// One rigid body with this velocity and (spatial) acceleration.
-    #[inline(always)]
-    fn of(inertia: Inertia<T>, v: &Motion<T>, a: &Motion<T>) -> Self {
-        let (h, s, w) = (&inertia.first, &inertia.second, &v.angular);
-        let momentum = v.linear * inertia.mass + cross(w, h);
-        // K = ∫ (v + ω × r) rᵀ dm
-        let stir = Matrix3::new(
-            v.linear.x * h.x + (w.y * s.xz - w.z * s.xy),
-            v.linear.x * h.y + (w.y * s.yz - w.z * s.yy),
-            v.linear.x * h.z + (w.y * s.zz - w.z * s.yz),
-            v.linear.y * h.x + (w.z * s.xx - w.x * s.xz),
-            v.linear.y * h.y + (w.z * s.xy - w.x * s.yz),
-            v.linear.y * h.z + (w.z * s.xz - w.x * s.zz),
-            v.linear.z * h.x + (w.x * s.xy - w.y * s.xx),
-            v.linear.z * h.y + (w.x * s.yy - w.y * s.xy),
-            v.linear.z * h.z + (w.x * s.yz - w.y * s.xz),
-        );
-        let mut own = Self {
-            inertia,
-            momentum,
-            stir,
-            force: inertia.mul(a),
-        };
-        own.force += v.cross_force(&own.momentum_wrench());
-        own
-    }
-
-    #[inline(always)]
-    fn pack(&self) -> [T; COMPOSITE] {
-        let (i, p, k) = (&self.inertia, &self.momentum, &self.stir);
-        let (h, s) = (&i.first, &i.second);
-        let (f, n) = (&self.force.linear, &self.force.angular);
-        [
-            i.mass, h.x, h.y, h.z, s.xx, s.yy, s.zz, s.xy, s.xz, s.yz, p.x, p.y, p.z, //
-            k.m11, k.m12, k.m13, k.m21, k.m22, k.m23, k.m31, k.m32, k.m33, //
-            f.x, f.y, f.z, n.x, n.y, n.z,
-        ]
-    }
-
-    #[inline(always)]
-    fn unpack(x: &[T; COMPOSITE]) -> Self {
-        let vector = |i: usize| Vector3::new(x[i], x[i + 1], x[i + 2]);
-        Self {
-            inertia: Inertia {
-                mass: x[0],
-                first: vector(1),
-                second: Symmetric3::new([x[4], x[5], x[6], x[7], x[8], x[9]]),
-            },
-            momentum: vector(10),
-            stir: Matrix3::new(
-                x[13], x[14], x[15], x[16], x[17], x[18], x[19], x[20], x[21],
-            ),
-            force: Force::new(vector(22), vector(25)),
-        }
-    }
-
-    /// Momentum about the base's origin; its angular part is the axial part of K: ∫ r × ṙ dm.
-    #[inline(always)]
-    pub(crate) fn momentum_wrench(&self) -> Force<T> {
-        let k = &self.stir;
-        Force {
-            linear: self.momentum,
-            angular: Vector3::new(k.m32 - k.m23, k.m13 - k.m31, k.m21 - k.m12),
-        }
-    }
-
-    /// B w: wrench of the Coriolis forces when the whole turns with w besides.
-    #[inline(always)]
-    pub(crate) fn coriolis(&self, w: &Vector3<T>) -> Force<T> {
-        let trace = self.stir.m11 + self.stir.m22 + self.stir.m33;
-        let moment = w * trace - self.stir * w;
-        Force {
-            linear: cross(w, &self.momentum) * T::TWO,
-            angular: moment * T::TWO,
-        }
-    }
-
-    /// Bᵀ m.
-    #[inline(always)]
-    fn coriolis_transposed(&self, m: &Motion<T>) -> Vector3<T> {
-        let trace = self.stir.m11 + self.stir.m22 + self.stir.m33;
-        let moment = m.angular * trace - self.stir.tr_mul(&m.angular);
-        (cross(&self.momentum, &m.linear) + moment) * T::TWO
     }
 }
 
@@ -458,91 +334,12 @@ impl<T: Scalar, const N: usize> DerivativesWorkspace<T, N> {
             coriolis: Vector3::new(x, y, z),
         }
     }
-
-    /// Joint i against [`LANES`] joints from j on, those of its subtree being meant: the entries of M, the
-    /// derivatives, or both.
-    #[inline(always)]
-    pub(crate) fn pairs<const MASS: bool, const GRADIENT: bool>(
-        &self,
-        i: usize,
-        j: usize,
-    ) -> Pairs<T> {
-        let mut pairs = Pairs::ZERO;
-        for k in 0..6 {
-            let s = at(&self.axes[k], i);
-            let f = lanes(&self.answers[12 + k], j);
-            if MASS {
-                for l in 0..LANES {
-                    pairs.mass[l] = math::mul_add(s, f[l], pairs.mass[l]);
-                }
-            }
-            if GRADIENT {
-                let (r, t) = (at(&self.axes[6 + k], i), at(&self.axes[12 + k], i));
-                let (p, q) = (lanes(&self.answers[k], j), lanes(&self.answers[6 + k], j));
-                let r = r + r;
-                for l in 0..LANES {
-                    pairs.above_q[l] = math::mul_add(s, p[l], pairs.above_q[l]);
-                    pairs.above_v[l] = math::mul_add(s, q[l], pairs.above_v[l]);
-                    pairs.below_q[l] = math::mul_add(t, f[l], pairs.below_q[l]);
-                    pairs.below_v[l] = math::mul_add(r, f[l], pairs.below_v[l]);
-                }
-            }
-        }
-        if GRADIENT {
-            for k in 0..3 {
-                let (s, r) = (at(&self.axes[3 + k], i), at(&self.axes[9 + k], i));
-                let g = lanes(&self.answers[18 + k], j);
-                for l in 0..LANES {
-                    pairs.below_q[l] = math::mul_add(r, g[l], pairs.below_q[l]);
-                    pairs.below_v[l] = math::mul_add(s, g[l], pairs.below_v[l]);
-                }
-            }
-        }
-        pairs
-    }
 }
 
 impl<T: Scalar, const N: usize> Default for DerivativesWorkspace<T, N> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Joints of a branch taken together.
-pub(crate) const LANES: usize = 4;
-
-/// `LANES` entries from j on; zero beyond the end.
-#[inline(always)]
-fn lanes<T: Scalar, const N: usize>(row: &[T; N], j: usize) -> [T; LANES] {
-    match row.get(j..) {
-        Some(&[a, b, c, d, ..]) => [a, b, c, d],
-        _ => [at(row, j), at(row, j + 1), at(row, j + 2), at(row, j + 3)],
-    }
-}
-
-/// What a joint i and joints j of its subtree do to each other.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pairs<T> {
-    /// ∂τ_i/∂q_j.
-    pub(crate) above_q: [T; LANES],
-    /// ∂τ_i/∂q̇_j.
-    pub(crate) above_v: [T; LANES],
-    /// ∂τ_j/∂q_i.
-    pub(crate) below_q: [T; LANES],
-    /// ∂τ_j/∂q̇_i.
-    pub(crate) below_v: [T; LANES],
-    /// M_ij.
-    pub(crate) mass: [T; LANES],
-}
-
-impl<T: Scalar> Pairs<T> {
-    const ZERO: Self = Self {
-        above_q: [T::ZERO; LANES],
-        above_v: [T::ZERO; LANES],
-        below_q: [T::ZERO; LANES],
-        below_v: [T::ZERO; LANES],
-        mass: [T::ZERO; LANES],
-    };
 }
 
 /// What a body hands to those it carries.

@@ -56,6 +56,60 @@ impl Rows {
     }
 }
 
+/// One iteration's quadratic program.
+#[derive(Default)]
+struct Program {
+    stages: Vec<Stage>,
+    /// Gradient of the cost.
+    cost: Vec<f64>,
+    /// Rows with s = 0.
+    equal: Rows,
+    /// Rows with s ≥ 0.
+    below: Rows,
+}
+
+/// Where a program's optimum is.
+struct Solved {
+    d: Vec<f64>,
+    multipliers: Vec<(Owner, f64)>,
+}
+
+impl Program {
+    fn solve(self) -> Result<Solved, Error> {
+        let cones = [
+            ZeroConeT(self.equal.right.len()),
+            NonnegativeConeT(self.below.right.len()),
+        ];
+        let mut rows = self.equal;
+        rows.append(self.below);
+        let [row, column] = rows.entries;
+        let gradient = self.stages.iter().flat_map(|stage| stage.gradient.iter());
+        let gradient: Vec<f64> = gradient.copied().collect();
+        let (height, width) = (rows.right.len(), gradient.len());
+        let a = CscMatrix::new_from_triplets(height, width, row, column, rows.values);
+        let p = upper_triangle(&self.stages);
+        let settings = DefaultSettings {
+            verbose: false,
+            max_iter: 200,
+            ..DefaultSettings::default()
+        };
+        let mut solver = DefaultSolver::new(&p, &gradient, &a, &rows.right, &cones, settings)
+            .map_err(|_| Error::Program)?;
+        solver.solve();
+        let found = solver.solution;
+        match found.status {
+            SolverStatus::Solved | SolverStatus::AlmostSolved => {
+                let multipliers = rows.owners.into_iter().zip(found.z).collect();
+                Ok(Solved {
+                    d: found.x,
+                    multipliers,
+                })
+            }
+            _ => Err(Error::Program),
+        }
+    }
+}
+
 /// A quadratic program's step, and the multipliers it ends with.
 pub(super) struct Step<const NX: usize, const NU: usize, const NI: usize> {
     pub(super) state: Vec<[f64; NX]>,
@@ -79,115 +133,35 @@ impl<const FEET: usize, const PHASES: usize> Problem<f64, FEET, PHASES> {
         nodes: &[SqpNode<PHASES, NX, NU, NI>],
         kind: Hessian,
     ) -> Result<Step<NX, NU, NI>, Error> {
-        let width = NX + NU;
-        let count = nodes.len() * width;
-        let (mut stages, mut cost) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(count));
-        let (mut equal, mut below) = (Rows::default(), Rows::default());
+        let mut program = Program::default();
         let fixed: Vec<usize> = (0..NX)
             .filter(|i| !Ocp::<f64, NX, NU, NI>::is_free_at_start(self, *i))
             .collect();
         for i in &fixed {
-            equal.push(0, &[(*i, 1.0)], 1.0, 0.0, Owner::Start);
+            let row = &[(*i, 1.0)];
+            program.equal.push(0, row, 1.0, 0.0, Owner::Start);
         }
         for (k, node) in nodes.iter().enumerate() {
-            let next = nodes.get(k + 1).map(|next| &next.state);
-            let (state, control) = (&node.state, &node.control);
-            let mut values = Values::<f64, NX, NI>::new();
-            Ocp::<f64, NX, NU, NI>::evaluate(self, k, state, control, next, &mut values);
-            let mut d = Box::new(Derivatives::<f64, NX, NU, NI>::new());
-            let at = Evaluated {
-                values: &values,
-                dynamics_multiplier: &node.dynamics_multiplier,
-                row_multipliers: &node.row_multipliers,
-            };
-            Ocp::<f64, NX, NU, NI>::differentiate(self, k, state, control, next, at, &mut d);
-            let start = k * width;
-            let mut stage = stage(&d, next.is_some().then_some(&values.gap));
-            cost.extend_from_slice(stage.gradient.as_slice());
-            for unused in NX + self.row_dims(k).controls..width {
-                stage.hessian[(unused, unused)] = 1.0;
-            }
-            if next.is_some() {
-                for i in 0..NX {
-                    let mut row = sparse(
-                        &d.dynamics_x.map(|column| column[i]),
-                        &d.dynamics_u.map(|column| column[i]),
-                    );
-                    row.push((width + i, -1.0));
-                    equal.push(start, &row, 1.0, -values.gap[i], Owner::Gap(k, i));
-                }
-            }
-            let (mut lower, mut upper) = ([0.0; NI], [0.0; NI]);
-            self.row_bounds(k, &mut lower, &mut upper);
-            for i in 0..self.row_dims(k).rows() {
-                let (l, h, c) = (lower[i], upper[i], values.rows[i]);
-                let row = sparse(&d.rows_x[i], &d.rows_u[i]);
-                if l == h {
-                    equal.push(start, &row, 1.0, l - c, Owner::Row(k, i, 1.0));
-                    stage.held.push(Held {
-                        weight: ACROSS,
-                        row,
-                        right: l - c,
-                    });
-                    continue;
-                }
-                for (sign, bound) in [(1.0, h), (-1.0, l)] {
-                    if bound.is_finite() {
-                        below.push(start, &row, sign, bound - c, Owner::Row(k, i, sign));
-                        let pushes = (sign * node.row_multipliers[i]).clamp(0.0, 1.0);
-                        stage.held.push(Held {
-                            weight: ACROSS * pushes,
-                            row: row.clone(),
-                            right: bound - c,
-                        });
-                    }
-                }
-            }
-            stages.push(stage);
+            self.linearise(k, node, nodes.get(k + 1), &mut program);
         }
-        let handed = convexify(&mut stages, kind, NX, &fixed);
-        let cones = [
-            ZeroConeT(equal.right.len()),
-            NonnegativeConeT(below.right.len()),
-        ];
-        // Equalities first, then inequalities.
-        equal.append(below);
-        let rows = equal;
-        let [row, column] = rows.entries;
-        let a = CscMatrix::new_from_triplets(rows.right.len(), count, row, column, rows.values);
-        let p = upper_triangle(&stages);
-        let settings = DefaultSettings {
-            verbose: false,
-            max_iter: 200,
-            ..DefaultSettings::default()
-        };
-        let gradient = stages.iter().flat_map(|stage| stage.gradient.iter());
-        let gradient: Vec<f64> = gradient.copied().collect();
-        let mut solver = DefaultSolver::new(&p, &gradient, &a, &rows.right, &cones, settings)
-            .map_err(|_| Error::Program)?;
-        solver.solve();
-        let found = &solver.solution;
-        if !matches!(
-            found.status,
-            SolverStatus::Solved | SolverStatus::AlmostSolved
-        ) {
-            return Err(Error::Program);
-        }
+        let handed = convexify(&mut program.stages, kind, NX, &fixed);
+        let cost = core::mem::take(&mut program.cost);
+        let Solved { d, multipliers } = program.solve()?;
         let mut step = Step {
             state: std::vec![[0.0; NX]; nodes.len()],
             control: std::vec![[0.0; NU]; nodes.len()],
             gap: std::vec![[0.0; NX]; nodes.len()],
             row: std::vec![[0.0; NI]; nodes.len()],
-            slope: found.x.iter().zip(&cost).map(|(d, g)| d * g).sum(),
+            slope: d.iter().zip(&cost).map(|(d, g)| d * g).sum(),
         };
-        for (k, part) in found.x.chunks(width).enumerate() {
+        for (k, part) in d.chunks(NX + NU).enumerate() {
             step.state[k].copy_from_slice(&part[..NX]);
             step.control[k].copy_from_slice(&part[NX..]);
         }
-        for (owner, z) in rows.owners.iter().zip(&found.z) {
-            match *owner {
+        for (owner, z) in multipliers {
+            match owner {
                 Owner::Start => {}
-                Owner::Gap(k, i) => step.gap[k][i] = *z,
+                Owner::Gap(k, i) => step.gap[k][i] = z,
                 Owner::Row(k, i, sign) => step.row[k][i] += sign * z,
             }
         }
@@ -198,6 +172,76 @@ impl<const FEET: usize, const PHASES: usize> Problem<f64, FEET, PHASES> {
                 .for_each(|(y, change)| *y += change);
         }
         Ok(step)
+    }
+
+    /// Adds node `k`: its cost, its dynamics and its rows.
+    fn linearise<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        k: usize,
+        node: &SqpNode<PHASES, NX, NU, NI>,
+        next: Option<&SqpNode<PHASES, NX, NU, NI>>,
+        program: &mut Program,
+    ) {
+        let next = next.map(|next| &next.state);
+        let (state, control) = (&node.state, &node.control);
+        let mut values = Values::<f64, NX, NI>::new();
+        Ocp::<f64, NX, NU, NI>::evaluate(self, k, state, control, next, &mut values);
+        let mut d = Box::new(Derivatives::<f64, NX, NU, NI>::new());
+        let at = Evaluated {
+            values: &values,
+            dynamics_multiplier: &node.dynamics_multiplier,
+            row_multipliers: &node.row_multipliers,
+        };
+        Ocp::<f64, NX, NU, NI>::differentiate(self, k, state, control, next, at, &mut d);
+        let (width, start) = (NX + NU, k * (NX + NU));
+        let mut stage = stage(&d, next.is_some().then_some(&values.gap));
+        program.cost.extend_from_slice(stage.gradient.as_slice());
+        for unused in NX + self.row_dims(k).controls..width {
+            stage.hessian[(unused, unused)] = 1.0;
+        }
+        if next.is_some() {
+            for i in 0..NX {
+                let mut row = sparse(
+                    &d.dynamics_x.map(|column| column[i]),
+                    &d.dynamics_u.map(|column| column[i]),
+                );
+                row.push((width + i, -1.0));
+                program
+                    .equal
+                    .push(start, &row, 1.0, -values.gap[i], Owner::Gap(k, i));
+            }
+        }
+        let (mut lower, mut upper) = ([0.0; NI], [0.0; NI]);
+        self.row_bounds(k, &mut lower, &mut upper);
+        for i in 0..self.row_dims(k).rows() {
+            let (l, h, c) = (lower[i], upper[i], values.rows[i]);
+            let row = sparse(&d.rows_x[i], &d.rows_u[i]);
+            if l == h {
+                program
+                    .equal
+                    .push(start, &row, 1.0, l - c, Owner::Row(k, i, 1.0));
+                stage.held.push(Held {
+                    weight: ACROSS,
+                    row,
+                    right: l - c,
+                });
+                continue;
+            }
+            for (sign, bound) in [(1.0, h), (-1.0, l)] {
+                if bound.is_finite() {
+                    program
+                        .below
+                        .push(start, &row, sign, bound - c, Owner::Row(k, i, sign));
+                    let pushes = (sign * node.row_multipliers[i]).clamp(0.0, 1.0);
+                    stage.held.push(Held {
+                        weight: ACROSS * pushes,
+                        row: row.clone(),
+                        right: bound - c,
+                    });
+                }
+            }
+        }
+        program.stages.push(stage);
     }
 }
 

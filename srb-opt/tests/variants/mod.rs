@@ -35,15 +35,9 @@ impl Draw {
     }
 }
 
-/// A jump drawn at random, and what it is.
-pub(crate) fn variant(seed: u64) -> (Jump<f64>, String) {
-    let mut draw = Draw(seed);
-    let mut jump = example::<f64>();
-    let payload = draw.between(0.8, 1.2);
-    jump.mass *= payload;
-    jump.inertia_b *= draw.between(0.8, 1.2);
-    // Turns: none, a part of one about z, or one or two about x or y.
-    let (axis, turns) = match draw.below(4) {
+/// Turns: none, a part of one about z, or one or two about x or y.
+fn turn(draw: &mut Draw) -> (Vector3<f64>, f64) {
+    match draw.below(4) {
         0 => (Vector3::z(), 0.0),
         1 => (Vector3::z(), draw.between(-0.35, 0.35)),
         _ => {
@@ -55,45 +49,76 @@ pub(crate) fn variant(seed: u64) -> (Jump<f64>, String) {
             let turns = (1 + draw.below(2)) as f64;
             (axis, if draw.below(2) == 0 { turns } else { -turns })
         }
-    };
-    let acrobatic = turns.abs() >= 1.0;
-    // A roll carries the body to its side, a flip to its front or back.
-    let along_y = if acrobatic {
-        axis.x == 1.0
-    } else {
-        draw.below(2) == 0
-    };
-    let way = if acrobatic {
-        if along_y {
-            -turns.signum()
-        } else {
-            turns.signum()
-        }
-    } else if draw.below(2) == 0 {
-        1.0
-    } else {
-        -1.0
-    };
-    let drop = match draw.below(3) {
+    }
+}
+
+/// Whether the jump goes along y, and its sign: a roll carries the body to its side, a flip to its front or back.
+fn heading(draw: &mut Draw, axis: Vector3<f64>, turns: f64) -> (bool, f64) {
+    if turns.abs() >= 1.0 {
+        let along_y = axis.x == 1.0;
+        let sign = turns.signum();
+        return (along_y, if along_y { -sign } else { sign });
+    }
+    let along_y = draw.below(2) == 0;
+    (along_y, if draw.below(2) == 0 { 1.0 } else { -1.0 })
+}
+
+/// How much lower than the start the goal is, how far away, and how far beside.
+fn landing(draw: &mut Draw, turns: f64) -> (f64, f64, f64) {
+    let drop: f64 = match draw.below(3) {
         0 => 0.0,
         1 => draw.between(-0.5, 0.0),
         _ => draw.between(0.0, 2.0),
     };
-    let drop: f64 = if turns.abs() == 2.0 {
+    let drop = if turns.abs() == 2.0 {
         drop.max(0.6)
     } else {
         drop
     };
-    let distance = if drop == 0.0 {
-        draw.between(0.0, 0.6)
+    if drop == 0.0 {
+        (drop, draw.between(0.0, 0.6), draw.between(-0.1, 0.1))
     } else {
-        draw.between(0.5, 0.8)
+        (drop, draw.between(0.5, 0.8), 0.0)
+    }
+}
+
+/// All feet, then those that still push if some leave early, then none.
+fn write_phases(jump: &mut Jump<f64>, pushing: Option<[bool; FEET]>, flight: f64) {
+    let phase = |contacts, intervals, duration_guess| Phase {
+        contacts,
+        intervals,
+        duration_guess,
+        min_duration: 0.1,
+        max_duration: 1.0,
+        reference_angle: 0.0,
     };
-    let across = if drop == 0.0 {
-        draw.between(-0.1, 0.1)
+    if let Some(pushing) = pushing {
+        jump.phases = [
+            phase([true; FEET], 50, 0.5),
+            phase(pushing, 30, 0.3),
+            phase([false; FEET], 40, flight.max(0.4)),
+        ];
+        jump.phase_count = PHASES;
+        jump.max_total = 0.8 + flight;
     } else {
-        0.0
-    };
+        jump.phases[0] = phase([true; FEET], 50, 0.5);
+        jump.phases[1] = phase([false; FEET], 30, flight);
+        jump.phase_count = 2;
+        jump.max_total = 0.5 + flight;
+    }
+}
+
+/// A jump drawn at random, and what it is.
+pub(crate) fn variant(seed: u64) -> (Jump<f64>, String) {
+    let mut draw = Draw(seed);
+    let mut jump = example::<f64>();
+    let payload = draw.between(0.8, 1.2);
+    jump.mass *= payload;
+    jump.inertia_b *= draw.between(0.8, 1.2);
+    let (axis, turns) = turn(&mut draw);
+    let acrobatic = turns.abs() >= 1.0;
+    let (along_y, way) = heading(&mut draw, axis, turns);
+    let (drop, distance, across) = landing(&mut draw, turns);
     let (x, y) = if along_y {
         (across, way * distance)
     } else {
@@ -122,28 +147,8 @@ pub(crate) fn variant(seed: u64) -> (Jump<f64>, String) {
     };
     let fall = (2.0 * drop.max(0.0) / jump.gravity).sqrt();
     let flight = 0.3 + 0.12 * turns.abs() + 0.6 * fall;
-    let phase = |contacts, intervals, duration_guess| Phase {
-        contacts,
-        intervals,
-        duration_guess,
-        min_duration: 0.1,
-        max_duration: 1.0,
-        reference_angle: 0.0,
-    };
-    if two_legs {
-        jump.phases = [
-            phase([true; FEET], 50, 0.5),
-            phase(core::array::from_fn(stays), 30, 0.3),
-            phase([false; FEET], 40, flight.max(0.4)),
-        ];
-        jump.phase_count = PHASES;
-        jump.max_total = 0.8 + flight;
-    } else {
-        jump.phases[0] = phase([true; FEET], 50, 0.5);
-        jump.phases[1] = phase([false; FEET], 30, flight);
-        jump.phase_count = 2;
-        jump.max_total = 0.5 + flight;
-    }
+    let pushing = two_legs.then(|| core::array::from_fn(stays));
+    write_phases(&mut jump, pushing, flight);
     if acrobatic {
         jump.reference = Reference::PerPhase;
         jump.phases[1].reference_angle = core::f64::consts::FRAC_PI_3 * turns.signum();

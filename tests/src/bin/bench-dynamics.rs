@@ -31,255 +31,298 @@ use saltus_tests::bench::{State, time};
 /// Algorithms by the names that the peer benches use; the argument is the index of a state.
 type Algorithms<'a> = Vec<(&'static str, Box<dyn FnMut(usize) + 'a>)>;
 
+/// The algorithms of one model, as they are added.
+struct Bench<'a, M, const N: usize> {
+    model: &'a M,
+    feet: &'a [Frame<f64>],
+    states: &'a [State<N>],
+    list: Algorithms<'a>,
+}
+
+/// Adds an algorithm to a [`Bench`]; `$p` is the posture of a state `$s`, and what the body returns is kept alive.
+macro_rules! algorithm {
+    ($bench:ident, $name:literal, |$s:ident, $p:ident| $body:expr) => {
+        let (model, states) = ($bench.model, $bench.states);
+        $bench.list.push((
+            $name,
+            Box::new(move |i| {
+                let $s = &states[i];
+                let $p = $s.posture(model);
+                black_box(&$body);
+            }),
+        ));
+    };
+}
+
+impl<'a, M: Tree<f64, N>, const N: usize> Bench<'a, M, N> {
+    /// Inverse and forward dynamics and what they are made of.
+    fn dynamics(&mut self) {
+        let (model, feet) = (self.model, self.feet);
+        let mut forces = [Force::ZERO; N];
+        for foot in feet {
+            if let rbd_core::Link::Joint(i) = foot.link {
+                forces[i] = Force::from_array([1.0, 2.0, 30.0, 0.0, 0.0, 0.0]);
+            }
+        }
+        algorithm!(self, "rnea", |s, p| rnea(
+            model,
+            &p,
+            &s.velocity,
+            &s.acceleration
+        ));
+        algorithm!(self, "rnea_external", |s, p| {
+            rnea_with_forces(
+                model,
+                &p,
+                &s.velocity,
+                &s.acceleration,
+                &Force::ZERO,
+                &forces,
+            )
+        });
+        algorithm!(self, "nonlinear_effects", |s, p| nonlinear_effects(
+            model,
+            &p,
+            &s.velocity
+        ));
+        algorithm!(self, "gravity", |s, p| generalized_gravity(model, &p));
+        let mut mass = MassMatrix::ZERO;
+        algorithm!(self, "crba", |s, p| {
+            crba(model, &p, &mut mass);
+            &mass
+        });
+        let mut ws = AbaWorkspace::new();
+        algorithm!(self, "aba", |s, p| aba(
+            model,
+            &p,
+            &s.velocity,
+            &s.effort,
+            &mut ws
+        ));
+        let mut mass = MassMatrix::ZERO;
+        let mut ws = AbaWorkspace::new();
+        algorithm!(self, "rnea_crba_aba", |s, p| {
+            black_box(&rnea(model, &p, &s.velocity, &s.acceleration));
+            crba(model, &p, &mut mass);
+            black_box(&mass);
+            aba(model, &p, &s.velocity, &s.effort, &mut ws)
+        });
+
+        let (mut factors, mut inverse) = (MassFactors::new(), BlockMatrix::ZERO);
+        algorithm!(self, "minverse", |s, p| {
+            crba(model, &p, &mut mass);
+            mass_matrix_inverse(model, &mass, &mut factors, &mut inverse);
+            &inverse
+        });
+    }
+
+    /// Derivatives of dynamics and momentum.
+    fn derivatives(&mut self) {
+        let model = self.model;
+        let mut of = RneaDerivatives::ZERO;
+        let mut ws = DerivativesWorkspace::new();
+        algorithm!(self, "rnea_derivatives", |s, p| {
+            rnea_derivatives(model, &p, &s.velocity, &s.acceleration, &mut ws, &mut of);
+            &of
+        });
+        let mut of = AbaDerivatives::ZERO;
+        let mut ws = AbaDerivativesWorkspace::new();
+        algorithm!(self, "aba_derivatives", |s, p| {
+            aba_derivatives(model, &p, &s.velocity, &s.effort, &mut ws, &mut of);
+            &of
+        });
+
+        let mut of = CentroidalDerivatives::ZERO;
+        let mut ws = DerivativesWorkspace::new();
+        algorithm!(self, "centroidal_derivatives", |s, p| {
+            centroidal_derivatives(model, &p, &s.velocity, &s.acceleration, &mut ws, &mut of);
+            &of
+        });
+    }
+
+    /// Where bodies are and how they move.
+    fn kinematics(&mut self) {
+        let model = self.model;
+        let mut kinematics = Kinematics::IDENTITY;
+        algorithm!(self, "fk_placements", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            &kinematics
+        });
+        let mut moving = BodyMotions::ZERO;
+        algorithm!(self, "fk_velocities", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            forward_velocities(model, &p, &s.velocity, &mut moving);
+            (&kinematics, &moving)
+        });
+        algorithm!(self, "fk_accelerations", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            forward_accelerations(model, &p, &s.velocity, &s.acceleration, &mut moving);
+            (&kinematics, &moving)
+        });
+        let mut columns = [rbd_core::Motion::ZERO; N];
+        algorithm!(self, "joint_jacobians", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            joint_jacobians(model, &kinematics, &mut columns);
+            &columns
+        });
+        algorithm!(self, "com", |s, p| center_of_mass(model, &p));
+    }
+
+    /// Motion of the feet, their Jacobians and derivatives.
+    fn feet(&mut self) {
+        let (model, feet) = (self.model, self.feet);
+        let mut kinematics = Kinematics::IDENTITY;
+        let mut moving = BodyMotions::ZERO;
+        algorithm!(self, "feet_accelerations", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            forward_accelerations(model, &p, &s.velocity, &s.acceleration, &mut moving);
+            for foot in feet {
+                let classical = moving.frame_classical_acceleration(foot);
+                black_box(&Axes::LocalWorldAligned.motion(&kinematics.frame(foot), &classical));
+            }
+        });
+        algorithm!(self, "feet_bias_accelerations", |s, p| {
+            bias_accelerations(model, &p, &s.velocity, &mut moving);
+            for foot in feet {
+                black_box(&moving.frame_classical_acceleration(foot));
+            }
+        });
+        let mut jacobian = FrameJacobian::ZERO;
+        algorithm!(self, "feet_jacobians", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            for foot in feet {
+                frame_jacobian(
+                    model,
+                    &kinematics,
+                    foot,
+                    Axes::LocalWorldAligned,
+                    &mut jacobian,
+                );
+                black_box(&jacobian);
+            }
+        });
+        let mut of = FrameDerivatives::ZERO;
+        algorithm!(self, "feet_acceleration_derivatives", |s, p| {
+            forward_kinematics(model, &p, &mut kinematics);
+            forward_accelerations(model, &p, &s.velocity, &s.acceleration, &mut moving);
+            for foot in feet {
+                let kind = AccelerationKind::Spatial;
+                frame_derivatives(
+                    model,
+                    &kinematics,
+                    &moving,
+                    foot,
+                    kind,
+                    Axes::Local,
+                    &mut of,
+                );
+                black_box(&of);
+            }
+        });
+    }
+
+    /// Dynamics with the feet held.
+    fn contacts(&mut self) {
+        let (model, feet) = (self.model, self.feet);
+        let mut contact = Contact::<N>::new();
+        algorithm!(self, "constrained_dynamics", |s, p| {
+            contact.prepare(model, &p, feet, Some(&s.velocity));
+            let drift = nonlinear_effects(model, &p, &s.velocity);
+            let free = contact.factors.solve(&(s.effort - drift));
+            let rows = &contact.rows[..contact.count];
+            contact_dynamics(&contact.factors, &free, rows, &mut contact.workspace)
+        });
+        let mut contact = Contact::<N>::new();
+        algorithm!(self, "impulse_dynamics", |s, p| {
+            contact.prepare(model, &p, feet, None);
+            let rows = &contact.rows[..contact.count];
+            impact(
+                &contact.factors,
+                &s.velocity,
+                0.0,
+                rows,
+                &mut contact.workspace,
+            )
+        });
+    }
+
+    /// Steps on the configuration manifold, each library in its own representation: a rotation matrix here, a quaternion there.
+    fn manifold(&mut self) {
+        let s = self.states;
+        let configurations: Vec<_> = s.iter().map(State::configuration).collect();
+        let from = configurations.clone();
+        self.list.push((
+            "integrate",
+            Box::new(move |i| {
+                black_box(&integrate(&from[i], &s[i].velocity));
+            }),
+        ));
+        self.list.push((
+            "difference",
+            Box::new(move |i| {
+                let next = (i + 1) % configurations.len();
+                black_box(&difference(&configurations[i], &configurations[next]));
+            }),
+        ));
+    }
+
+    /// Centre of mass and momentum.
+    fn momentum(&mut self) {
+        let model = self.model;
+        let mut jacobian = ComJacobian::ZERO;
+        algorithm!(self, "com_jacobian", |s, p| {
+            com_jacobian(model, &p, &mut jacobian);
+            &jacobian
+        });
+        let mut map = CentroidalMap::ZERO;
+        algorithm!(self, "centroidal_map", |s, p| {
+            centroidal_map(model, &p, &mut map);
+            &map
+        });
+        algorithm!(self, "centroidal_map_rate", |s, p| {
+            centroidal_map(model, &p, &mut map);
+            (&map, centroidal_bias(model, &p, &s.velocity))
+        });
+        algorithm!(self, "centroidal_momentum", |s, p| centroidal_state(
+            model,
+            &p,
+            &s.velocity
+        ));
+        algorithm!(self, "energies", |s, p| centroidal_state(
+            model,
+            &p,
+            &s.velocity
+        ));
+        algorithm!(self, "centroidal_momentum_rate", |s, p| {
+            centroidal_momentum_rate(model, &p, &s.velocity, &s.acceleration)
+        });
+        algorithm!(self, "com_acceleration", |s, p| {
+            com_motion(model, &p, &s.velocity, &s.acceleration)
+        });
+    }
+}
+
 /// Everything to measure on one model.
 fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     model: &'a M,
     feet: &'a [Frame<f64>],
     states: &'a [State<N>],
 ) -> Algorithms<'a> {
-    let mut list: Algorithms<'a> = Vec::new();
-    let s = states;
-    // Pushes an algorithm; `$p` is the posture of state `$i`, and what the body returns is kept alive.
-    macro_rules! algorithm {
-        ($name:literal, |$i:ident, $p:ident| $body:expr) => {
-            list.push((
-                $name,
-                Box::new(move |$i| {
-                    let $p = s[$i].posture(model);
-                    black_box(&$body);
-                }),
-            ));
-        };
-    }
-    let mut forces = [Force::ZERO; N];
-    for foot in feet {
-        if let rbd_core::Link::Joint(i) = foot.link {
-            forces[i] = Force::from_array([1.0, 2.0, 30.0, 0.0, 0.0, 0.0]);
-        }
-    }
-    algorithm!("rnea", |i, p| rnea(
+    let mut bench = Bench {
         model,
-        &p,
-        &s[i].velocity,
-        &s[i].acceleration
-    ));
-    algorithm!("rnea_external", |i, p| {
-        rnea_with_forces(
-            model,
-            &p,
-            &s[i].velocity,
-            &s[i].acceleration,
-            &Force::ZERO,
-            &forces,
-        )
-    });
-    algorithm!("nonlinear_effects", |i, p| nonlinear_effects(
-        model,
-        &p,
-        &s[i].velocity
-    ));
-    algorithm!("gravity", |i, p| generalized_gravity(model, &p));
-    let mut mass = MassMatrix::ZERO;
-    algorithm!("crba", |i, p| {
-        crba(model, &p, &mut mass);
-        &mass
-    });
-    let mut ws = AbaWorkspace::new();
-    algorithm!("aba", |i, p| aba(
-        model,
-        &p,
-        &s[i].velocity,
-        &s[i].effort,
-        &mut ws
-    ));
-    let mut mass = MassMatrix::ZERO;
-    let mut ws = AbaWorkspace::new();
-    algorithm!("rnea_crba_aba", |i, p| {
-        black_box(&rnea(model, &p, &s[i].velocity, &s[i].acceleration));
-        crba(model, &p, &mut mass);
-        black_box(&mass);
-        aba(model, &p, &s[i].velocity, &s[i].effort, &mut ws)
-    });
-
-    let (mut factors, mut inverse) = (MassFactors::new(), BlockMatrix::ZERO);
-    algorithm!("minverse", |i, p| {
-        crba(model, &p, &mut mass);
-        mass_matrix_inverse(model, &mass, &mut factors, &mut inverse);
-        &inverse
-    });
-    let mut of = RneaDerivatives::ZERO;
-    let mut ws = DerivativesWorkspace::new();
-    algorithm!("rnea_derivatives", |i, p| {
-        rnea_derivatives(
-            model,
-            &p,
-            &s[i].velocity,
-            &s[i].acceleration,
-            &mut ws,
-            &mut of,
-        );
-        &of
-    });
-    let mut of = AbaDerivatives::ZERO;
-    let mut ws = AbaDerivativesWorkspace::new();
-    algorithm!("aba_derivatives", |i, p| {
-        aba_derivatives(model, &p, &s[i].velocity, &s[i].effort, &mut ws, &mut of);
-        &of
-    });
-
-    let mut of = CentroidalDerivatives::ZERO;
-    let mut ws = DerivativesWorkspace::new();
-    algorithm!("centroidal_derivatives", |i, p| {
-        centroidal_derivatives(
-            model,
-            &p,
-            &s[i].velocity,
-            &s[i].acceleration,
-            &mut ws,
-            &mut of,
-        );
-        &of
-    });
-
-    let mut kinematics = Kinematics::IDENTITY;
-    algorithm!("fk_placements", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        &kinematics
-    });
-    let mut moving = BodyMotions::ZERO;
-    algorithm!("fk_velocities", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        forward_velocities(model, &p, &s[i].velocity, &mut moving);
-        (&kinematics, &moving)
-    });
-    algorithm!("fk_accelerations", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
-        (&kinematics, &moving)
-    });
-    algorithm!("feet_accelerations", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
-        for foot in feet {
-            let classical = moving.frame_classical_acceleration(foot);
-            black_box(&Axes::LocalWorldAligned.motion(&kinematics.frame(foot), &classical));
-        }
-    });
-    algorithm!("feet_bias_accelerations", |i, p| {
-        bias_accelerations(model, &p, &s[i].velocity, &mut moving);
-        for foot in feet {
-            black_box(&moving.frame_classical_acceleration(foot));
-        }
-    });
-    let mut columns = [rbd_core::Motion::ZERO; N];
-    algorithm!("joint_jacobians", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        joint_jacobians(model, &kinematics, &mut columns);
-        &columns
-    });
-    let mut jacobian = FrameJacobian::ZERO;
-    algorithm!("feet_jacobians", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        for foot in feet {
-            frame_jacobian(
-                model,
-                &kinematics,
-                foot,
-                Axes::LocalWorldAligned,
-                &mut jacobian,
-            );
-            black_box(&jacobian);
-        }
-    });
-
-    algorithm!("com", |i, p| center_of_mass(model, &p));
-    let mut of = FrameDerivatives::ZERO;
-    algorithm!("feet_acceleration_derivatives", |i, p| {
-        forward_kinematics(model, &p, &mut kinematics);
-        forward_accelerations(model, &p, &s[i].velocity, &s[i].acceleration, &mut moving);
-        for foot in feet {
-            let kind = AccelerationKind::Spatial;
-            frame_derivatives(
-                model,
-                &kinematics,
-                &moving,
-                foot,
-                kind,
-                Axes::Local,
-                &mut of,
-            );
-            black_box(&of);
-        }
-    });
-    let mut contact = Contact::<N>::new();
-    algorithm!("constrained_dynamics", |i, p| {
-        contact.prepare(model, &p, feet, Some(&s[i].velocity));
-        let drift = nonlinear_effects(model, &p, &s[i].velocity);
-        let free = contact.factors.solve(&(s[i].effort - drift));
-        let rows = &contact.rows[..contact.count];
-        contact_dynamics(&contact.factors, &free, rows, &mut contact.workspace)
-    });
-    let mut contact = Contact::<N>::new();
-    algorithm!("impulse_dynamics", |i, p| {
-        contact.prepare(model, &p, feet, None);
-        let rows = &contact.rows[..contact.count];
-        impact(
-            &contact.factors,
-            &s[i].velocity,
-            0.0,
-            rows,
-            &mut contact.workspace,
-        )
-    });
-    // Each library in its own representation: a rotation matrix here, a quaternion there.
-    let configurations: Vec<_> = s.iter().map(State::configuration).collect();
-    let from = configurations.clone();
-    list.push((
-        "integrate",
-        Box::new(move |i| {
-            black_box(&integrate(&from[i], &s[i].velocity));
-        }),
-    ));
-    list.push((
-        "difference",
-        Box::new(move |i| {
-            let next = (i + 1) % configurations.len();
-            black_box(&difference(&configurations[i], &configurations[next]));
-        }),
-    ));
-
-    let mut jacobian = ComJacobian::ZERO;
-    algorithm!("com_jacobian", |i, p| {
-        com_jacobian(model, &p, &mut jacobian);
-        &jacobian
-    });
-    let mut map = CentroidalMap::ZERO;
-    algorithm!("centroidal_map", |i, p| {
-        centroidal_map(model, &p, &mut map);
-        &map
-    });
-    algorithm!("centroidal_map_rate", |i, p| {
-        centroidal_map(model, &p, &mut map);
-        (&map, centroidal_bias(model, &p, &s[i].velocity))
-    });
-    algorithm!("centroidal_momentum", |i, p| centroidal_state(
-        model,
-        &p,
-        &s[i].velocity
-    ));
-    algorithm!("energies", |i, p| centroidal_state(
-        model,
-        &p,
-        &s[i].velocity
-    ));
-    algorithm!("centroidal_momentum_rate", |i, p| {
-        centroidal_momentum_rate(model, &p, &s[i].velocity, &s[i].acceleration)
-    });
-    algorithm!("com_acceleration", |i, p| {
-        com_motion(model, &p, &s[i].velocity, &s[i].acceleration)
-    });
-    list.push(("none", Box::new(|_| {})));
-    list
+        feet,
+        states,
+        list: Vec::new(),
+    };
+    bench.dynamics();
+    bench.derivatives();
+    bench.kinematics();
+    bench.feet();
+    bench.contacts();
+    bench.manifold();
+    bench.momentum();
+    bench.list.push(("none", Box::new(|_| {})));
+    bench.list
 }
 
 /// What contact dynamics needs: every foot held, points if there are four, soles if there are two.

@@ -80,7 +80,18 @@ where
     on.call("Contact::wrench_w", (&contacts[0], forces), |(c, f)| {
         c.wrench_w(&snapshot, f)
     });
+    push_offs(on, &snapshot, &contacts);
+}
 
+/// Ticks of the push-off on both soles: torques, with weights and with strict priorities, and velocities.
+fn push_offs<T: Real, R: Recorder>(
+    on: &mut Subject<'_, T, R>,
+    snapshot: &Snapshot<T, 23>,
+    contacts: &[Contact<T>; 2],
+) where
+    Icub23Geared: Model<T, 23>,
+{
+    let model = &Icub23Geared;
     let wanted = ComReference {
         position_w: snapshot.com_w() + Vector3::new(T::ZERO, T::ZERO, T::of(0.02)),
         velocity_w: Vector3::zeros(),
@@ -94,8 +105,8 @@ where
         };
         settings.strict = strict;
         let mut jump = TorqueJump::<T, 23, 12, 35, 61>::new(settings, posture());
-        for contacts in [&contacts, &contacts] {
-            let input = (&mut jump, &snapshot, contacts);
+        for contacts in [contacts, contacts] {
+            let input = (&mut jump, snapshot, contacts);
             on.call("TorqueJump::tick", input, |(jump, s, contacts)| {
                 let tick = jump.tick(model, s, contacts, (limits, motors), &wanted);
                 tick.map(|t| (t.answer, (t.residuals.com, t.residuals.momentum)))
@@ -109,7 +120,7 @@ where
     };
     let mut jump = VelocityJump::<T, 23, 29, 12>::new(settings, posture());
     for _ in 0..2 {
-        let input = (&mut jump, &snapshot, &contacts);
+        let input = (&mut jump, snapshot, contacts);
         on.call("VelocityJump::tick", input, |(jump, s, contacts)| {
             let tick = jump.tick(model, s, contacts, limits, &wanted, T::of(1e-3));
             tick.map(|t| (t.velocities, T::of(f64::from(t.iterations))))

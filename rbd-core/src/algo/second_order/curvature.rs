@@ -31,6 +31,7 @@
 use nalgebra::{Matrix3, Vector3};
 use so3::{Scalar, hat};
 
+use super::contacts::Push;
 use super::moments::{moment_of, outer, turn};
 use super::{Contacts, Hessian, PointMotion, Sweep};
 use crate::model::Link;
@@ -102,6 +103,29 @@ impl<T: Scalar> Weights<T> {
     }
 }
 
+/// The virtual velocities of the bodies and what their joints do to them.
+struct Virtuals<T, const N: usize> {
+    /// Λ.
+    motions: [Motion<T>; N],
+    /// S^λ.
+    rates: [Motion<T>; N],
+}
+
+/// What joint j gives to be multiplied with the axes of its ancestors: P, Q, R, U, W and Φ of the head of this file, with contact forces, μ
+/// and ν.
+struct Terms<T: Scalar> {
+    p: Force<T>,
+    q: Force<T>,
+    r: Force<T>,
+    u: Force<T>,
+    w: Force<T>,
+    f: Force<T>,
+    /// Of the angular parts of S_k, in q_j, q̇_j and q̈_j: what keeps its direction in the world.
+    z_q: Vector3<T>,
+    z_v: Vector3<T>,
+    z_a: Vector3<T>,
+}
+
 /// x × M-weighted points: `Σ x(r) × μ` from Σ μ and Σ μ rᵀ.
 fn pulled<T: Scalar>(x: &Motion<T>, pull: &Vector3<T>, by_pos: &Matrix3<T>) -> Vector3<T> {
     x.linear.cross(pull) - turn(&by_pos.transpose(), &x.angular)
@@ -169,27 +193,77 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
         positions: &PositionTerms<T, N>,
         out: &mut Hessian<T, N, CONTACTS>,
     ) {
-        // Λ and S^λ of every joint.
-        let mut virtuals = [Motion::ZERO; N];
-        let mut virtual_rates = [Motion::ZERO; N];
-        let mut weights = [Weights::zero(); N];
-        for i in 0..N {
+        let virtuals = self.virtuals(multipliers.effort);
+        let weights = self.weights(contacts, multipliers.acceleration, positions, &virtuals);
+        let pushes = contacts.sums(self);
+        for j in 0..N {
+            let virtual_rate = &virtuals.rates[j];
+            let terms = self.terms(j, &weights[j], &pushes[j], virtual_rate);
+            for k in self.path(j) {
+                let (other, other_rate) = (&self.joints[k], &virtuals.rates[k]);
+                let turn_k = &other.axis.angular;
+                let qq = other.second.dot(&terms.p)
+                    + other.rate.dot(&terms.q)
+                    + other_rate.dot(&terms.r)
+                    + turn_k.dot(&terms.z_q);
+                let vv = other.axis.dot(&terms.u);
+                out.qq[j][k] += qq;
+                out.vv[j][k] += vv;
+                out.vq[j][k] +=
+                    other.rate.dot(&terms.u) + other_rate.dot(&terms.w) + turn_k.dot(&terms.z_v);
+                out.aq[j][k] += other_rate.dot(&terms.f) + turn_k.dot(&terms.z_a);
+                if k != j {
+                    out.qq[k][j] += qq;
+                    out.vv[k][j] += vv;
+                    out.vq[k][j] += other.rate.dot(&terms.p) * T::TWO + other.axis.dot(&terms.q);
+                    out.aq[k][j] += other.axis.dot(&terms.p);
+                }
+            }
+        }
+        for (foot, mu) in contacts.active().zip(multipliers.acceleration) {
+            self.rolling_curvature(foot, mu, &virtuals.motions, out);
+        }
+        self.force_curvature(contacts, &virtuals, out);
+    }
+
+    /// Λ and S^λ of every joint.
+    #[inline(always)]
+    fn virtuals(&self, effort: &[T; N]) -> Virtuals<T, N> {
+        let mut virtuals = Virtuals {
+            motions: [Motion::ZERO; N],
+            rates: [Motion::ZERO; N],
+        };
+        for (i, lambda) in effort.iter().enumerate() {
             let parent = match self.bodies[i].parent {
-                Link::Joint(p) => virtuals.get(p).copied().unwrap_or(Motion::ZERO),
+                Link::Joint(p) => virtuals.motions.get(p).copied().unwrap_or(Motion::ZERO),
                 Link::Base => Motion::ZERO,
             };
             let axis = &self.joints[i].axis;
-            virtual_rates[i] = parent.cross(axis);
-            virtuals[i] = parent + *axis * multipliers.effort[i];
+            virtuals.rates[i] = parent.cross(axis);
+            virtuals.motions[i] = parent + *axis * *lambda;
         }
-        for i in 0..N {
-            (weights[i].push, weights[i].push_by_pos) = positions.push[i];
-            self.own_weights(i, &virtuals[i], &mut weights[i]);
+        virtuals
+    }
+
+    /// The sums over every subtree.
+    #[inline(always)]
+    fn weights<const CONTACTS: usize>(
+        &self,
+        contacts: &Contacts<T, CONTACTS>,
+        pulls: &[Vector3<T>; CONTACTS],
+        positions: &PositionTerms<T, N>,
+        virtuals: &Virtuals<T, N>,
+    ) -> [Weights<T>; N] {
+        let mut weights = [Weights::zero(); N];
+        for (i, weight) in weights.iter_mut().enumerate() {
+            (weight.push, weight.push_by_pos) = positions.push[i];
+            self.own_weights(i, &virtuals.motions[i], weight);
         }
-        for ((point, force), mu) in contacts.active().zip(multipliers.acceleration) {
-            if let (Some(weight), Some(lambda)) =
-                (weights.get_mut(point.link), virtuals.get(point.link))
-            {
+        for ((point, force), mu) in contacts.active().zip(pulls) {
+            if let (Some(weight), Some(lambda)) = (
+                weights.get_mut(point.link),
+                virtuals.motions.get(point.link),
+            ) {
                 add_acceleration(weight, point, mu);
                 weight.virtual_by_force += outer(&lambda.at_point(&point.pos), force);
             }
@@ -202,68 +276,73 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                 }
             }
         }
-        let pushes = contacts.sums(self);
-        for j in 0..N {
-            let (joint, sums, w, push) =
-                (&self.joints[j], &self.moments[j], &weights[j], &pushes[j]);
-            let (s, rate, second) = (&joint.axis, &joint.rate, &joint.second);
-            let virtual_rate = &virtual_rates[j];
-            let h = w.momentum();
-            let angular = |v| Force::new(Vector3::zeros(), v);
+        weights
+    }
 
-            // μ keeps its direction: seen from the subtree it turns by −S_k × μ, where Λ gains S^λ_k.
-            let pulled_axis =
-                Force::new(w.pull.cross(&s.angular), -turn(&w.pull_by_pos, &s.angular));
-            let p = sums.inertia(virtual_rate) + s.cross_force(&h) + pulled_axis;
-            let q = angular(sums.carried_transposed(virtual_rate))
-                + rate.cross_force(&h) * T::TWO
-                + s.cross_force(&angular(w.gyration))
-                + w.gyration_transposed(rate)
-                - angular(turn(&w.pull_by_velocity, &s.angular) * T::TWO);
-            let r = s.cross_force(&sums.force)
-                + sums.inertia(second)
-                + sums.carried(rate)
-                + angular(push.kept_direction(s));
-            let u = s.cross_force(&h) * T::TWO + w.gyration_transposed(s);
-            let big_w = sums.inertia(rate) * T::TWO + sums.carried(s);
-            let f = sums.inertia(s);
+    /// The [`Terms`] of joint `j`, from the sums over its subtree.
+    #[inline(always)]
+    fn terms(
+        &self,
+        j: usize,
+        w: &Weights<T>,
+        push: &Push<T>,
+        virtual_rate: &Motion<T>,
+    ) -> Terms<T> {
+        let (joint, sums) = (&self.joints[j], &self.moments[j]);
+        let (s, rate, second) = (&joint.axis, &joint.rate, &joint.second);
+        let h = w.momentum();
+        let angular = |v| Force::new(Vector3::zeros(), v);
 
-            // What the axis of k sees of vectors that do not turn with it: F, μ, ν.
-            let turning = |w: &Weights<T>, m: &Motion<T>| pulled(m, &w.pull, &w.pull_by_pos);
-            let swept = |m: &Vector3<T>| -turn(&w.pull_by_velocity.transpose(), m) * T::TWO;
-            let z_q = push.kept_direction(virtual_rate) - turn(&w.acceleration_by_pull, &s.angular)
-                + turn(&w.virtual_by_force, &s.angular)
-                + turning(w, second)
-                + swept(&rate.angular)
-                + pulled(s, &w.push, &w.push_by_pos);
-            let z_v = turning(w, rate) * T::TWO + swept(&s.angular);
-            let z_a = turning(w, s);
+        // μ keeps its direction: seen from the subtree it turns by −S_k × μ, where Λ gains S^λ_k.
+        let pulled_axis = Force::new(w.pull.cross(&s.angular), -turn(&w.pull_by_pos, &s.angular));
+        let p = sums.inertia(virtual_rate) + s.cross_force(&h) + pulled_axis;
+        let q = angular(sums.carried_transposed(virtual_rate))
+            + rate.cross_force(&h) * T::TWO
+            + s.cross_force(&angular(w.gyration))
+            + w.gyration_transposed(rate)
+            - angular(turn(&w.pull_by_velocity, &s.angular) * T::TWO);
+        let r = s.cross_force(&sums.force)
+            + sums.inertia(second)
+            + sums.carried(rate)
+            + angular(push.kept_direction(s));
+        let u = s.cross_force(&h) * T::TWO + w.gyration_transposed(s);
+        let of_speed = sums.inertia(rate) * T::TWO + sums.carried(s);
+        let f = sums.inertia(s);
 
-            for k in self.path(j) {
-                let (other, other_rate) = (&self.joints[k], &virtual_rates[k]);
-                let turn_k = &other.axis.angular;
-                let qq = other.second.dot(&p)
-                    + other.rate.dot(&q)
-                    + other_rate.dot(&r)
-                    + turn_k.dot(&z_q);
-                let vv = other.axis.dot(&u);
-                out.qq[j][k] += qq;
-                out.vv[j][k] += vv;
-                out.vq[j][k] += other.rate.dot(&u) + other_rate.dot(&big_w) + turn_k.dot(&z_v);
-                out.aq[j][k] += other_rate.dot(&f) + turn_k.dot(&z_a);
-                if k != j {
-                    out.qq[k][j] += qq;
-                    out.vv[k][j] += vv;
-                    out.vq[k][j] += other.rate.dot(&p) * T::TWO + other.axis.dot(&q);
-                    out.aq[k][j] += other.axis.dot(&p);
-                }
-            }
+        // What the axis of k sees of vectors that do not turn with it: F, μ, ν.
+        let turning = |w: &Weights<T>, m: &Motion<T>| pulled(m, &w.pull, &w.pull_by_pos);
+        let swept = |m: &Vector3<T>| -turn(&w.pull_by_velocity.transpose(), m) * T::TWO;
+        let z_q = push.kept_direction(virtual_rate) - turn(&w.acceleration_by_pull, &s.angular)
+            + turn(&w.virtual_by_force, &s.angular)
+            + turning(w, second)
+            + swept(&rate.angular)
+            + pulled(s, &w.push, &w.push_by_pos);
+        let z_v = turning(w, rate) * T::TWO + swept(&s.angular);
+        let z_a = turning(w, s);
+
+        Terms {
+            p,
+            q,
+            r,
+            u,
+            w: of_speed,
+            f,
+            z_q,
+            z_v,
+            z_a,
         }
-        for (foot, mu) in contacts.active().zip(multipliers.acceleration) {
-            self.rolling_curvature(foot, mu, &virtuals, out);
-        }
+    }
+
+    /// Adds the second derivatives in the contact forces and q.
+    #[inline(always)]
+    fn force_curvature<const CONTACTS: usize>(
+        &self,
+        contacts: &Contacts<T, CONTACTS>,
+        virtuals: &Virtuals<T, N>,
+        out: &mut Hessian<T, N, CONTACTS>,
+    ) {
         for ((point, _), block) in contacts.active().zip(&mut out.force) {
-            let Some(virtual_motion) = virtuals.get(point.link) else {
+            let Some(virtual_motion) = virtuals.motions.get(point.link) else {
                 continue;
             };
             let slip = virtual_motion.at_point(&point.pos);
@@ -272,7 +351,7 @@ impl<T: Scalar, const N: usize> Sweep<'_, T, N> {
                 let turn_k = &self.joints[k].axis.angular;
                 let column = turn_k.cross(&slip)
                     + turn_k.cross(&virtual_motion.angular).cross(&point.arm)
-                    + virtual_rates[k].at_point(&touch);
+                    + virtuals.rates[k].at_point(&touch);
                 for (row, value) in block.iter_mut().zip(column.iter()) {
                     row.q[k] -= *value;
                 }

@@ -1,0 +1,117 @@
+//! The bounds beside the solver.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+use super::impossible;
+use crate::task::Task;
+use crate::task::file::BUILT_IN;
+use core::ops::ControlFlow;
+use ocp_solver::{Settings, Status};
+use proptest::prelude::*;
+
+/// Whether the solver finds a plan.
+fn solves(task: &Task) -> bool {
+    let mut settings = Settings::new();
+    (settings.max_iterations, settings.restoration_iterations) = (150, 0);
+    let plan = task.attempt(&settings, |_| ControlFlow::Continue(()));
+    plan.is_ok_and(|plan| plan.status == Status::Solved)
+}
+
+fn task(name: &str, change: impl FnOnce(&mut Task)) -> Task {
+    let mut task = Task::load(name).unwrap();
+    change(&mut task);
+    task
+}
+
+#[test]
+fn tasks_that_are_solved_break_no_bound() {
+    for (name, _) in BUILT_IN {
+        assert_eq!(impossible(&Task::load(name).unwrap()), None, "{name}");
+    }
+}
+
+/// One task per bound, a little beyond it: the bound says so, and the solver finds no plan either.
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn the_solver_agrees_with_every_bound() {
+    let cases = [
+        (
+            "durations",
+            task("a1/lateral", |task| task.problem.max_total = 0.3),
+        ),
+        (
+            "falling",
+            task("a1/lateral", |task| {
+                for phase in &mut task.problem.phases {
+                    phase.contacts = [false; 4];
+                }
+            }),
+        ),
+        (
+            "start",
+            task("a1/lateral", |task| task.problem.clearance = 0.3),
+        ),
+        (
+            "goal",
+            task("a1/lateral", |task| task.problem.goal_w.z = 0.05),
+        ),
+        (
+            "sideways",
+            task("a1/lateral", |task| task.problem.friction = 0.02),
+        ),
+        (
+            "free fall",
+            task("a1/double-backflip", |task| {
+                task.fix_timing(&[0.5, 0.33, 0.2]).unwrap();
+            }),
+        ),
+        (
+            "impulse",
+            task("a1/lateral", |task| task.problem.max_force = 30.0),
+        ),
+        (
+            "force",
+            task("a1/lateral", |task| task.problem.goal_w.z += 2.2),
+        ),
+    ];
+    for (name, task) in cases {
+        let proof = impossible(&task);
+        assert_eq!(proof.map(|proof| proof.bound), Some(name));
+        assert!(!solves(&task), "{name}: the solver contradicts the bound");
+    }
+}
+
+/// Power is a matter of the joints, which the rigid body does not have: the whole body must disagree with a plan of the body.
+#[test]
+fn weak_joints_cannot_lift() {
+    let weak = task("a1/lateral", |task| {
+        task.limits.torque_shares = [0.02; 3];
+        task.problem.goal_w.z += 0.8;
+    });
+    assert_eq!(impossible(&weak).map(|proof| proof.bound), Some("power"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Random changes of the tasks, half of them far beyond what can be: whatever breaks a bound, the solver does not solve.
+    #[test]
+    #[ignore = "long: cargo xtask suites"]
+    fn bounds_never_contradict_the_solver(
+        (name, rise, ahead) in (0..BUILT_IN.len(), -1.6..1.6, -0.6..0.6),
+        (friction, force, total) in (0.02..2.0, 0.2..2.0, 0.3..1.5),
+    ) {
+        let (name, _) = BUILT_IN[name];
+        let task = task(name, |task| {
+            let problem = &mut task.problem;
+            problem.goal_w.z += rise;
+            problem.goal_w.x += ahead;
+            problem.friction *= friction;
+            problem.max_force *= force;
+            problem.max_total *= total;
+            problem.min_total = problem.min_total.min(problem.max_total);
+        });
+        if let Some(proof) = impossible(&task) {
+            prop_assert!(!solves(&task), "{name}: {proof:?}");
+        }
+    }
+}
