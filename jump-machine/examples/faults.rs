@@ -22,7 +22,7 @@ fn main() {
             foot_forces: [33.7; 4],
             age: 0.0,
         },
-        felt: [0.0; 12],
+        joint_torques: [0.0; 12],
     };
     for millisecond in 0..30 {
         if millisecond == 20 {

@@ -1,9 +1,11 @@
 //! The machine: memory, and one method per rate.
 
 use jump_control::{
-    Fault, JointCommand, JointGains, Measurement, Phase, Plan, Reference, Scales, sample,
+    Fault, JointCommand, JointGains, Measurement, PayloadEstimate, Phase, Plan, Reference, sample,
 };
-use landing::{DetectorState, Grip, Landing, Outcome, PreLanding, Target, Turning, Workspace};
+use landing::{
+    AttitudeCompensation, DetectorState, Landing, Outcome, PreLanding, Target, Turning, Workspace,
+};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
 use so3::{Scalar, math};
@@ -44,7 +46,7 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     /// The legs as measured, and as they should be: kept so that a tick copies nothing.
     limbs: Limbs<T, N, F>,
     wanted: Limbs<T, N, F>,
-    scales: Scales<T>,
+    payload: PayloadEstimate<T>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
     /// Node of the plan's last sample.
@@ -52,7 +54,7 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     /// By how much the plan's clock is behind the caller's in this flight, s.
     late: T,
     /// Share of their distance from the axis of turning by which the feet are drawn in.
-    tucked: T,
+    shaping: T,
 }
 
 impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
@@ -83,11 +85,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             limbs: Limbs::ZERO,
             wanted: Limbs::ZERO,
             posture: settings.posture,
-            scales: Scales::new(),
+            payload: PayloadEstimate::new(),
             start: T::ZERO,
             node: 0,
             late: T::ZERO,
-            tucked: T::ZERO,
+            shaping: T::ZERO,
             settings,
         }
     }
@@ -104,8 +106,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.legs = jump.landing_joints;
         self.jump = Some(jump);
         (self.start, self.node) = (start, 0);
-        (self.late, self.tucked) = (T::ZERO, T::ZERO);
-        self.scales = Scales::new();
+        (self.late, self.shaping) = (T::ZERO, T::ZERO);
+        self.payload = PayloadEstimate::new();
         self.supervisor.armed();
         Ok(())
     }
@@ -177,7 +179,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &mut self.contact,
             &self.limbs,
             &v,
-            &inputs.felt,
+            &inputs.joint_torques,
             &measured.foot_forces,
             dt,
         );
@@ -235,12 +237,14 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let moment = (then.node, t - measured.age);
         match self.supervisor.phase {
             // Its weight has settled on the feet by then.
-            Phase::Hold if t > -s.weighing => self.scales.add(&measured.foot_forces),
+            Phase::Hold if t > -s.weighing => self.payload.add(&measured.foot_forces),
             Phase::Stance => self.push_off(jump, moment, measured, &mut then, &mut reference),
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
-                    self.tucked = s.tuck.share(self.tucked, &turning, dt);
-                    let moved = s.tuck.joints(self.tucked, &turning, &self.wanted);
+                    self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);
+                    let moved = s
+                        .inertia_shaping
+                        .joints(self.shaping, &turning, &self.wanted);
                     add(&mut then.joints, &moved);
                     add(&mut reference.joints, &moved);
                 }
@@ -279,25 +283,27 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         reference: &mut Reference<T, N>,
     ) {
         let s = &self.settings;
-        let factor = self.scales.factor(jump.weight, s.max_payload);
+        let factor = self.payload.factor(jump.weight, s.max_payload);
         reference.torques = reference.torques.map(|torque| torque * factor);
         let feet_b = self.limbs.ends.map(|end| end.position);
         let mass = jump.weight / T::of(-GRAVITY[2]);
-        let forces = s.steady.forces(&jump.plan, moment, mass, measured, &feet_b);
+        let forces = s
+            .base_feedback
+            .forces(&jump.plan, moment, mass, measured, &feet_b);
         for (end, force) in self.limbs.ends.iter().zip(&forces) {
             end.add_tr_mul(&-force, &mut reference.torques);
         }
-        let share = s.steady.grip(&jump.plan, moment.0);
+        let share = s.base_feedback.compensation(&jump.plan, moment.0);
         let Some(planned) = jump.plan.base(moment).filter(|_| share > T::ZERO) else {
             return;
         };
-        let grip = Grip {
+        let compensation = AttitudeCompensation {
             turn: measured.base.rotation.inverse() * planned.rot_wb,
             rate_b: planned.omega_b - measured.base_velocity.angular,
             // The same legs are moved likewise in flight.
-            damping: s.tuck.damping,
+            damping: s.inertia_shaping.damping,
         };
-        let (moved, speeds) = grip.joints(share, &self.wanted, &then.joint_velocities);
+        let (moved, speeds) = compensation.joints(share, &self.wanted, &then.joint_velocities);
         add(&mut then.joints, &moved);
         add(&mut reference.joints, &moved);
         add(&mut then.joint_velocities, &speeds);

@@ -10,5 +10,5 @@ pub struct Observation<T: Scalar, const N: usize, const F: usize> {
     pub measured: Measurement<T, N, F>,
     /// Mean torques of the joints over the period before the measurement, friction included, N m: evidence of contact for feet without a
     /// good sensor. A humanoid's soles have six axes, and its machine does not read them.
-    pub felt: [T; N],
+    pub joint_torques: [T; N],
 }

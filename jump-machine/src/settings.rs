@@ -1,7 +1,7 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
-use jump_control::{CartesianPd, Steady};
-use landing::{Detector, PreLanding, Tuck};
+use jump_control::{BaseFeedback, CartesianPd};
+use landing::{Detector, InertiaShaping, PreLanding};
 use rbd_core::{Build, Frame, Motor};
 use so3::Scalar;
 
@@ -43,9 +43,9 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     /// Push-off and flight.
     pub pd: CartesianPd<T, N, F>,
     /// The base in the push-off.
-    pub steady: Steady<T>,
+    pub base_feedback: BaseFeedback<T>,
     /// Legs in flight.
-    pub tuck: Tuck<T>,
+    pub inertia_shaping: InertiaShaping<T>,
     /// Touchdown.
     pub detector: Detector<T, N, F>,
     /// Legs before touchdown; its joints are those of legs without ground while no jump is armed.
@@ -91,8 +91,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             safe_damping: build.joint_damping(2.0),
             slew: build.torque(1e4),
             pd: CartesianPd::new(build, feet),
-            steady: Steady::new(build),
-            tuck: Tuck::new(build),
+            base_feedback: BaseFeedback::new(build),
+            inertia_shaping: InertiaShaping::new(build),
             detector: Detector::new(build, feet),
             posture: PreLanding {
                 // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the

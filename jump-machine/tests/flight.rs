@@ -78,7 +78,7 @@ fn flying(
             foot_forces: [0.0; 4],
             age: 0.0,
         },
-        felt: [0.0; 12],
+        joint_torques: [0.0; 12],
     }
 }
 

@@ -61,7 +61,7 @@ fn resting(joints: &[f64; N], force: f64) -> Heard {
             foot_forces: [force; 2],
             age: 0.0,
         },
-        felt: [0.0; N],
+        joint_torques: [0.0; N],
     }
 }
 

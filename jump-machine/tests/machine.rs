@@ -50,14 +50,16 @@ fn inputs<T: Scalar>() -> Observation<T, 12, 4> {
             age: T::ZERO,
         },
         // −Jᵀf of feet that each carry a quarter of the robot.
-        felt: core::array::from_fn(|i| T::of([-2.824, 0.0, 4.835, 2.824, 0.0, 4.835][i % 6])),
+        joint_torques: core::array::from_fn(|i| {
+            T::of([-2.824, 0.0, 4.835, 2.824, 0.0, 4.835][i % 6])
+        }),
     }
 }
 
 fn in_air() -> Observation<f64, 12, 4> {
     let mut heard = inputs();
     heard.measured.foot_forces = [0.0; 4];
-    heard.felt = [0.0; 12];
+    heard.joint_torques = [0.0; 12];
     heard
 }
 
@@ -228,7 +230,7 @@ fn single_precision_goes_the_same_way() {
         let mut heard = inputs();
         if (200..360).contains(&k) {
             heard.measured.foot_forces = [0.0; 4];
-            heard.felt = [0.0; 12];
+            heard.joint_torques = [0.0; 12];
         }
         let tick = m.tick(k as f32 * 1e-3, Some(&heard));
         assert_eq!(tick.fault, None, "{k}");
@@ -281,7 +283,7 @@ proptest! {
                     3 => dt = bad,
                     4 => q[i] = bad,
                     5 => qd[i] = bad,
-                    _ => heard.felt[i] = bad,
+                    _ => heard.joint_torques[i] = bad,
                 }
             }
             m.tick(now, Some(&heard));

@@ -106,7 +106,8 @@ impl Size {
         }
         s.slew /= self.time;
         // The base's place and speed are fed back too, though nobody's estimate is good enough for it.
-        (s.steady.stiffness, s.steady.damping) = (60.0 / self.length, 8.0 / self.time);
+        (s.base_feedback.stiffness, s.base_feedback.damping) =
+            (60.0 / self.length, 8.0 / self.time);
         s
     }
 
@@ -141,7 +142,7 @@ impl Size {
                 foot_forces: measured.foot_forces.map(|x| x * self.mass),
                 age: measured.age * self.time,
             },
-            felt: small.felt.map(|x| x * self.torque()),
+            joint_torques: small.joint_torques.map(|x| x * self.torque()),
         }
     }
 
@@ -219,7 +220,7 @@ fn heard(k: i32) -> Observation<f64, 12, 4> {
             foot_forces: core::array::from_fn(load),
             age: 0.002,
         },
-        felt: core::array::from_fn(|i| share * [0.5, 1.0, 6.0][i % 3]),
+        joint_torques: core::array::from_fn(|i| share * [0.5, 1.0, 6.0][i % 3]),
     }
 }
 
@@ -312,11 +313,21 @@ fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
         ("joint_gains", |to, of| {
             to.pd.joint_gains = of.pd.joint_gains
         }),
-        ("turning", |to, of| to.steady.turning = of.steady.turning),
-        ("tuck.gain", |to, of| to.tuck.gain = of.tuck.gain),
-        ("tuck.slowest", |to, of| to.tuck.slowest = of.tuck.slowest),
-        ("tuck.ramp", |to, of| to.tuck.ramp = of.tuck.ramp),
-        ("tuck.damping", |to, of| to.tuck.damping = of.tuck.damping),
+        ("turning", |to, of| {
+            to.base_feedback.turning = of.base_feedback.turning
+        }),
+        ("inertia_shaping.gain", |to, of| {
+            to.inertia_shaping.gain = of.inertia_shaping.gain
+        }),
+        ("inertia_shaping.slowest", |to, of| {
+            to.inertia_shaping.slowest = of.inertia_shaping.slowest
+        }),
+        ("inertia_shaping.ramp", |to, of| {
+            to.inertia_shaping.ramp = of.inertia_shaping.ramp
+        }),
+        ("inertia_shaping.damping", |to, of| {
+            to.inertia_shaping.damping = of.inertia_shaping.damping
+        }),
         ("loaded", |to, of| to.detector.loaded = of.detector.loaded),
         ("observer", |to, of| {
             to.detector.observer.damping = of.detector.observer.damping

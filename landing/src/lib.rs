@@ -1,11 +1,12 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod attitude_compensation;
 mod controller;
 mod detector;
 mod face;
 mod forces;
-mod grip;
+mod inertia_shaping;
 mod least_squares;
 mod limits;
 mod observer;
@@ -13,16 +14,15 @@ mod posture;
 mod program;
 mod settings;
 mod touchdown;
-mod tuck;
 mod wrench;
 
+pub use attitude_compensation::AttitudeCompensation;
 pub use controller::{Command, Landing, Outcome, Workspace};
 pub use dense_qp::Status;
 pub use detector::{Detector, DetectorState};
-pub use grip::Grip;
+pub use inertia_shaping::{InertiaShaping, Turning};
 pub use observer::{ForceObserver, ObserverState};
 pub use posture::PreLanding;
 pub use program::Program;
 pub use settings::{Settings, Target};
 pub use touchdown::{ContactFilter, TouchdownState};
-pub use tuck::{Tuck, Turning};

@@ -3,7 +3,11 @@
 use std::path::Path;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use rbd_core::{Configuration, Effort, Force, Motion, Posture, Tangent, Transform, Tree};
+use rbd_core::{
+    Axes, BodyMotions, Configuration, ContactRow, ContactWorkspace, Effort, Force, Frame,
+    FrameJacobian, Kinematics, MassFactors, MassMatrix, Motion, Posture, Tangent, Transform, Tree,
+    bias_accelerations, crba, forward_kinematics, frame_jacobian,
+};
 use rustix::time::{ClockId, clock_gettime};
 
 use crate::golden::Golden;
@@ -120,4 +124,76 @@ pub fn time(states: usize, ms: f64, call: &mut dyn FnMut(usize)) -> f64 {
     }
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
+}
+
+/// What contact dynamics needs: every foot held, points if there are four, soles if there are two.
+pub struct HeldFeet<const N: usize> {
+    mass: MassMatrix<f64, N>,
+    /// Factors of the mass matrix.
+    pub factors: MassFactors<f64, N>,
+    kinematics: Kinematics<f64, N>,
+    bias: BodyMotions<f64, N>,
+    jacobian: FrameJacobian<f64, N>,
+    /// Rows of the feet.
+    pub rows: [ContactRow<f64, N>; 12],
+    /// How many rows count.
+    pub count: usize,
+    /// Scratch of the solver.
+    pub workspace: ContactWorkspace<f64, N, 12>,
+}
+
+impl<const N: usize> HeldFeet<N> {
+    /// Nothing prepared.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            mass: MassMatrix::ZERO,
+            factors: MassFactors::new(),
+            kinematics: Kinematics::IDENTITY,
+            bias: BodyMotions::ZERO,
+            jacobian: FrameJacobian::ZERO,
+            rows: [ContactRow::ZERO; 12],
+            count: 0,
+            workspace: ContactWorkspace::new(),
+        }
+    }
+
+    /// Factors of the mass matrix and the rows of the feet; without a velocity the rows have no bias.
+    pub fn prepare<M: Tree<f64, N>>(
+        &mut self,
+        model: &M,
+        posture: &Posture<f64, N>,
+        feet: &[Frame<f64>],
+        velocity: Option<&Tangent<f64, N>>,
+    ) {
+        crba(model, posture, &mut self.mass);
+        self.factors.factor(model, &self.mass);
+        forward_kinematics(model, posture, &mut self.kinematics);
+        if let Some(velocity) = velocity {
+            bias_accelerations(model, posture, velocity, &mut self.bias);
+        }
+        let rows_per_foot = self.rows.len() / feet.len();
+        self.count = rows_per_foot * feet.len();
+        for (rows, foot) in self.rows.chunks_exact_mut(rows_per_foot).zip(feet) {
+            frame_jacobian(
+                model,
+                &self.kinematics,
+                foot,
+                Axes::Local,
+                &mut self.jacobian,
+            );
+            let drift = self.bias.frame_classical_acceleration(foot);
+            if rows_per_foot == 3 {
+                rows.copy_from_slice(&ContactRow::point(&self.jacobian, &drift.linear));
+            } else {
+                rows.copy_from_slice(&ContactRow::surface(&self.jacobian, &drift));
+            }
+        }
+    }
+}
+
+impl<const N: usize> Default for HeldFeet<N> {
+    fn default() -> Self {
+        Self::new()
+    }
 }

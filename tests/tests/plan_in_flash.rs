@@ -108,7 +108,7 @@ fn a_machine_follows_the_bytes_as_it_follows_the_nodes() {
             foot_forces: [33.0; 4],
             age: 0.001,
         },
-        felt: first.torques,
+        joint_torques: first.torques,
     };
     let mut seen = Vec::new();
     let end = ((0.3 + stored.plan.touchdown + 0.2) * 1e3) as u32;

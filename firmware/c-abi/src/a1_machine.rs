@@ -129,7 +129,7 @@ impl A1Observation {
         };
         Observation {
             measured,
-            felt: self.torques,
+            joint_torques: self.torques,
         }
     }
 }

@@ -29,7 +29,7 @@ pub struct Sensed<T: Real> {
     /// Joint positions, rad, and velocities, rad/s.
     pub joints: [[T; 12]; 2],
     /// Mean torques of the last millisecond, friction included, N m.
-    pub felt: [T; 12],
+    pub joint_torques: [T; 12],
     /// Accelerometer, m/s², and gyroscope, rad/s, base axes.
     pub imu: [Vector3<T>; 2],
     /// Normal forces on the feet, N.
@@ -42,7 +42,7 @@ pub struct Sensed<T: Real> {
 
 impl<T: Real> Numbers for Sensed<T> {
     fn visit(&self, take: &mut dyn FnMut(f64)) {
-        (self.joints, self.felt).visit(take);
+        (self.joints, self.joint_torques).visit(take);
         (self.imu, self.foot_forces).visit(take);
         (self.age, self.jump).visit(take);
     }
@@ -56,7 +56,7 @@ pub struct Link<B> {
     /// Joint ticks since the report came.
     age: u32,
     /// Sum of reported torques since the control loop heard them last, and how many.
-    felt: ([f32; 12], u16),
+    joint_torques: ([f32; 12], u16),
     order: Order,
     /// Reports that were damaged or repeated, and orders that found the bus busy.
     pub lost: [u32; 2],
@@ -70,7 +70,7 @@ impl<B: Bus> Link<B> {
             bus,
             report: None,
             age: 0,
-            felt: ([0.0; 12], 0),
+            joint_torques: ([0.0; 12], 0),
             order: Order {
                 number: 0,
                 torques: [0.0; 12],
@@ -91,7 +91,7 @@ impl<B: Bus> Link<B> {
         let last = self.report.map(|report| report.number);
         match Report::decode(bytes) {
             Ok(report) if last != Some(report.number) => {
-                let (sum, count) = &mut self.felt;
+                let (sum, count) = &mut self.joint_torques;
                 for (sum, torque) in sum.iter_mut().zip(&report.torques) {
                     *sum += torque;
                 }
@@ -129,12 +129,12 @@ impl<T: Real, B: Bus> Robot<T, 12> for Link<B> {
 
     fn sensors(&mut self) -> Sensed<T> {
         self.listen();
-        let (sum, count) = core::mem::replace(&mut self.felt, ([0.0; 12], 0));
+        let (sum, count) = core::mem::replace(&mut self.joint_torques, ([0.0; 12], 0));
         let age = T::of(f64::from(self.age) * PERIOD);
         let Some(report) = self.report else {
             return Sensed {
                 joints: [[T::NAN; 12]; 2],
-                felt: [T::ZERO; 12],
+                joint_torques: [T::ZERO; 12],
                 imu: [Vector3::zeros(); 2],
                 foot_forces: [T::ZERO; 4],
                 age: T::INFINITY,
@@ -143,7 +143,7 @@ impl<T: Real, B: Bus> Robot<T, 12> for Link<B> {
         };
         Sensed {
             joints: [report.joints, report.joint_velocities].map(|xs| xs.map(number)),
-            felt: if count == 0 {
+            joint_torques: if count == 0 {
                 report.torques.map(number)
             } else {
                 sum.map(|x| number(x / f32::from(count)))

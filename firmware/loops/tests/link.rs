@@ -69,7 +69,7 @@ impl Far {
             joints: single(heard.measured.joints),
             joint_velocities: single(heard.measured.joint_velocities),
             // The mean over a millisecond of what is felt in a tenth of it.
-            torques: single(heard.felt.map(|x| x * RATIO as f64)),
+            torques: single(heard.joint_torques.map(|x| x * RATIO as f64)),
             specific_force: (base.rotation.inverse() * felt_w).map(|x| x as f32).into(),
             angular_velocity: heard
                 .measured

@@ -86,7 +86,7 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
         &mut self,
         now: f64,
         world: &Ground<N, C>,
-        felt: &[f64; N],
+        joint_torques: &[f64; N],
     ) -> Option<Observation<f64, N, F>> {
         let (joints, joint_velocities) = self.encoders(world);
         let forces = (self.feet.forces)(world);
@@ -112,8 +112,14 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
             foot_forces,
             age: if lost { f64::INFINITY } else { 0.0 },
         };
-        let felt = *felt;
-        self.link.send(now, Observation { measured, felt });
+        let joint_torques = *joint_torques;
+        self.link.send(
+            now,
+            Observation {
+                measured,
+                joint_torques,
+            },
+        );
         let (mut told, age) = self.link.receive(now)?;
         told.measured.age += age;
         Some(told)

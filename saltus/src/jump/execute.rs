@@ -3,7 +3,7 @@
 use super::log::Sample;
 use super::measure::Measure;
 use super::plant::{Sim, plant};
-use super::{FOOT_COUNT, JOINTS, OWNERS, Told, World};
+use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
 use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::lab::{Disturbance, Interface};
 use crate::verdict::{Hardware, Tick as HardwareTick};
@@ -217,10 +217,10 @@ struct Keeper<'a, 'p, T, W> {
 impl<'m, T, W> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
     for Keeper<'_, '_, T, W>
 where
-    T: FnMut(u64, &mut Told),
+    T: FnMut(u64, &mut Observed),
     W: FnMut(&landing::Workspace<f64, 12, 4>),
 {
-    fn tell(&mut self, k: u64, told: &mut Told) {
+    fn tell(&mut self, k: u64, told: &mut Observed) {
         if !self.delayed && told.measured.age.is_finite() {
             told.measured.age = 0.0;
         }
@@ -266,7 +266,7 @@ pub(crate) fn run_watched(
     task: &Task,
     reference: &Reference,
     trial: Trial<'_>,
-    tamper: impl FnMut(u64, &mut Told),
+    tamper: impl FnMut(u64, &mut Observed),
     progress: impl FnMut(f64, Phase),
     watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {

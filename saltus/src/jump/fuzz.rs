@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::Told;
+use super::Observed;
 use super::execute::{HOLD, Run, Trial, run_watched};
 use super::plant::Sim;
 use a1_model::MOTORS;
@@ -24,7 +24,7 @@ fn jump() -> &'static (Task, Reference) {
 }
 
 /// Puts `bad` into one number of what the controller is told; the fault that must be named for it.
-fn spoil(told: &mut Told, place: usize, bad: f64) -> Option<Fault> {
+fn spoil(told: &mut Observed, place: usize, bad: f64) -> Option<Fault> {
     let m = &mut told.measured;
     let i = place % 12;
     match place / 12 {
@@ -42,7 +42,7 @@ fn spoil(told: &mut Told, place: usize, bad: f64) -> Option<Fault> {
         3 => m.age = 0.011,
         // Torques are only evidence: a jump goes on without them.
         _ => {
-            told.felt[i] = bad;
+            told.joint_torques[i] = bad;
             return None;
         }
     }

@@ -25,15 +25,15 @@ pub(crate) enum Measure {
     /// A landing posture that follows tilt and speed before touchdown.
     Posture,
     /// Forces of the feet against a wrong turning rate.
-    Steady,
+    BaseFeedback,
     /// Plan forces that keep their direction in the world, however the body leans.
     Direction,
     /// Feet pulled to their places in the world, however the body leans, while fewer than all push.
-    Grip,
+    AttitudeCompensation,
     /// A touchdown and an attitude there that are predicted, not taken from the plan and from now.
     Retiming,
     /// Legs drawn in or stretched in flight, so that the body turns on time.
-    Tuck,
+    InertiaShaping,
     /// Stiffer gains of a body that rests off its target.
     Resting,
 }
@@ -47,11 +47,11 @@ impl Measure {
         Self::Delay,
         Self::Lookahead,
         Self::Posture,
-        Self::Steady,
+        Self::BaseFeedback,
         Self::Direction,
-        Self::Grip,
+        Self::AttitudeCompensation,
         Self::Retiming,
-        Self::Tuck,
+        Self::InertiaShaping,
         Self::Resting,
     ];
 
@@ -64,11 +64,11 @@ impl Measure {
             Self::Delay => "delay",
             Self::Lookahead => "lookahead",
             Self::Posture => "posture",
-            Self::Steady => "steady",
+            Self::BaseFeedback => "steady",
             Self::Direction => "direction",
-            Self::Grip => "grip",
+            Self::AttitudeCompensation => "grip",
             Self::Retiming => "retiming",
-            Self::Tuck => "tuck",
+            Self::InertiaShaping => "tuck",
             Self::Resting => "resting",
         }
     }
@@ -110,14 +110,14 @@ impl Measure {
             Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => settings.levelling = -f64::INFINITY,
-            Self::Steady => {
-                let steady = &mut settings.steady;
-                (steady.stiffness, steady.damping, steady.turning) = (0.0, 0.0, 0.0);
+            Self::BaseFeedback => {
+                let feedback = &mut settings.base_feedback;
+                (feedback.stiffness, feedback.damping, feedback.turning) = (0.0, 0.0, 0.0);
             }
-            Self::Direction => settings.steady.direction = 0.0,
-            Self::Grip => settings.steady.grip = 0.0,
+            Self::Direction => settings.base_feedback.direction = 0.0,
+            Self::AttitudeCompensation => settings.base_feedback.compensation = 0.0,
             Self::Retiming => (settings.max_late, settings.foresight) = (0.0, 0.0),
-            Self::Tuck => settings.tuck.gain = 0.0,
+            Self::InertiaShaping => settings.inertia_shaping.gain = 0.0,
             Self::Resting => settings.landing.resting = settings.landing.horizontal,
             Self::Drives | Self::Margins | Self::Delay => {}
         }

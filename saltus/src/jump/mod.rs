@@ -19,4 +19,4 @@ pub(crate) use jump_planner::{FOOT_COUNT, JOINTS, Node, state};
 /// The robot in its lab.
 pub(crate) type World = crate::lab::Ground<JOINTS, OWNERS>;
 /// What the machine is told.
-pub(crate) type Told = jump_machine::Observation<f64, JOINTS, FOOT_COUNT>;
+pub(crate) type Observed = jump_machine::Observation<f64, JOINTS, FOOT_COUNT>;

@@ -17,16 +17,16 @@ use a1_model::A1;
 use icub_model::gazebo::AsPublished as Icub23;
 use rbd_core::{
     AbaDerivatives, AbaDerivativesWorkspace, AbaWorkspace, AccelerationKind, Axes, BlockMatrix,
-    BodyMotions, CentroidalDerivatives, CentroidalMap, ComJacobian, ContactRow, ContactWorkspace,
-    DerivativesWorkspace, Force, Frame, FrameDerivatives, FrameJacobian, Kinematics, MassFactors,
-    MassMatrix, Model, Posture, RneaDerivatives, TableModel, Tangent, Tree, aba, aba_derivatives,
-    bias_accelerations, center_of_mass, centroidal_bias, centroidal_derivatives, centroidal_map,
-    centroidal_momentum_rate, centroidal_state, com_jacobian, com_motion, contact_dynamics, crba,
-    difference, forward_accelerations, forward_kinematics, forward_velocities, frame_derivatives,
+    BodyMotions, CentroidalDerivatives, CentroidalMap, ComJacobian, DerivativesWorkspace, Force,
+    Frame, FrameDerivatives, FrameJacobian, Kinematics, MassFactors, MassMatrix, Model,
+    RneaDerivatives, TableModel, Tree, aba, aba_derivatives, bias_accelerations, center_of_mass,
+    centroidal_bias, centroidal_derivatives, centroidal_map, centroidal_momentum_rate,
+    centroidal_state, com_jacobian, com_motion, contact_dynamics, crba, difference,
+    forward_accelerations, forward_kinematics, forward_velocities, frame_derivatives,
     frame_jacobian, generalized_gravity, impact, integrate, joint_jacobians, mass_matrix_inverse,
     nonlinear_effects, rnea, rnea_derivatives, rnea_with_forces,
 };
-use saltus_tests::bench::{State, time};
+use saltus_tests::bench::{HeldFeet, State, time};
 
 /// Algorithms by the names that the peer benches use; the argument is the index of a state.
 type Algorithms<'a> = Vec<(&'static str, Box<dyn FnMut(usize) + 'a>)>;
@@ -224,7 +224,7 @@ impl<'a, M: Tree<f64, N>, const N: usize> Bench<'a, M, N> {
     /// Dynamics with the feet held.
     fn contacts(&mut self) {
         let (model, feet) = (self.model, self.feet);
-        let mut contact = Contact::<N>::new();
+        let mut contact = HeldFeet::<N>::new();
         algorithm!(self, "constrained_dynamics", |s, p| {
             contact.prepare(model, &p, feet, Some(&s.velocity));
             let drift = nonlinear_effects(model, &p, &s.velocity);
@@ -232,7 +232,7 @@ impl<'a, M: Tree<f64, N>, const N: usize> Bench<'a, M, N> {
             let rows = &contact.rows[..contact.count];
             contact_dynamics(&contact.factors, &free, rows, &mut contact.workspace)
         });
-        let mut contact = Contact::<N>::new();
+        let mut contact = HeldFeet::<N>::new();
         algorithm!(self, "impulse_dynamics", |s, p| {
             contact.prepare(model, &p, feet, None);
             let rows = &contact.rows[..contact.count];
@@ -323,66 +323,6 @@ fn algorithms<'a, M: Tree<f64, N>, const N: usize>(
     bench.momentum();
     bench.list.push(("none", Box::new(|_| {})));
     bench.list
-}
-
-/// What contact dynamics needs: every foot held, points if there are four, soles if there are two.
-struct Contact<const N: usize> {
-    mass: MassMatrix<f64, N>,
-    factors: MassFactors<f64, N>,
-    kinematics: Kinematics<f64, N>,
-    bias: BodyMotions<f64, N>,
-    jacobian: FrameJacobian<f64, N>,
-    rows: [ContactRow<f64, N>; 12],
-    count: usize,
-    workspace: ContactWorkspace<f64, N, 12>,
-}
-
-impl<const N: usize> Contact<N> {
-    fn new() -> Self {
-        Self {
-            mass: MassMatrix::ZERO,
-            factors: MassFactors::new(),
-            kinematics: Kinematics::IDENTITY,
-            bias: BodyMotions::ZERO,
-            jacobian: FrameJacobian::ZERO,
-            rows: [ContactRow::ZERO; 12],
-            count: 0,
-            workspace: ContactWorkspace::new(),
-        }
-    }
-
-    /// Factors of the mass matrix and the rows of the feet; without a velocity the rows have no bias.
-    fn prepare<M: Tree<f64, N>>(
-        &mut self,
-        model: &M,
-        posture: &Posture<f64, N>,
-        feet: &[Frame<f64>],
-        velocity: Option<&Tangent<f64, N>>,
-    ) {
-        crba(model, posture, &mut self.mass);
-        self.factors.factor(model, &self.mass);
-        forward_kinematics(model, posture, &mut self.kinematics);
-        if let Some(velocity) = velocity {
-            bias_accelerations(model, posture, velocity, &mut self.bias);
-        }
-        let rows_per_foot = self.rows.len() / feet.len();
-        self.count = rows_per_foot * feet.len();
-        for (rows, foot) in self.rows.chunks_exact_mut(rows_per_foot).zip(feet) {
-            frame_jacobian(
-                model,
-                &self.kinematics,
-                foot,
-                Axes::Local,
-                &mut self.jacobian,
-            );
-            let drift = self.bias.frame_classical_acceleration(foot);
-            if rows_per_foot == 3 {
-                rows.copy_from_slice(&ContactRow::point(&self.jacobian, &drift.linear));
-            } else {
-                rows.copy_from_slice(&ContactRow::surface(&self.jacobian, &drift));
-            }
-        }
-    }
 }
 
 /// What to do with the algorithms of one robot and model.

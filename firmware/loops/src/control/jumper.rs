@@ -68,7 +68,7 @@ impl<T: Real, const N: usize, const F: usize> Heard<T> for Observation<T, N, F> 
                 foot_forces: core::array::from_fn(|_| next()),
                 age: next(),
             },
-            felt: core::array::from_fn(|_| next()),
+            joint_torques: core::array::from_fn(|_| next()),
         }
     }
 }

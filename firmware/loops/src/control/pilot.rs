@@ -133,7 +133,7 @@ where
                 foot_forces: heard.foot_forces,
                 age,
             },
-            felt: heard.felt,
+            joint_torques: heard.joint_torques,
         };
         self.machine.tick(now, Some(&inputs));
     }
@@ -147,7 +147,7 @@ impl<T: Real> Heard<T> for Sensed<T> {
     fn read(mut next: impl FnMut() -> T) -> Self {
         Self {
             joints: core::array::from_fn(|_| core::array::from_fn(|_| next())),
-            felt: core::array::from_fn(|_| next()),
+            joint_torques: core::array::from_fn(|_| next()),
             imu: core::array::from_fn(|_| Vector3::new(next(), next(), next())),
             foot_forces: core::array::from_fn(|_| next()),
             age: next(),

@@ -1,8 +1,9 @@
-//! From a plan to torques: sampler, Cartesian PD, joint PD, slew, phases, watch, scales, profiles.
+//! From a plan to torques: sampler, Cartesian PD, joint PD, slew, phases, watch, estimate, profiles.
 
 use jump_control::{
-    CartesianPd, ComProfile, Curve, Event, JointCommand, Measurement, MinimumJerk, Node, Phase,
-    Plan, Reference, Scales, Slew, Torques, Watch, next_phase, sample, takeoff_speed,
+    CartesianPd, ComProfile, Curve, Event, JointCommand, Measurement, MinimumJerk, Node,
+    PayloadEstimate, Phase, Plan, Reference, Slew, Torques, Watch, next_phase, sample,
+    takeoff_speed,
 };
 use rbd_core::Tree;
 
@@ -82,8 +83,9 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
             next_phase(phase, Event::Touchdown) == phase
         });
     }
-    let mut scales = Scales::new();
-    on.call("Scales", (&mut scales, measured.foot_forces), |(s, f)| {
+    let mut estimate = PayloadEstimate::new();
+    let input = (&mut estimate, measured.foot_forces);
+    on.call("PayloadEstimate", input, |(s, f)| {
         s.add(&f);
         s.factor(T::of(100.0), T::of(0.15))
     });

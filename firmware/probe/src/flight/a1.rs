@@ -41,7 +41,7 @@ where
     A1Geared: Model<T, 12>,
 {
     plant: NativeSimulator<T, A1Geared, 12, BALLS, BALLS>,
-    felt: [T; 12],
+    joint_torques: [T; 12],
     steps: usize,
     broken: bool,
 }
@@ -69,7 +69,7 @@ where
         }
         Self {
             plant,
-            felt: [T::ZERO; 12],
+            joint_torques: [T::ZERO; 12],
             steps: 0,
             broken: false,
         }
@@ -89,8 +89,11 @@ where
             self.plant.velocity(),
             core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
         );
-        let felt = core::mem::replace(&mut self.felt, [T::ZERO; 12]);
-        Observation { measured, felt }
+        let joint_torques = core::mem::replace(&mut self.joint_torques, [T::ZERO; 12]);
+        Observation {
+            measured,
+            joint_torques,
+        }
     }
 
     /// 100 µs under these torques.
@@ -100,8 +103,8 @@ where
         self.steps += 1;
         let losses = joint_friction(A1Geared.limits(), &speeds, T::of(0.1));
         let given = self.plant.delivered().iter().zip(losses);
-        for (felt, (tau, loss)) in self.felt.iter_mut().zip(given) {
-            *felt += (*tau + loss) / T::of(RATIO as f64);
+        for (joint_torques, (tau, loss)) in self.joint_torques.iter_mut().zip(given) {
+            *joint_torques += (*tau + loss) / T::of(RATIO as f64);
         }
     }
 
@@ -133,7 +136,7 @@ impl<T: Real, const N: usize, const F: usize> Numbers for Observation<T, N, F> {
         } = &self.measured;
         (base, base_velocity).visit(take);
         (joints, joint_velocities).visit(take);
-        (foot_forces, age, self.felt).visit(take);
+        (foot_forces, age, self.joint_torques).visit(take);
     }
 }
 
@@ -258,7 +261,7 @@ fn wild_machine<T: Planned, R: Recorder>(
         let on = wild_feet(k);
         let inputs = Observation {
             measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
-            felt: stream.array(20.0),
+            joint_torques: stream.array(20.0),
         };
         let now = T::of(f64::from(first + k as u32)) * T::of(1e-3);
         let input = (&mut *machine, now, &inputs);

@@ -166,7 +166,7 @@ const fn observed(
             foot_forces,
             age: 0.0,
         },
-        felt: [0.0; JOINTS],
+        joint_torques: [0.0; JOINTS],
     }
 }
 

@@ -12,7 +12,7 @@ use crate::least_squares::solve_damped;
 
 /// How the body leans beside its plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip<T: Scalar> {
+pub struct AttitudeCompensation<T: Scalar> {
     /// Rᵀ R_d.
     pub turn: Rotation3<T>,
     /// ω_d − ω, base axes, rad/s.
@@ -21,7 +21,7 @@ pub struct Grip<T: Scalar> {
     pub damping: T,
 }
 
-impl<T: Scalar> Grip<T> {
+impl<T: Scalar> AttitudeCompensation<T> {
     /// Joint displacements, rad, and speeds, rad/s, that turn the feet back by a share of the lean, to first order.
     #[must_use]
     pub fn joints<const N: usize, const F: usize>(
@@ -49,7 +49,7 @@ impl<T: Scalar> Grip<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::Grip;
+    use super::AttitudeCompensation;
     use a1_model::{A1Geared, FEET};
     use nalgebra::{Rotation3, Vector3};
     use rbd_core::{Configuration, Limbs};
@@ -66,22 +66,23 @@ mod tests {
     fn feet_keep_place_and_speed_under_a_body_that_leans() {
         let joints: [f64; 12] = core::array::from_fn(|i| [0.1, 0.8, -1.6][i % 3]);
         let speeds: [f64; 12] = core::array::from_fn(|i| [0.4, -1.0, 2.0][i % 3]);
-        let grip = Grip {
+        let compensation = AttitudeCompensation {
             turn: Rotation3::from_euler_angles(0.02, -0.03, 0.01),
             rate_b: Vector3::new(0.2, -0.3, 0.1),
             damping: 1e-3,
         };
         let planned = limbs(&joints);
         for share in [0.0, 0.5, 1.0] {
-            let (moved, rates) = grip.joints(share, &planned, &speeds);
+            let (moved, rates) = compensation.joints(share, &planned, &speeds);
             let held = limbs(&core::array::from_fn(|i| joints[i] + moved[i]));
             for (held, planned) in held.ends.iter().zip(&planned.ends) {
                 let foot = planned.position;
-                let wanted = foot + (grip.turn * foot - foot) * share;
+                let wanted = foot + (compensation.turn * foot - foot) * share;
                 // What is left are the damping of the inverse and the second order.
                 assert!((held.position - wanted).norm() < 1e-3 * share + 1e-12);
                 let speed = planned.mul(&speeds);
-                let wanted = (grip.turn * speed - speed + grip.rate_b.cross(&foot)) * share;
+                let wanted =
+                    (compensation.turn * speed - speed + compensation.rate_b.cross(&foot)) * share;
                 let found = planned.mul(&rates);
                 assert!(
                     (found - wanted).norm() < 0.05 * wanted.norm() + 1e-12,
@@ -89,9 +90,9 @@ mod tests {
                 );
             }
         }
-        let bad = Grip {
+        let bad = AttitudeCompensation {
             rate_b: Vector3::new(f64::NAN, 0.0, 0.0),
-            ..grip
+            ..compensation
         };
         assert_eq!(bad.joints(1.0, &planned, &speeds), ([0.0; 12], [0.0; 12]));
     }

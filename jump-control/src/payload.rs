@@ -8,12 +8,12 @@ use so3::Scalar;
 
 /// Mean normal force of all feet over the hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales<T> {
+pub struct PayloadEstimate<T> {
     sum: T,
     count: T,
 }
 
-impl<T: Scalar> Scales<T> {
+impl<T: Scalar> PayloadEstimate<T> {
     /// Nothing weighed yet.
     #[must_use]
     pub const fn new() -> Self {
@@ -47,7 +47,7 @@ impl<T: Scalar> Scales<T> {
     }
 }
 
-impl<T: Scalar> Default for Scales<T> {
+impl<T: Scalar> Default for PayloadEstimate<T> {
     fn default() -> Self {
         Self::new()
     }
@@ -55,20 +55,20 @@ impl<T: Scalar> Default for Scales<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::Scales;
+    use super::PayloadEstimate;
 
     #[test]
     fn the_mean_weight_scales_and_broken_sensors_do_not() {
-        let mut scales = Scales::new();
-        assert_eq!(scales.factor(100.0, 0.15), 1.0);
-        scales.add(&[20.0, 30.0, 25.0, 27.0]);
-        scales.add(&[f64::NAN, 30.0, 25.0, 27.0]);
-        scales.add(&[26.0, 26.0, 26.0, 28.0]);
-        assert!((scales.factor(100.0, 0.15) - 1.04).abs() < 1e-12);
+        let mut estimate = PayloadEstimate::new();
+        assert_eq!(estimate.factor(100.0, 0.15), 1.0);
+        estimate.add(&[20.0, 30.0, 25.0, 27.0]);
+        estimate.add(&[f64::NAN, 30.0, 25.0, 27.0]);
+        estimate.add(&[26.0, 26.0, 26.0, 28.0]);
+        assert!((estimate.factor(100.0, 0.15) - 1.04).abs() < 1e-12);
         // A dead sensor: a quarter of the weight is missing.
-        let mut dead = Scales::new();
+        let mut dead = PayloadEstimate::new();
         dead.add(&[0.0, 25.0, 25.0, 25.0]);
         assert_eq!(dead.factor(100.0, 0.15), 1.0);
-        assert_eq!(scales.factor(0.0, 0.15), 1.0);
+        assert_eq!(estimate.factor(0.0, 0.15), 1.0);
     }
 }

@@ -23,7 +23,7 @@ use crate::plan::{Plan, PlannedBase};
 
 /// Gains of the base in the push-off; all zero switch it off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Steady<T> {
+pub struct BaseFeedback<T> {
     /// k, along the ground, 1/s².
     pub stiffness: T,
     /// d, along the ground, 1/s.
@@ -33,12 +33,12 @@ pub struct Steady<T> {
     /// Share of the body's lean by which the plan's forces are turned back: 1 keeps their direction in the world.
     pub direction: T,
     /// Share of the body's lean by which the feet's places are turned back while fewer than all feet push.
-    pub grip: T,
+    pub compensation: T,
     /// Largest share of its planned normal force by which the force on a foot is changed: what friction leaves.
     pub share: T,
 }
 
-impl<T: Scalar> Steady<T> {
+impl<T: Scalar> BaseFeedback<T> {
     /// Gains for a robot of this size whose base is estimated: its turning rate alone, which gyroscopes know. Centimetres per second, by
     /// which the estimate of its speed is off, would be amplified: of 20 disturbed double backflips of A1 three fell.
     ///
@@ -51,17 +51,21 @@ impl<T: Scalar> Steady<T> {
             damping: T::ZERO,
             turning: build.joint_damping(5.0),
             direction: T::ONE,
-            grip: T::of(0.25),
+            compensation: T::of(0.25),
             share: T::of(0.3),
         }
     }
 
     /// The share of the lean by which feet's places are turned back after `node`: on all feet the legs hold the attitude instead.
     #[must_use]
-    pub fn grip<const N: usize, const F: usize>(&self, plan: &Plan<'_, T, N, F>, node: usize) -> T {
+    pub fn compensation<const N: usize, const F: usize>(
+        &self,
+        plan: &Plan<'_, T, N, F>,
+        node: usize,
+    ) -> T {
         let pushes = |force: &Vector3<T>| force.z > T::ZERO;
         plan.following::<{ parts::FORCES }, _>(node, |nodes| match nodes.first() {
-            Some(node) if !node.forces_w.iter().all(pushes) => self.grip,
+            Some(node) if !node.forces_w.iter().all(pushes) => self.compensation,
             _ => T::ZERO,
         })
     }
@@ -166,7 +170,7 @@ mod tests {
     use nalgebra::{Rotation3, Vector3};
     use rbd_core::{Motion, Transform};
 
-    use super::Steady;
+    use super::BaseFeedback;
     use crate::{Measurement, Node, Plan, Torques};
 
     const FEET: [Vector3<f64>; 4] = [
@@ -175,12 +179,12 @@ mod tests {
         Vector3::new(-0.2, 0.15, -0.3),
         Vector3::new(-0.2, -0.15, -0.3),
     ];
-    const GAINS: Steady<f64> = Steady {
+    const GAINS: BaseFeedback<f64> = BaseFeedback {
         stiffness: 40.0,
         damping: 10.0,
         turning: 5.0,
         direction: 0.0,
-        grip: 0.0,
+        compensation: 0.0,
         share: 0.3,
     };
 
@@ -271,7 +275,7 @@ mod tests {
 
     #[test]
     fn the_plans_forces_keep_their_direction_in_the_world_however_the_body_leans() {
-        let gains = Steady {
+        let gains = BaseFeedback {
             stiffness: 0.0,
             damping: 0.0,
             turning: 0.0,
@@ -303,11 +307,17 @@ mod tests {
 
     #[test]
     fn feet_are_turned_back_while_fewer_than_all_push() {
-        for (weights, grip) in [([30.0; 4], 0.0), ([0.0, 0.0, 60.0, 60.0], 0.25)] {
+        for (weights, compensation) in [([30.0; 4], 0.0), ([0.0, 0.0, 60.0, 60.0], 0.25)] {
             let nodes = [node(0.0, weights), node(0.01, weights)];
             let plan = Plan::new(&nodes, 0.01, 0.01, 0.01, Torques::Hold).unwrap();
-            assert_eq!(Steady::new(&a1_model::BUILD).grip(&plan, 0), grip);
-            assert_eq!(Steady::new(&a1_model::BUILD).grip(&plan, 2), 0.0);
+            assert_eq!(
+                BaseFeedback::new(&a1_model::BUILD).compensation(&plan, 0),
+                compensation
+            );
+            assert_eq!(
+                BaseFeedback::new(&a1_model::BUILD).compensation(&plan, 2),
+                0.0
+            );
         }
     }
 

@@ -13,7 +13,7 @@ use crate::least_squares::solve_damped;
 
 /// How legs help a body to turn on time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tuck<T> {
+pub struct InertiaShaping<T> {
     /// k, 1/s; zero leaves the legs where the plan has them.
     pub gain: T,
     /// Largest share σ, either way, of its distance from the axis by which a foot moves.
@@ -41,7 +41,7 @@ pub struct Turning<T: Scalar> {
     pub left: T,
 }
 
-impl<T: Scalar> Tuck<T> {
+impl<T: Scalar> InertiaShaping<T> {
     /// For a robot of this size, by [dynamic similarity](rbd_core::similarity): at most a fifth of the distance, which legs of any
     /// length can do; turning slower than 3 rad/s on legs of 0.4 m is left alone.
     ///
