@@ -128,6 +128,14 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         Ok(index)
     }
 
+    /// Moves the value towards which a cost on row `i` pulls: subtracts `amount`, weight times shift, times the row from g.
+    pub(crate) fn pull(&mut self, i: usize, amount: T) {
+        let row = self.row(i);
+        for (g, a) in self.gradient.iter_mut().zip(&row) {
+            *g -= amount * *a;
+        }
+    }
+
     /// Sets the limits of a row.
     pub(crate) fn limit_row(&mut self, i: usize, lower: T, upper: T) {
         if let (Some(l), Some(u)) = (self.row_lower.get_mut(i), self.row_upper.get_mut(i)) {
@@ -168,4 +176,9 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         )
         .with_bounds(&self.lower, &self.upper)
     }
+}
+
+/// aᵀb.
+pub(crate) fn dot<T: Scalar, const V: usize>(a: &[T; V], b: &[T; V]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (x, y)| sum + *x * *y)
 }

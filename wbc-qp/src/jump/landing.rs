@@ -204,6 +204,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
 }
 
 /// Keeps soles level in the air, the less the more of their contact there is.
+#[inline(never)] // Its rows are not to lie on the stack while the program is solved.
 fn level_soles<T, R, const N: usize, const K: usize, const V: usize, const M: usize>(
     qp: &mut TorqueQp<T, N, K, V, M>,
     model: &R,

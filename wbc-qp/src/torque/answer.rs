@@ -3,7 +3,8 @@
 use rbd_core::Tangent;
 use so3::{Scalar, math};
 
-use super::{TorqueQp, Yielded, dot};
+use super::{TorqueQp, Yielded};
+use crate::program::dot;
 
 /// What a torque program found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,10 +26,29 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         }
     }
 
+    /// Accelerations that contacts shall have besides the damping of their velocity, in the axes of their rows: feedback on where they
+    /// are, a stiffness times [`Contact::error`]. Called after [`TorqueQp::begin`].
+    pub fn correct_contacts(&mut self, accelerations: &[T; K]) {
+        for (k, x) in accelerations.iter().enumerate() {
+            let load = get(&self.load, k);
+            if let Some(wanted) = self.wanted.get_mut(k) {
+                *wanted += *x;
+            }
+            if load >= T::ONE {
+                let wanted = get(&self.wanted, k);
+                self.program.limit_row(k, wanted, wanted);
+            } else if load > T::ZERO {
+                let weight = self.contact_weight * load / (T::ONE - load);
+                self.program.pull(k, *x * weight);
+            }
+        }
+    }
+
     /// Friction cones as rows, normal forces as bounds; a contact that is off has no force.
     pub(super) fn write_cones(&mut self, contacts: &[Contact<T>]) -> Result<(), Error> {
         let mut first = N;
         for contact in contacts {
+            self.rows.mark_contact(first - N);
             let size = contact.size();
             let mut k = 0;
             while let Some(cone) = contact.cone(k) {

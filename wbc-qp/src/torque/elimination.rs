@@ -1,7 +1,7 @@
 //! The base and the torques as functions of the variables: the equations of motion, solved once per tick.
 
 use rbd_core::linear::{ldl_back_substitute, ldl_factor};
-use rbd_core::{Effort, Force, Motion, Tangent, Tree, crba, nonlinear_effects};
+use rbd_core::{BaseKind, Effort, Force, Motion, Tangent, Tree, crba, nonlinear_effects};
 use so3::Scalar;
 
 use super::{TorqueQp, get};
@@ -20,11 +20,19 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     ) {
         crba(model, &snapshot.posture, &mut self.mass);
         let bias = nonlinear_effects(model, &snapshot.posture, &snapshot.velocity);
+        let moves = model.base_kind() == BaseKind::Floating;
         let locked = self.mass.base;
         let mut factors =
             [0, 1, 2, 3, 4, 5].map(|i| locked.mul(&Tangent::<T, N>::unit(i).base).to_array());
         ldl_factor(&mut factors);
-        let solve = |f: Force<T>| Motion::from_array(ldl_back_substitute(&factors, f.to_array()));
+        // A fixed base does not accelerate, whatever pulls at it.
+        let solve = |f: Force<T>| {
+            if moves {
+                Motion::from_array(ldl_back_substitute(&factors, f.to_array()))
+            } else {
+                Motion::ZERO
+            }
+        };
         self.base_constant = solve(-bias.base);
         let columns = self.mass.coupling.iter().map(|f| -*f);
         let columns = columns.chain(contacts.iter().map(|row| row.base * self.unit));

@@ -21,6 +21,7 @@ mod answer;
 mod contacts;
 mod elimination;
 mod relaxation;
+mod report;
 
 pub use answer::TorqueAnswer;
 pub use relaxation::Yielded;
@@ -30,10 +31,13 @@ use rbd_core::{Effort, JointLimits, MassMatrix, Motion, Tree};
 use so3::Scalar;
 
 use crate::program::Program;
+use crate::rows::{Rank, Rows};
 use crate::{Contact, Error, Horizon, Snapshot, Task};
 
-/// A torque program for N joints and K force coordinates, V = N + K variables, at most M rows: K for the contacts, four per
-/// ball or ten per rectangle for their cones, N for the torques, one per row of a held task.
+/// A torque program for N joints and K force coordinates, V = N + K variables and one more per row with slack, at most M rows: K for the
+/// contacts, four per ball, ten per rectangle or six and one per vertex of a polygon for their cones, N for the torques, one per row of the user.
+///
+/// The base may be floating or fixed. A fixed one carries what it must: its reaction is in no answer, and K may be 0.
 #[derive(Clone, Debug)]
 pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize> {
     program: Program<T, V, M>,
@@ -66,8 +70,10 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
     /// Most steps of all searches of a tick together, as [`Settings::max_steps`] counts them; one of the last relaxation, in which the
     /// contacts' rows are no longer eliminated, counts twice, and so do ten for its factorisation.
     pub max_steps: u32,
-    /// Which rows are those of held tasks.
-    held: [bool; M],
+    /// What the rows are.
+    rows: Rows<T, M>,
+    /// Row of the first torque, once torques are limited.
+    first_torque: Option<usize>,
     /// What yields before the first search: more than nothing only after a tick that the cap ended.
     start: Yielded,
 }
@@ -78,7 +84,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// An empty program; iterations are capped at 200 per solve, steps not at all.
     #[must_use]
     pub fn new() -> Self {
-        const { assert!(V == N + K, "a torque program has N + K variables") };
+        const {
+            assert!(
+                V >= N + K,
+                "a torque program has N + K variables, and one per slack"
+            )
+        };
         const { assert!(M >= K + N, "contact rows and torque rows alone are K + N") };
         Self {
             program: Program::new(),
@@ -101,7 +112,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             contact_weight: T::of(1e5),
             task_weight: T::of(1e3),
             max_steps: u32::MAX,
-            held: [false; M],
+            rows: Rows::new(),
+            first_torque: None,
             start: Yielded::Nothing,
         }
     }
@@ -125,6 +137,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             return Err(Error::ForceCoordinates { needed });
         }
         self.program.clear();
+        self.rows.clear();
+        self.first_torque = None;
         self.range = [[T::NEG_INFINITY, T::INFINITY]; N];
         self.torque_range = self.range;
         self.unit = snapshot.centroidal.mass * T::of(0.981);
@@ -157,7 +171,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             self.program.constrain(&a, low, high)?;
         }
         self.write_cones(contacts)?;
-        self.held = [false; M];
+        for i in N + K..V {
+            self.program.bound(i, T::ZERO, T::ZERO);
+        }
         self.weigh_contacts();
         Ok(())
     }
@@ -171,23 +187,60 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         task: &Task<T, N, R>,
         target: &[T; R],
     ) -> Result<(), Error> {
-        let rows = task.jacobian.iter().zip(target.iter().zip(&task.drift));
-        for (row, (x, drift)) in rows {
-            let (a, constant) = self.row(row);
-            let wanted = *x - *drift - constant;
-            let index = self.program.constrain(&a, wanted, wanted)?;
-            if let Some(held) = self.held.get_mut(index) {
-                *held = true;
-            }
+        self.constrain(task, target, target, Rank::Task)
+    }
+
+    /// Keeps a task in a range: l ≤ ẍ ≤ u row by row. Equal limits make an equality, infinite ones leave a row out.
+    ///
+    /// Where such rows have to give way, equalities become costs of [`TorqueQp::task_weight`], ranges go, and those with slack have
+    /// from the start the cost that they are given.
+    ///
+    /// # Errors
+    /// [`Error::NoRoomForRows`]: R rows. [`Error::NoRoomForSlack`]: with slack, R variables.
+    pub fn constrain<const R: usize>(
+        &mut self,
+        task: &Task<T, N, R>,
+        lower: &[T; R],
+        upper: &[T; R],
+        rank: Rank<T>,
+    ) -> Result<(), Error> {
+        let rows = task
+            .jacobian
+            .iter()
+            .zip(lower.iter().zip(upper).zip(&task.drift));
+        for (row, ((low, high), drift)) in rows {
+            let (mut a, constant) = self.row(row);
+            let known = *drift + constant;
+            let limits = [*low - known, *high - known];
+            self.rows
+                .add(&mut self.program, N + K, &mut a, limits, rank)?;
         }
         Ok(())
+    }
+
+    /// Keeps a combination of the contacts' forces in a range: l ≤ cᵀf ≤ u, over the force coordinates in the order of the contacts.
+    ///
+    /// # Errors
+    /// As [`TorqueQp::constrain`], of one row.
+    pub fn constrain_forces(
+        &mut self,
+        coefficients: &[T; K],
+        [lower, upper]: [T; 2],
+        rank: Rank<T>,
+    ) -> Result<(), Error> {
+        let mut a = [T::ZERO; V];
+        for (to, c) in a.iter_mut().skip(N).zip(coefficients) {
+            *to = *c * self.unit;
+        }
+        self.rows
+            .add(&mut self.program, N + K, &mut a, [lower, upper], rank)
     }
 
     /// Ends a level of strict priority: costs go, limits and held tasks stay. Between [`TorqueQp::solve`] and this call, hold
     /// the level's tasks at what the answer [reached](Task::reached); the costs of the next level follow. Every level wants a
     /// little cost on joints and forces, so that its Hessian is definite.
     pub fn next_level(&mut self) {
-        self.program.clear_costs();
+        self.program.next_level(N + K);
         self.weigh_contacts();
     }
 
@@ -237,9 +290,13 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     pub fn limit_torques(&mut self, ranges: &[[T; 2]; N]) -> Result<(), Error> {
         self.torque_range = *ranges;
         let rows = self.effort.iter().zip(&self.effort_constant);
-        for ((row, constant), [low, high]) in rows.zip(ranges) {
-            self.program
+        for (i, ((row, constant), [low, high])) in rows.zip(ranges).enumerate() {
+            let index = self
+                .program
                 .constrain(row, *low - *constant, *high - *constant)?;
+            if i == 0 {
+                self.first_torque = Some(index);
+            }
         }
         Ok(())
     }
@@ -281,8 +338,4 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize> 
 
 fn get<T: Scalar>(xs: &[T], i: usize) -> T {
     xs.get(i).copied().unwrap_or(T::ZERO)
-}
-
-fn dot<T: Scalar, const V: usize>(a: &[T; V], b: &[T; V]) -> T {
-    a.iter().zip(b).fold(T::ZERO, |sum, (x, y)| sum + *x * *y)
 }

@@ -19,18 +19,20 @@ use so3::{Scalar, math};
 
 use super::{TorqueAnswer, TorqueQp, get};
 use crate::Error;
+use crate::rows::{Kind, Rows};
 
-/// Which rows of a torque program had to yield.
+/// Which rows of a program had to yield.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Yielded {
     /// None.
     #[default]
     Nothing,
-    /// Held tasks ([`TorqueQp::hold`]).
+    /// Held tasks ([`TorqueQp::hold`]) and other rows of [`Rank::Task`](crate::Rank::Task).
     Tasks,
-    /// These, and the limits on the joints' accelerations, and so on positions and speeds.
+    /// These, and the limits on the joints' accelerations, and so on positions and speeds, and rows of
+    /// [`Rank::Limit`](crate::Rank::Limit).
     MotionLimits,
-    /// These, and the contacts' accelerations.
+    /// These, and the contacts' accelerations; of a velocity program their feedback.
     Contacts,
 }
 
@@ -85,7 +87,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             let next = if at_cap {
                 None
             } else {
-                next_relaxation::<T, N, V, M>(yielded, &self.held, &solution)
+                next_relaxation::<T, N, V, M>(yielded, &self.rows, &solution)
             };
             match next {
                 None if at_cap => return Ok(self.cut(&z, yielded, iterations)),
@@ -95,7 +97,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
                 }
                 Some(next) => {
                     // Bounds alone leave the factors as they are.
-                    let same = next == Yielded::MotionLimits && status == Status::Infeasible;
+                    let same = next == Yielded::MotionLimits
+                        && status == Status::Infeasible
+                        && !self.rows.has(Kind::Limit);
                     solver = if same { resume } else { solve_warm };
                     if !same {
                         self.workspace.forget();
@@ -115,17 +119,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     fn relax(&mut self, next: Yielded) {
         match next {
             Yielded::Nothing => {}
-            Yielded::Tasks => {
-                for i in 0..M {
-                    if self.held.get(i) == Some(&true) {
-                        self.soften(i, self.task_weight);
-                    }
-                }
-            }
+            Yielded::Tasks => self.give_way(Kind::Task),
             Yielded::MotionLimits => {
                 for i in 0..N {
                     self.program.bound(i, -T::INFINITY, T::INFINITY);
                 }
+                self.give_way(Kind::Limit);
             }
             Yielded::Contacts => {
                 for k in 0..K {
@@ -153,6 +152,21 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         answer
     }
 
+    /// Rows of the user of this kind: equalities become costs, ranges go.
+    fn give_way(&mut self, kind: Kind) {
+        for i in 0..M {
+            if self.rows.kind(i) != kind {
+                continue;
+            }
+            let (low, high) = self.program.row_limits(i);
+            if low < high {
+                self.program.limit_row(i, -T::INFINITY, T::INFINITY);
+            } else {
+                self.soften(i, self.task_weight);
+            }
+        }
+    }
+
     /// Makes an equality row a cost.
     fn soften(&mut self, i: usize, weight: T) {
         let (row, (wanted, _)) = (self.program.row(i), self.program.row_limits(i));
@@ -164,7 +178,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
 /// What has to yield after a program: the first rows of which its proof of infeasibility contains one.
 fn next_relaxation<T: Scalar, const N: usize, const V: usize, const M: usize>(
     yielded: Yielded,
-    held: &[bool; M],
+    rows: &Rows<T, M>,
     solution: &Solution<'_, T, V, M>,
 ) -> Option<Yielded> {
     let unproven = solution.status != Status::Infeasible;
@@ -174,12 +188,15 @@ fn next_relaxation<T: Scalar, const N: usize, const V: usize, const M: usize>(
         *next > yielded
             && match next {
                 Yielded::Nothing => false,
-                Yielded::Tasks if unproven => held.contains(&true),
-                Yielded::Tasks => {
-                    conflict.any(|c| matches!(c, Constraint::Row(i) if held.get(i) == Some(&true)))
-                }
+                Yielded::Tasks => rows.must_yield(Kind::Task, solution),
                 Yielded::MotionLimits => {
-                    unproven || conflict.any(|c| matches!(c, Constraint::Bound(i) if i < N))
+                    unproven
+                        || conflict.any(|c| match c {
+                            Constraint::Bound(i) => i < N,
+                            Constraint::Row(i) => {
+                                rows.has(Kind::Limit) && rows.kind(i) == Kind::Limit
+                            }
+                        })
                 }
                 Yielded::Contacts => true,
             }
