@@ -2,6 +2,7 @@
 #![no_std]
 
 mod anchor;
+mod collision;
 mod contact;
 mod error;
 pub mod jump;
@@ -14,7 +15,8 @@ mod torque;
 mod velocity;
 
 pub use anchor::anchored;
-pub use contact::Contact;
+pub use collision::Clearance;
+pub use contact::{Contact, Patch};
 pub use error::Error;
 pub use limits::{Horizon, torque_range};
 pub use rows::{Extent, Limit, Limited, Rank, Side};

@@ -198,6 +198,7 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityQp<T, N,
     /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if the iteration cap or round-off ended the
     /// search. The safe command is then zero velocity.
     pub fn solve(&mut self) -> Result<VelocityAnswer<T, N>, Error> {
+        self.program.finish();
         let (mut yielded, mut iterations) = (Yielded::Nothing, 0);
         loop {
             let solution = solve_warm(&self.program.problem(), &self.settings, &mut self.workspace)

@@ -427,3 +427,20 @@ fn what_does_not_fit_is_an_error() {
         .unwrap();
     assert!(matches!(qp.solve(), Err(Error::Data(_))));
 }
+
+/// However absurd a held task is, it alone yields: joints and torques stay inside their limits.
+#[test]
+fn an_absurd_task_takes_no_limit_with_it() {
+    let mut rng = Rng(29);
+    for size in [1e2, 1e3, 1e4, 1e5, 1e6] {
+        for way in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.3, 0.0]] {
+            let s = crouch(&mut rng);
+            let mut qp = Box::new(Strict::new());
+            begin(&mut qp, &s, [0.0; 3]);
+            qp.hold(&s.com(), &way.map(|x| size * x)).unwrap();
+            let answer = qp.solve().unwrap();
+            assert_eq!(answer.yielded, Yielded::Tasks, "{size} {way:?}");
+            assert!(answer.limit_violation < 1e-6, "{answer:?}");
+        }
+    }
+}

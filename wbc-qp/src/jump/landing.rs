@@ -7,12 +7,14 @@
 //! its limits.
 
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{ContactShape, Frame, JointLimits, Motor, Tree, joint_friction};
+use rbd_core::{Frame, JointLimits, Motor, Tree, joint_friction};
 use so3::{Scalar, math};
 
 use super::{ComReference, Residuals, distance};
 use crate::task::{orientation_error, position_error};
-use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueQp, jump::TorqueTick, torque_range};
+use crate::{
+    Contact, Error, Gains, Horizon, Patch, Snapshot, TorqueQp, jump::TorqueTick, torque_range,
+};
 
 /// The way of the centre of mass from touchdown to rest: v(t) = v₀ (1 − t/T)², T = 3 d/|v₀|, a distance d in all.
 ///
@@ -216,7 +218,7 @@ fn level_soles<T, R, const N: usize, const K: usize, const V: usize, const M: us
     R: Tree<T, N>,
 {
     for contact in contacts {
-        if contact.is_whole() || !matches!(contact.shape, ContactShape::Rectangle { .. }) {
+        if contact.is_whole() || matches!(contact.shape, Patch::Ball { .. }) {
             continue;
         }
         let sole = snapshot.frame_orientation(model, &contact.frame);

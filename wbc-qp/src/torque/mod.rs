@@ -124,7 +124,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// [`joint_friction`](rbd_core::joint_friction) gives it; zero where it is not known.
     ///
     /// # Errors
-    /// [`Error::ForceCoordinates`] and [`Error::NoRoomForRows`].
+    /// [`Error::ForceCoordinates`], [`Error::NormalForces`] and [`Error::NoRoomForRows`].
     pub fn begin<R: Tree<T, N>>(
         &mut self,
         model: &R,
@@ -135,6 +135,11 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         let needed = contacts.iter().map(Contact::size).sum();
         if needed != K {
             return Err(Error::ForceCoordinates { needed });
+        }
+        // No order is also that of a NaN.
+        let is_ordered = |c: &Contact<T>| c.min_force <= c.max_force;
+        if let Some(contact) = contacts.iter().position(|c| !is_ordered(c)) {
+            return Err(Error::NormalForces { contact });
         }
         self.program.clear();
         self.rows.clear();
@@ -290,13 +295,10 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     pub fn limit_torques(&mut self, ranges: &[[T; 2]; N]) -> Result<(), Error> {
         self.torque_range = *ranges;
         let rows = self.effort.iter().zip(&self.effort_constant);
-        for (i, ((row, constant), [low, high])) in rows.zip(ranges).enumerate() {
-            let index = self
-                .program
+        self.first_torque = Some(self.program.used());
+        for ((row, constant), [low, high]) in rows.zip(ranges) {
+            self.program
                 .constrain(row, *low - *constant, *high - *constant)?;
-            if i == 0 {
-                self.first_torque = Some(index);
-            }
         }
         Ok(())
     }

@@ -59,6 +59,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if 200 iterations or round-off ended even the
     /// last search.
     pub fn solve(&mut self) -> Result<TorqueAnswer<T, N, K>, Error> {
+        self.program.finish();
         let (mut iterations, mut left) = (0, self.max_steps);
         let mut yielded = self.start;
         for before in [Yielded::Tasks, Yielded::MotionLimits, Yielded::Contacts] {
@@ -154,6 +155,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
 
     /// Rows of the user of this kind: equalities become costs, ranges go.
     fn give_way(&mut self, kind: Kind) {
+        if !self.rows.has(kind) {
+            return;
+        }
         for i in 0..M {
             if self.rows.kind(i) != kind {
                 continue;
