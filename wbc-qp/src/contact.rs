@@ -209,19 +209,34 @@ impl<T: Scalar> Contact<T> {
         model: &M,
         snapshot: &Snapshot<T, N>,
     ) -> ([Effort<T, N>; 6], [T; 6], [T; 6]) {
+        if let Patch::Ball { radius, normal_w } = self.shape {
+            return self.rolling_motion(model, snapshot, radius, normal_w);
+        }
         let mut j = FrameJacobian::ZERO;
         let acceleration = snapshot.motions.frame_classical_acceleration(&self.frame);
         let velocity = snapshot.motions.frame_velocity(&self.frame);
-        let Patch::Ball { radius, normal_w } = self.shape else {
-            frame_jacobian(
-                model,
-                &snapshot.kinematics,
-                &self.frame,
-                Axes::Local,
-                &mut j,
-            );
-            return (rows(&j), acceleration.to_array(), velocity.to_array());
-        };
+        frame_jacobian(
+            model,
+            &snapshot.kinematics,
+            &self.frame,
+            Axes::Local,
+            &mut j,
+        );
+        (rows(&j), acceleration.to_array(), velocity.to_array())
+    }
+
+    /// Those of a ball: a function of its own, so that other contacts do not pay for its stack.
+    #[inline(never)]
+    fn rolling_motion<M: Tree<T, N>, const N: usize>(
+        &self,
+        model: &M,
+        snapshot: &Snapshot<T, N>,
+        radius: T,
+        normal_w: Vector3<T>,
+    ) -> ([Effort<T, N>; 6], [T; 6], [T; 6]) {
+        let mut j = FrameJacobian::ZERO;
+        let acceleration = snapshot.motions.frame_classical_acceleration(&self.frame);
+        let velocity = snapshot.motions.frame_velocity(&self.frame);
         let axes = Axes::LocalWorldAligned;
         frame_jacobian(model, &snapshot.kinematics, &self.frame, axes, &mut j);
         let xf_wf = snapshot.pose(&self.frame);
@@ -309,6 +324,7 @@ impl<T: Scalar> Contact<T> {
     }
 
     /// A row per edge, then two for the yaw moment.
+    #[inline(never)]
     fn polygon_row(&self, vertices: &[[T; 2]], row: usize) -> Option<[T; 6]> {
         let (o, i) = (T::ZERO, T::ONE);
         if let Some([x, y]) = vertices.get(row) {
