@@ -182,6 +182,33 @@ fn slack_costs_what_it_is_given() {
     assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
 }
 
+/// The end of a level takes the costs of tasks and leaves those of slack.
+#[test]
+fn slack_outlives_a_level() {
+    let mut rng = Rng(30);
+    let s = crouch(&mut rng);
+    let com = s.com();
+    let costs = |qp: &mut Slack| {
+        qp.minimise(&com, &[0.0, 0.0, 2.0], &[1e3; 3]);
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+    };
+    let solve = |level: bool| {
+        let mut qp = Box::new(Slack::new());
+        qp.begin(&Icub23, &s, &contacts(), &[0.0; N]).unwrap();
+        costs(&mut qp);
+        let rank = Rank::Slack(1e3);
+        qp.constrain(&com.select([2]), &[-FREE], &[0.5], rank)
+            .unwrap();
+        if level {
+            qp.next_level();
+            costs(&mut qp);
+        }
+        qp.solve().unwrap().torques
+    };
+    assert!(gap(&solve(false), &solve(true)) < 1e-9);
+}
+
 /// A task that contradicts a limit yields first; the limit stays, and the report says by how much the task was missed.
 #[test]
 fn tasks_yield_before_limits() {
