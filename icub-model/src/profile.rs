@@ -7,7 +7,7 @@ use jump_control::{ComProfile, Curve, JointGains, takeoff_speed};
 use jump_machine::humanoid::{self, Landing, PushOff};
 use rbd_core::{ContactShape, GRAVITY, JointLimits};
 use wbc_qp::jump::{LandingSettings, TorqueJumpSettings, VelocityJumpSettings};
-use wbc_qp::{Contact, Gains, Horizon};
+use wbc_qp::{Contact, Gains, Horizon, Patch};
 
 use crate::gazebo::joint::{
     L_ANKLE_PITCH, L_HIP_PITCH, L_KNEE, L_SHOULDER_PITCH, R_ANKLE_PITCH, R_HIP_PITCH, R_KNEE,
@@ -273,17 +273,14 @@ const SOLE_FORCE: f64 = 1000.0;
 
 /// A sole as [`Contact::new`] makes it, in a `const`.
 const fn foot(i: usize) -> Contact<f64> {
-    let shape = SOLES[i].shape;
-    let sides = match shape {
-        ContactShape::Rectangle {
-            x: [a, b],
-            y: [c, d],
-        } => b - a + d - c,
-        ContactShape::Sphere { .. } => 0.0,
+    let (x, y) = match SOLES[i].shape {
+        ContactShape::Rectangle { x, y } => (x, y),
+        ContactShape::Sphere { .. } => ([0.0; 2], [0.0; 2]),
     };
+    let sides = x[1] - x[0] + y[1] - y[0];
     Contact {
         frame: SOLES[i].frame,
-        shape,
+        shape: Patch::Rectangle { x, y },
         friction: FRICTION,
         yaw: FRICTION * sides * 0.25,
         min_force: 0.0,

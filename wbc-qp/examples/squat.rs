@@ -44,6 +44,8 @@ fn main() -> Result<(), wbc_qp::Error> {
         }
     }
     println!("0.5 s: {:4.1} cm", 100.0 * risen);
+    let program = size_of::<VelocityQp<f64, 23, 29, 12>>();
+    println!("memory of the program: {program} B");
     assert!(risen > 0.036, "4 cm were asked for");
     Ok(())
 }

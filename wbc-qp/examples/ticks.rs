@@ -160,23 +160,10 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
         most = most.max(answer.iterations);
         yielded += usize::from(answer.yielded != Yielded::Nothing);
         let problem = controller.program().problem();
-        let settings = controller.program().settings;
-        let mut least = [f64::INFINITY; 2];
-        for _ in 0..REPEAT {
-            let mut memory = workspace.clone();
-            let begin = Instant::now();
-            let s = solve_warm(&problem, &settings, &mut memory).unwrap();
-            least[1] = least[1].min(begin.elapsed().as_secs_f64());
-            assert_eq!(s.status, Status::Solved);
-        }
-        for _ in 0..REPEAT {
-            let begin = Instant::now();
-            let s = solve(&problem, &settings, &mut workspace).unwrap();
-            least[0] = least[0].min(begin.elapsed().as_secs_f64());
-            assert_eq!(s.status, Status::Solved);
-        }
+        let least = time_program(&problem, &controller.program().settings, &mut workspace);
         cold.push(least[0]);
         warm.push(least[1]);
+        let settings = controller.program().settings;
         let solution = solve(&problem, &settings, &mut workspace).unwrap();
         write_problem(&problem, solution.x, least, &mut put);
         for x in numbers(&q, &v, &wanted) {
@@ -187,6 +174,51 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
             robot.plant.step(&answer.torques).unwrap();
         }
     }
+    write_states(&robot, count, &states, out);
+    let path = out.join(format!("{}.qps", robot.name));
+    std::fs::write(path, programs).unwrap();
+    let median = |x: &mut Vec<f64>| {
+        x.sort_by(f64::total_cmp);
+        [x[x.len() / 2], x[x.len() - 1]].map(|t| t * 1e6)
+    };
+    let [tick, worst] = median(&mut times);
+    let ([cold, _], [warm, _]) = (median(&mut cold), median(&mut warm));
+    println!(
+        "{} {tick:.3} {worst:.3} {cold:.3} {warm:.3} {most} {yielded} {count}",
+        robot.name
+    );
+}
+
+/// Least times of a solve from nothing and from the workspace's memory, s.
+fn time_program<const V: usize, const M: usize>(
+    problem: &Problem<'_, f64, V, M>,
+    settings: &dense_qp::Settings<f64>,
+    workspace: &mut Workspace<f64, V, M>,
+) -> [f64; 2] {
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..REPEAT {
+        let mut memory = Box::new(workspace.clone());
+        let begin = Instant::now();
+        let s = solve_warm(problem, settings, &mut memory).unwrap();
+        least[1] = least[1].min(begin.elapsed().as_secs_f64());
+        assert_eq!(s.status, Status::Solved);
+    }
+    for _ in 0..REPEAT {
+        let begin = Instant::now();
+        let s = solve(problem, settings, workspace).unwrap();
+        least[0] = least[0].min(begin.elapsed().as_secs_f64());
+        assert_eq!(s.status, Status::Solved);
+    }
+    least
+}
+
+/// Writes `NAME.ticks`: sizes, limits, posture at the start, and the states.
+fn write_states<P, const N: usize>(
+    robot: &Robot<'_, P, N>,
+    count: usize,
+    states: &str,
+    out: &Path,
+) {
     let mut head = format!("{count} {N}\n");
     let limits = robot.limits;
     let columns: [[f64; N]; 5] = [
@@ -199,19 +231,8 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
     for x in columns.iter().flatten() {
         write!(head, "{x:.17} ").unwrap();
     }
-    let path = |ending: &str| out.join(format!("{}.{ending}", robot.name));
-    std::fs::write(path("ticks"), format!("{head}\n{states}")).unwrap();
-    std::fs::write(path("qps"), programs).unwrap();
-    let median = |x: &mut Vec<f64>| {
-        x.sort_by(f64::total_cmp);
-        [x[x.len() / 2], x[x.len() - 1]].map(|t| t * 1e6)
-    };
-    let [tick, worst] = median(&mut times);
-    let ([cold, _], [warm, _]) = (median(&mut cold), median(&mut warm));
-    println!(
-        "{} {tick:.3} {worst:.3} {cold:.3} {warm:.3} {most} {yielded} {count}",
-        robot.name
-    );
+    let path = out.join(format!("{}.ticks", robot.name));
+    std::fs::write(path, format!("{head}\n{states}")).unwrap();
 }
 
 /// x y z, quaternion x y z w, joints; velocity; centre of mass wanted.

@@ -8,6 +8,15 @@ use core::fmt;
 pub enum Error {
     /// More rows than the program's const generic M has room for: raise M.
     NoRoomForRows,
+    /// More rows with slack than the const generic V has room for: raise V.
+    NoRoomForSlack,
+    /// A contact's least normal force is above its largest, or one of them is NaN.
+    NormalForces {
+        /// Which contact.
+        contact: usize,
+    },
+    /// The vertices are not those of a convex polygon in counter-clockwise order.
+    NotConvex,
     /// The contacts need another number of force coordinates than the const generic K: three per ball, six
     /// per rectangle.
     ForceCoordinates {
@@ -24,6 +33,16 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoRoomForRows => f.write_str("the program has more rows than M: raise M"),
+            Self::NoRoomForSlack => {
+                f.write_str("the program has more rows with slack than V has room for: raise V")
+            }
+            Self::NormalForces { contact } => write!(
+                f,
+                "the least normal force of contact {contact} is above its largest: set min_force below max_force"
+            ),
+            Self::NotConvex => {
+                f.write_str("the vertices are no convex polygon in counter-clockwise order")
+            }
             Self::ForceCoordinates { needed } => {
                 write!(
                     f,

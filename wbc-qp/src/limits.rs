@@ -46,6 +46,19 @@ impl<T: Scalar> Horizon<T> {
         [math::min(low, T::ZERO), math::max(high, T::ZERO)]
     }
 
+    /// Least rate of a quantity that is to stay above zero and is `distance` above it: −d/h_q, m/s. Below zero it has to rise.
+    #[must_use]
+    pub fn least_rate(&self, distance: T) -> T {
+        -distance / self.position
+    }
+
+    /// Least acceleration of a quantity that is to stay above zero, m/s²: ((−d/h_q) − ḋ)/h_v inside the cap.
+    #[must_use]
+    pub fn least_acceleration(&self, distance: T, rate: T) -> T {
+        let wanted = (self.least_rate(distance) - rate) / self.velocity;
+        math::clamp(wanted, -self.acceleration, self.acceleration)
+    }
+
     /// Lowest and highest acceleration of a joint at position `q` and velocity `qd`, rad/s².
     #[must_use]
     pub fn acceleration_range(&self, limits: &JointLimits<T>, q: T, qd: T) -> [T; 2] {

@@ -16,6 +16,8 @@ pub(crate) struct Program<T, const V: usize, const M: usize> {
     pub(crate) lower: [T; V],
     pub(crate) upper: [T; V],
     used: usize,
+    /// Rows from `used` up to this one are left from an earlier tick, without limits.
+    stale: usize,
 }
 
 impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
@@ -30,19 +32,28 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
             lower: [T::NEG_INFINITY; V],
             upper: [T::INFINITY; V],
             used: 0,
+            stale: 0,
         }
     }
 
+    /// No cost, no bound, and rows without limits: most are written anew, and [`Program::finish`] clears those that are not.
     pub(crate) fn clear(&mut self) {
         self.clear_costs();
-        for row in self.rows.iter_mut().take(self.used) {
-            *row = [T::ZERO; V];
-        }
+        self.stale = self.stale.max(self.used);
         self.row_lower = [T::NEG_INFINITY; M];
         self.row_upper = [T::INFINITY; M];
         self.lower = [T::NEG_INFINITY; V];
         self.upper = [T::INFINITY; V];
         self.used = 0;
+    }
+
+    /// Clears what earlier ticks left in rows that this one has not written.
+    pub(crate) fn finish(&mut self) {
+        let stale = self.rows.iter_mut().take(self.stale).skip(self.used);
+        for row in stale {
+            *row = [T::ZERO; V];
+        }
+        self.stale = self.used;
     }
 
     /// No cost; rows and bounds stay.
@@ -115,6 +126,11 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         }
     }
 
+    /// Number of rows so far.
+    pub(crate) const fn used(&self) -> usize {
+        self.used
+    }
+
     /// Adds l ≤ aᵀz ≤ u; the row's index.
     pub(crate) fn constrain(&mut self, a: &[T; V], lower: T, upper: T) -> Result<usize, Error> {
         let index = self.used;
@@ -126,6 +142,14 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         (*l, *u) = (lower, upper);
         self.used = index + 1;
         Ok(index)
+    }
+
+    /// Moves the value towards which a cost on row `i` pulls: subtracts `amount`, weight times shift, times the row from g.
+    pub(crate) fn pull(&mut self, i: usize, amount: T) {
+        let row = self.row(i);
+        for (g, a) in self.gradient.iter_mut().zip(&row) {
+            *g -= amount * *a;
+        }
     }
 
     /// Sets the limits of a row.
@@ -168,4 +192,9 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         )
         .with_bounds(&self.lower, &self.upper)
     }
+}
+
+/// aᵀb.
+pub(crate) fn dot<T: Scalar, const V: usize>(a: &[T; V], b: &[T; V]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (x, y)| sum + *x * *y)
 }

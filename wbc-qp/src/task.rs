@@ -42,6 +42,16 @@ impl Gains<f64> {
 }
 
 impl<T: Scalar, const N: usize, const R: usize> Task<T, N, R> {
+    /// The rows with these indices, in this order: a mask. Rows that do not exist are zero.
+    #[must_use]
+    pub fn select<const S: usize>(&self, rows: [usize; S]) -> Task<T, N, S> {
+        Task {
+            jacobian: rows.map(|i| self.jacobian.get(i).copied().unwrap_or_default()),
+            drift: rows.map(|i| self.drift.get(i).copied().unwrap_or_default()),
+            rate: rows.map(|i| self.rate.get(i).copied().unwrap_or_default()),
+        }
+    }
+
     /// J x of any motion x: the rate at a velocity; the acceleration less J̇ν at an acceleration.
     #[must_use]
     pub fn of(&self, motion: &Tangent<T, N>) -> [T; R] {
@@ -165,24 +175,37 @@ impl<T: Scalar, const N: usize> Snapshot<T, N> {
     /// Position of a frame's origin in world axes.
     #[must_use]
     pub fn frame_position<M: Tree<T, N>>(&self, model: &M, frame: &Frame<T>) -> Task<T, N, 3> {
-        self.frame_pose(model, frame).part(0)
+        self.frame_pose(model, frame).select([0, 1, 2])
     }
 
     /// Orientation of a frame: ẋ is its angular velocity in world axes.
     #[must_use]
     pub fn frame_orientation<M: Tree<T, N>>(&self, model: &M, frame: &Frame<T>) -> Task<T, N, 3> {
-        self.frame_pose(model, frame).part(3)
+        self.frame_pose(model, frame).select([3, 4, 5])
     }
 }
 
-impl<T: Scalar, const N: usize> Task<T, N, 6> {
-    /// Three rows from `first` on.
-    fn part(&self, first: usize) -> Task<T, N, 3> {
-        let index = [first, first + 1, first + 2];
-        Task {
-            jacobian: index.map(|i| self.jacobian.get(i).copied().unwrap_or_default()),
-            drift: index.map(|i| self.drift.get(i).copied().unwrap_or_default()),
-            rate: index.map(|i| self.rate.get(i).copied().unwrap_or_default()),
+impl<T: Scalar, const N: usize> Task<T, N, 3> {
+    /// The same task with its three rows along other axes: R from these axes to the present ones, so x becomes Rᵀx. The axes are
+    /// those of this instant and do not turn with any link, so drift and rate are turned likewise. With a frame's `rot_wf`, a task in the world becomes
+    /// one in the frame's own axes.
+    #[must_use]
+    pub fn in_axes(&self, rotation: &Rotation3<T>) -> Self {
+        let to = rotation.inverse();
+        let turned = |x: [T; 3]| -> [T; 3] { (to * Vector3::from(x)).into() };
+        let [a, b, c] = self.jacobian;
+        let jacobian = [0, 1, 2].map(|axis| {
+            let mut unit = Vector3::zeros();
+            if let Some(x) = unit.get_mut(axis) {
+                *x = T::ONE;
+            }
+            let share = rotation * unit;
+            a * share.x + b * share.y + c * share.z
+        });
+        Self {
+            jacobian,
+            drift: turned(self.drift),
+            rate: turned(self.rate),
         }
     }
 }

@@ -7,8 +7,8 @@ use common::{N, Rng, oracle, snapshot};
 use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
 use nalgebra::Vector3;
-use rbd_core::{Transform, integrate};
-use wbc_qp::{Contact, Horizon, Snapshot, Task, VelocityQp, anchored};
+use rbd_core::{Shape, Transform, integrate};
+use wbc_qp::{Contact, Horizon, Rank, Snapshot, Task, VelocityQp, anchored};
 
 /// The rate is J ν, and the drift is what the rate gains along q̇ = ν at ν̇ = 0.
 fn check<const R: usize>(name: &str, task: impl Fn(&Snapshot<f64, N>) -> Task<f64, N, R>) {
@@ -42,6 +42,161 @@ fn rates_and_drifts_are_those_of_the_motion() {
     check("orientation", |s| {
         s.frame_orientation(&Icub23, &frame::R_FOREARM)
     });
+}
+
+/// Turned by a fixed rotation a task is the same task, and rows are chosen by index.
+#[test]
+fn tasks_in_other_axes() {
+    let turn = so3::exp(&Vector3::new(0.3, -0.7, 1.1));
+    check("turned", |s| s.com().in_axes(&turn));
+    check("chosen", |s| {
+        s.frame_pose(&Icub23, &frame::CHEST).select([5, 0])
+    });
+    let mut rng = Rng(8);
+    let (q, v) = rng.state();
+    let s = snapshot(&q, &v);
+    let local = s.com().in_axes(&turn).rate;
+    let wanted = turn.inverse() * s.com_velocity_w();
+    assert!((Vector3::from(local) - wanted).norm() < 1e-12);
+}
+
+/// Limbs, chest and hands as capsules and balls.
+fn capsule(frame: &rbd_core::Frame<f64>, to: [f64; 3], radius: f64) -> Shape<f64> {
+    let placement = frame.placement();
+    Shape {
+        link: frame.link,
+        from: frame.offset,
+        to: placement.point(&Vector3::from(to)).into(),
+        radius,
+        owner: 0,
+    }
+}
+
+/// Distances are those of a dense search, and rate and drift those of the motion: between sides, ends, and a side and an end.
+#[test]
+fn distances_and_their_derivatives() {
+    let pairs = [
+        (
+            capsule(&frame::L_FOREARM, [0.0, 0.0, 0.15], 0.03),
+            capsule(&frame::CHEST, [0.0, 0.0, 0.3], 0.1),
+        ),
+        (
+            capsule(&frame::L_FOREARM, [0.1, 0.1, 0.15], 0.03),
+            capsule(&frame::R_FOREARM, [-0.1, 0.1, 0.15], 0.03),
+        ),
+        (
+            capsule(&frame::L_FOREARM, [0.0; 3], 0.03),
+            capsule(&frame::R_SOLE, [0.2, 0.0, 0.0], 0.02),
+        ),
+        (
+            capsule(&frame::L_SOLE, [0.0; 3], 0.03),
+            capsule(&frame::R_FOREARM, [0.0; 3], 0.02),
+        ),
+    ];
+    let mut rng = Rng(9);
+    let (mut smooth, mut sides) = (0, 0);
+    let h = 1e-6;
+    for k in 0..400 {
+        let (a, b) = &pairs[k % pairs.len()];
+        let (q, v) = rng.state();
+        let at = |t: f64| snapshot(&integrate(&q, &(v * t)), &v);
+        let s = at(0.0);
+        let near = s.clearance(a, b);
+        let ends = |c: &Shape<f64>| {
+            let link = s.kinematics.link(c.link);
+            [c.from, c.to].map(|end| link.point(&Vector3::from(end)))
+        };
+        let ([p0, p1], [r0, r1]) = (ends(a), ends(b));
+        let mut least = f64::INFINITY;
+        for i in 0..=60 {
+            for j in 0..=60 {
+                let p = p0 + (p1 - p0) * (f64::from(i) / 60.0);
+                let r = r0 + (r1 - r0) * (f64::from(j) / 60.0);
+                least = least.min((p - r).norm());
+            }
+        }
+        let found = near.distance + a.radius + b.radius;
+        assert!(
+            found <= least + 1e-12 && found > least - 0.01,
+            "{found} {least}"
+        );
+        let task = s.distance(&Icub23, a, b);
+        assert!((task.of(&v)[0] - task.rate[0]).abs() < 1e-10);
+        let rate = (at(h).clearance(a, b).distance - at(-h).clearance(a, b).distance) / (2.0 * h);
+        assert!(
+            (rate - task.rate[0]).abs() < 1e-6,
+            "{rate} {}",
+            task.rate[0]
+        );
+        // The second derivative where both sides of now agree: elsewhere a nearest point is just coming to an end.
+        let of = |t: f64| at(t).distance(&Icub23, a, b).rate[0];
+        let (left, right) = ((of(0.0) - of(-h)) / h, (of(h) - of(0.0)) / h);
+        if (left - right).abs() < 1e-3 {
+            let drift = (of(h) - of(-h)) / (2.0 * h);
+            let error = (drift - task.drift[0]).abs();
+            assert!(
+                error < 1e-5 * (1.0 + drift.abs()),
+                "{drift} {}",
+                task.drift[0]
+            );
+            smooth += 1;
+            let inside = |x: Vector3<f64>, [e, f]: [Vector3<f64>; 2]| {
+                (x - e).norm() > 1e-9 && (x - f).norm() > 1e-9
+            };
+            let both = inside(near.points_w[0], [p0, p1]) && inside(near.points_w[1], [r0, r1]);
+            sides += usize::from(both);
+        }
+    }
+    assert!(smooth > 300 && sides > 10, "{smooth} {sides}");
+}
+
+/// A velocity damper comes to the distance it is to keep and not nearer.
+#[test]
+fn capsules_stay_apart() {
+    let hand = capsule(&frame::L_FOREARM, [0.0, 0.0, -0.1], 0.03);
+    let chest = capsule(&frame::CHEST, [0.0, 0.0, 0.2], 0.1);
+    let horizon = Horizon {
+        position: 0.1,
+        velocity: 0.02,
+        acceleration: 1e3,
+    };
+    let mut q = rbd_core::Configuration::NEUTRAL;
+    for arm in [15, 19] {
+        (q.joints[arm], q.joints[arm + 1], q.joints[arm + 3]) = (-0.5, 0.8, 0.8);
+    }
+    let mut v = rbd_core::Tangent::ZERO;
+    let margin = 0.02;
+    let mut least = f64::INFINITY;
+    for _ in 0..1500 {
+        let s = snapshot(&q, &v);
+        let task = s.distance(&Icub23, &hand, &chest);
+        let left = s.clearance(&hand, &chest).distance - margin;
+        least = least.min(left);
+        let mut air = VelocityQp::<f64, N, 29, 2>::new();
+        air.begin(&Icub23, &s, &[]).unwrap();
+        air.constrain(
+            &task,
+            &[horizon.least_rate(left)],
+            &[f64::INFINITY],
+            Rank::Limit,
+        )
+        .unwrap();
+        let mut inwards = [0.0; N];
+        (inwards[16], inwards[15]) = (-1.0, 0.2);
+        air.minimise_joints(&inwards, &[1.0; N]);
+        air.minimise(
+            &s.frame_pose(&Icub23, &rbd_core::Frame::IDENTITY),
+            &[0.0; 6],
+            &[1e3; 6],
+        );
+        let answer = air.solve().unwrap();
+        assert_eq!(answer.yielded, wbc_qp::Yielded::Nothing);
+        v = answer.velocity;
+        q = integrate(&q, &(v * 2e-3));
+    }
+    let s = snapshot(&q, &v);
+    let left = s.clearance(&hand, &chest).distance - margin;
+    assert!(least > -1e-4 && left < 0.005, "{least} {left}");
 }
 
 #[test]

@@ -8,7 +8,9 @@ use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use rbd_core::{Axes, Configuration, Force, Frame, FrameJacobian, Tangent, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};
 use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
-use wbc_qp::{Contact, Horizon, Snapshot, TorqueQp, Yielded, anchored, torque_range};
+use wbc_qp::{
+    Contact, Horizon, Snapshot, Task, TorqueAnswer, TorqueQp, Yielded, anchored, torque_range,
+};
 
 const K: usize = 12;
 const V: usize = 35;
@@ -203,6 +205,105 @@ fn weights_tend_to_strict_priority() {
     }
 }
 
+/// A program of four levels.
+type Levels = TorqueQp<f64, N, K, V, 67>;
+
+/// Its tasks in a state: centre of mass, push, trunk, angular momentum.
+struct Tasks {
+    unit: f64,
+    com: Task<f64, N, 3>,
+    push: Task<f64, N, 3>,
+    trunk: Task<f64, N, 3>,
+    turn: Task<f64, N, 3>,
+}
+
+/// Up; then a push down that contradicts it, and a turn of the trunk; then the angular momentum.
+const UP: [f64; 3] = [0.1, 0.0, 2.0];
+const DOWN: [f64; 3] = [0.0, 3.0, -30.0];
+const TILT: [f64; 3] = [0.3, 0.0, 0.0];
+const SPIN: [f64; 3] = [0.0, 0.5, 0.0];
+
+fn levels(s: &Snapshot<f64, N>) -> (Tasks, Levels) {
+    let tasks = Tasks {
+        unit: s.centroidal.mass * 0.981,
+        com: s.com(),
+        push: s.linear_momentum(),
+        trunk: s.frame_orientation(&Icub23, &Frame::IDENTITY),
+        turn: s.angular_momentum(),
+    };
+    let mut qp = Levels::new();
+    qp.begin(&Icub23, s, &contacts(0.5), &[0.0; N]).unwrap();
+    qp.limit_torques(&MOTORS.map(|m| [-m.torque, m.torque]))
+        .unwrap();
+    (tasks, qp)
+}
+
+/// The posture, which comes last.
+fn posture(qp: &mut Levels) {
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+}
+
+/// Every level has a little cost on everything: without it most of its Hessian would be zero.
+fn little(qp: &mut Levels) {
+    qp.minimise_joints(&[0.0; N], &[1e-5; N]);
+    qp.minimise_forces(&[0.0; K], &[1e-8; K]);
+}
+
+/// Solves a level, whose cost must be Clarabel's.
+fn optimum(qp: &mut Levels, unit: f64) -> TorqueAnswer<f64, N, K> {
+    let wanted = oracle(&qp.problem()).unwrap();
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.yielded, Yielded::Nothing);
+    let z = core::array::from_fn(|i| match i {
+        0..N => answer.acceleration.joints[i],
+        _ => answer.forces[i - N] / unit,
+    });
+    let cost = qp.problem().cost(&z);
+    let scale = 1.0 + wanted.abs();
+    assert!((cost - wanted).abs() < 1e-5 * scale, "{cost} {wanted}");
+    answer
+}
+
+/// Level after level, each held at what it reached.
+fn strictly(tasks: &Tasks, qp: &mut Levels) -> TorqueAnswer<f64, N, K> {
+    let (com, trunk, turn) = (&tasks.com, &tasks.trunk, &tasks.turn);
+    little(qp);
+    qp.minimise(com, &UP, &[1.0; 3]);
+    let first = com.reached(&optimum(qp, tasks.unit).acceleration);
+    assert!(first.iter().zip(&UP).all(|(a, b)| (a - b).abs() < 1e-2));
+    qp.hold(com, &first).unwrap();
+    qp.next_level();
+    little(qp);
+    qp.minimise(&tasks.push, &DOWN, &[1e-3; 3]);
+    qp.minimise(trunk, &TILT, &[1.0; 3]);
+    let second = trunk.reached(&optimum(qp, tasks.unit).acceleration);
+    qp.hold(trunk, &second).unwrap();
+    qp.next_level();
+    little(qp);
+    qp.minimise(turn, &SPIN, &[1.0; 3]);
+    let third = turn.reached(&optimum(qp, tasks.unit).acceleration);
+    qp.hold(turn, &third).unwrap();
+    qp.next_level();
+    posture(qp);
+    let strict = optimum(qp, tasks.unit);
+    for (task, value) in [(com, first), (trunk, second), (turn, third)] {
+        let now = task.reached(&strict.acceleration);
+        assert!(now.iter().zip(&value).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+    strict
+}
+
+/// All levels at once, each with w times the next one's weight.
+fn weighed(tasks: &Tasks, qp: &mut Levels, w: f64) -> [f64; N] {
+    qp.minimise(&tasks.com, &UP, &[w * w * w; 3]);
+    qp.minimise(&tasks.push, &DOWN, &[1e-3 * w * w; 3]);
+    qp.minimise(&tasks.trunk, &TILT, &[w * w; 3]);
+    qp.minimise(&tasks.turn, &SPIN, &[w; 3]);
+    posture(qp);
+    qp.solve().unwrap().torques
+}
+
 /// Four levels of strict priority, the second against the first: each level's cost is Clarabel's least, no level spoils
 /// one before it, and weights that grow by the same factor from level to level tend to the same torques.
 #[test]
@@ -212,86 +313,12 @@ fn levels_are_optimal_one_after_the_other() {
     for _ in 0..8 {
         let (q, v) = crouch(&mut rng, 0.1, 0.3);
         let s = snapshot(&q, &v);
-        let (com, push) = (s.com(), s.linear_momentum());
-        let trunk = s.frame_orientation(&Icub23, &Frame::IDENTITY);
-        let turn = s.angular_momentum();
-        let start = || {
-            let mut qp = TorqueQp::<f64, N, K, V, 67>::new();
-            qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
-            qp.limit_torques(&MOTORS.map(|m| [-m.torque, m.torque]))
-                .unwrap();
-            qp
-        };
-        let last = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
-            qp.minimise_joints(&[0.0; N], &[1.0; N]);
-            qp.minimise_forces(&[0.0; K], &[1e-3; K]);
-        };
-        // Every level has a little cost on everything: without it most of its Hessian would be zero.
-        let rest = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
-            qp.minimise_joints(&[0.0; N], &[1e-5; N]);
-            qp.minimise_forces(&[0.0; K], &[1e-8; K]);
-        };
-        let mut qp = start();
-        let solve = |qp: &mut TorqueQp<f64, N, K, V, 67>| {
-            let wanted = oracle(&qp.problem()).unwrap();
-            let answer = qp.solve().unwrap();
-            assert_eq!(answer.yielded, Yielded::Nothing);
-            let unit = s.centroidal.mass * 0.981;
-            let z = core::array::from_fn(|i| match i {
-                0..N => answer.acceleration.joints[i],
-                _ => answer.forces[i - N] / unit,
-            });
-            let cost = qp.problem().cost(&z);
-            let scale = 1.0 + wanted.abs();
-            assert!((cost - wanted).abs() < 1e-5 * scale, "{cost} {wanted}");
-            answer
-        };
-        // Up; then a push down that contradicts it, and a turn of the trunk; then the angular momentum; then the posture.
-        let (up, down, tilt, spin) = (
-            [0.1, 0.0, 2.0],
-            [0.0, 3.0, -30.0],
-            [0.3, 0.0, 0.0],
-            [0.0, 0.5, 0.0],
-        );
-        rest(&mut qp);
-        qp.minimise(&com, &up, &[1.0; 3]);
-        let answer = solve(&mut qp);
-        let first = com.reached(&answer.acceleration);
-        assert!(first.iter().zip(&up).all(|(a, b)| (a - b).abs() < 1e-2));
-        qp.hold(&com, &first).unwrap();
-        qp.next_level();
-        rest(&mut qp);
-        qp.minimise(&push, &down, &[1e-3; 3]);
-        qp.minimise(&trunk, &tilt, &[1.0; 3]);
-        let answer = solve(&mut qp);
-        let second = trunk.reached(&answer.acceleration);
-        qp.hold(&trunk, &second).unwrap();
-        qp.next_level();
-        rest(&mut qp);
-        qp.minimise(&turn, &spin, &[1.0; 3]);
-        let answer = solve(&mut qp);
-        let third = turn.reached(&answer.acceleration);
-        qp.hold(&turn, &third).unwrap();
-        qp.next_level();
-        last(&mut qp);
-        let strict = solve(&mut qp);
-        for (task, value) in [(&com, first), (&trunk, second), (&turn, third)] {
-            let now = task.reached(&strict.acceleration);
-            assert!(now.iter().zip(&value).all(|(a, b)| (a - b).abs() < 1e-6));
-        }
-        let gap = |w: f64| {
-            let mut qp = start();
-            qp.minimise(&com, &up, &[w * w * w; 3]);
-            qp.minimise(&push, &down, &[1e-3 * w * w; 3]);
-            qp.minimise(&trunk, &tilt, &[w * w; 3]);
-            qp.minimise(&turn, &spin, &[w; 3]);
-            last(&mut qp);
-            let answer = qp.solve().unwrap();
-            let pairs = answer.torques.iter().zip(&strict.torques);
-            pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
-        };
+        let (tasks, mut qp) = levels(&s);
+        let strict = strictly(&tasks, &mut qp);
         for (sum, w) in sums.iter_mut().zip([1e1, 1e2, 1e3]) {
-            *sum += gap(w);
+            let (tasks, mut qp) = levels(&s);
+            let pairs = weighed(&tasks, &mut qp, w).into_iter().zip(strict.torques);
+            *sum += pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
         }
     }
     // Where levels compete for the same torques, the way is long: the last factor must be a thousand to see most of it.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use crate::run;
 
 /// Crate and example.
-const EXAMPLES: [(&str, &str); 13] = [
+const EXAMPLES: [(&str, &str); 16] = [
     ("so3", "attitude"),
     ("rbd-core", "double_pendulum"),
     ("dense-qp", "grip"),
@@ -16,6 +16,9 @@ const EXAMPLES: [(&str, &str); 13] = [
     ("srb-opt", "thrust_vector_flip"),
     ("wb-opt", "hop"),
     ("wbc-qp", "squat"),
+    ("wbc-qp", "arm"),
+    ("wbc-qp", "trot"),
+    ("wbc-qp", "slope"),
     ("landing", "drop"),
     ("jump-control", "track"),
     ("jump-machine", "faults"),

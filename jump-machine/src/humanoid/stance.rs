@@ -2,11 +2,10 @@
 
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
-    Configuration, ContactShape, Kinematics, Posture, Transform, Tree, center_of_mass,
-    forward_kinematics,
+    Configuration, Kinematics, Posture, Transform, Tree, center_of_mass, forward_kinematics,
 };
 use so3::Scalar;
-use wbc_qp::Contact;
+use wbc_qp::{Contact, Patch};
 
 /// The robot with these joints, rad, and its first foot flat on the floor with its axes along the world's, the middle between the feet's
 /// frames at the origin.
@@ -29,7 +28,7 @@ pub fn on_the_floor<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize>(
     q
 }
 
-/// Middle between the feet's contacts in the world, m: of a rectangle its middle, of a ball its centre.
+/// Middle between the feet's contacts in the world, m: of a rectangle its middle, of a polygon the mean of its vertices, of a ball its centre.
 #[must_use]
 pub fn middle_of_feet<T: Scalar, const N: usize, const F: usize>(
     poses: &Kinematics<T, N>,
@@ -37,11 +36,17 @@ pub fn middle_of_feet<T: Scalar, const N: usize, const F: usize>(
 ) -> Vector3<T> {
     let middles = feet.iter().map(|foot| {
         let middle = match foot.shape {
-            ContactShape::Sphere { .. } => Vector3::zeros(),
-            ContactShape::Rectangle {
+            Patch::Ball { .. } => Vector3::zeros(),
+            Patch::Rectangle {
                 x: [a, b],
                 y: [c, d],
             } => Vector3::new(T::HALF * (a + b), T::HALF * (c + d), T::ZERO),
+            Patch::Polygon { vertices } => {
+                let [x, y] = vertices
+                    .iter()
+                    .fold([T::ZERO; 2], |[a, b], [x, y]| [a + *x, b + *y]);
+                Vector3::new(x, y, T::ZERO) / T::of(vertices.len() as f64)
+            }
         };
         poses.frame(&foot.frame).point(&middle)
     });

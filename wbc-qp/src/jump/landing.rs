@@ -7,12 +7,14 @@
 //! its limits.
 
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{ContactShape, Frame, JointLimits, Motor, Tree, joint_friction};
+use rbd_core::{Frame, JointLimits, Motor, Tree, joint_friction};
 use so3::{Scalar, math};
 
 use super::{ComReference, Residuals, distance};
 use crate::task::{orientation_error, position_error};
-use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueQp, jump::TorqueTick, torque_range};
+use crate::{
+    Contact, Error, Gains, Horizon, Patch, Snapshot, TorqueQp, jump::TorqueTick, torque_range,
+};
 
 /// The way of the centre of mass from touchdown to rest: v(t) = v₀ (1 − t/T)², T = 3 d/|v₀|, a distance d in all.
 ///
@@ -143,7 +145,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     ) -> Result<TorqueTick<T, N, K>, Error> {
         let s = &self.settings;
         let (limits, motors) = joints;
-        let (q, qd) = (&snapshot.configuration.joints, &snapshot.velocity.joints);
+        let qd = &snapshot.velocity.joints;
         let friction = joint_friction(limits, qd, T::of(0.1));
         self.qp.begin(model, snapshot, contacts, &friction)?;
         let ground = contacts
@@ -171,31 +173,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         let target = trunk.acceleration([T::ZERO; 3], [T::ZERO; 3], error, s.trunk);
         self.qp
             .minimise(&trunk, &target, &[s.trunk_weight * ground; 3]);
-        for contact in contacts {
-            if contact.is_whole() || !matches!(contact.shape, ContactShape::Rectangle { .. }) {
-                continue;
-            }
-            let sole = snapshot.frame_orientation(model, &contact.frame);
-            let normal = snapshot.pose(&contact.frame).rotation * Vector3::z();
-            let target = sole.acceleration(
-                [T::ZERO; 3],
-                [T::ZERO; 3],
-                normal.cross(&Vector3::z()).into(),
-                s.sole,
-            );
-            let weight = s.sole_weight * (T::ONE - contact.load);
-            // Yaw is the posture's.
-            self.qp.minimise(&sole, &target, &[weight, weight, T::ZERO]);
-        }
-        let [air, floor] = s.posture;
-        let between = |a: T, b: T| a + (b - a) * ground;
-        let stiffness = between(air.stiffness, floor.stiffness);
-        let damping = between(air.damping, floor.damping);
-        let mut posture = wanted.posture;
-        let state = q.iter().zip(qd).zip(&wanted.velocity);
-        for (x, ((q, qd), v)) in posture.iter_mut().zip(state) {
-            *x = stiffness * (*x - *q) + damping * (*v - *qd);
-        }
+        level_soles(&mut self.qp, model, snapshot, contacts, s);
+        let posture = follow(s, snapshot, wanted, ground);
         self.qp.minimise_joints(&posture, &s.posture_weight);
         if let Some(previous) = &self.previous {
             self.qp
@@ -224,6 +203,56 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             },
         })
     }
+}
+
+/// Keeps soles level in the air, the less the more of their contact there is.
+#[inline(never)] // Its rows are not to lie on the stack while the program is solved.
+fn level_soles<T, R, const N: usize, const K: usize, const V: usize, const M: usize>(
+    qp: &mut TorqueQp<T, N, K, V, M>,
+    model: &R,
+    snapshot: &Snapshot<T, N>,
+    contacts: &[Contact<T>],
+    s: &LandingSettings<T, N>,
+) where
+    T: Scalar,
+    R: Tree<T, N>,
+{
+    for contact in contacts {
+        if contact.is_whole() || matches!(contact.shape, Patch::Ball { .. }) {
+            continue;
+        }
+        let sole = snapshot.frame_orientation(model, &contact.frame);
+        let normal = snapshot.pose(&contact.frame).rotation * Vector3::z();
+        let target = sole.acceleration(
+            [T::ZERO; 3],
+            [T::ZERO; 3],
+            normal.cross(&Vector3::z()).into(),
+            s.sole,
+        );
+        let weight = s.sole_weight * (T::ONE - contact.load);
+        // Yaw is the posture's.
+        qp.minimise(&sole, &target, &[weight, weight, T::ZERO]);
+    }
+}
+
+/// Accelerations of the joints towards their reference; the gains go from those in the air to those on the ground.
+fn follow<T: Scalar, const N: usize>(
+    s: &LandingSettings<T, N>,
+    snapshot: &Snapshot<T, N>,
+    wanted: &LandingReference<T, N>,
+    ground: T,
+) -> [T; N] {
+    let (q, qd) = (&snapshot.configuration.joints, &snapshot.velocity.joints);
+    let [air, floor] = s.posture;
+    let between = |a: T, b: T| a + (b - a) * ground;
+    let stiffness = between(air.stiffness, floor.stiffness);
+    let damping = between(air.damping, floor.damping);
+    let mut posture = wanted.posture;
+    let state = q.iter().zip(qd).zip(&wanted.velocity);
+    for (x, ((q, qd), v)) in posture.iter_mut().zip(state) {
+        *x = stiffness * (*x - *q) + damping * (*v - *qd);
+    }
+    posture
 }
 
 #[cfg(test)]

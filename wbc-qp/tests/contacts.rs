@@ -1,0 +1,235 @@
+//! Contacts on inclined ground, polygons, feedback, and what is refused.
+#![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
+
+mod common;
+
+use a1_model::{A1, FEET, FOOT_RADIUS};
+use common::{N, Rng, snapshot};
+use icub_model::{Icub23, SOLES};
+use nalgebra::{Rotation3, Vector3};
+use rbd_core::{Configuration, ContactShape, Frame, Tangent, Transform, integrate, rnea};
+use wbc_qp::{Contact, Error, Patch, Rank, Snapshot, TorqueQp, VelocityQp, Yielded, anchored};
+
+/// Standing A1, turned and moved as a whole by `ground`.
+fn standing(ground: &Transform<f64>) -> Snapshot<f64, 12> {
+    let mut q = Configuration::NEUTRAL;
+    q.joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);
+    q.base = *ground;
+    let mut v = Tangent::ZERO;
+    v.joints = core::array::from_fn(|i| 0.1 * (i as f64 - 5.0));
+    let mut s = Snapshot::ZERO;
+    s.update(&A1, &q, &v);
+    s
+}
+
+fn feet(normal: Vector3<f64>) -> [Contact<f64>; 4] {
+    FEET.map(|foot| Contact::ball(&foot.frame, FOOT_RADIUS, normal, 0.5, 300.0))
+}
+
+/// A turned world is the same world but for gravity: rows of contacts and cones turn with the plane.
+#[test]
+fn velocities_do_not_see_how_the_ground_is_inclined() {
+    let solve = |turn: Rotation3<f64>| {
+        let s = standing(&Transform::new(turn, Vector3::new(0.1, 0.2, 0.3)));
+        let normal = turn * Vector3::z();
+        let mut qp = VelocityQp::<f64, 12, 18, 15>::new();
+        qp.begin(&A1, &s, &feet(normal)).unwrap();
+        let up: [f64; 3] = (normal * 0.1).into();
+        qp.minimise(&s.com(), &up, &[1e4; 3]);
+        qp.minimise_joints(&[0.0; 12], &[1.0; 12]);
+        qp.solve().unwrap().velocity
+    };
+    let level = solve(Rotation3::identity());
+    for turn in [
+        [0.3, 0.0, 0.0],
+        [0.0, -0.5, 0.2],
+        [2.0, 1.0, 0.3],
+        [3.1, 0.1, 0.0],
+    ] {
+        let turned = solve(so3::exp(&Vector3::from(turn)));
+        for (a, b) in level.joints.iter().zip(&turned.joints) {
+            assert!((a - b).abs() < 1e-7, "{a} {b}");
+        }
+    }
+}
+
+/// On a slope steeper than friction allows contacts yield, on one below it they hold: the cone stands on the plane's normal, and
+/// the inscribed pyramid gives up earlier on a diagonal.
+#[test]
+fn friction_is_that_of_the_plane() {
+    let holds = |degrees: f64, about: [f64; 2], inscribed: bool| {
+        let axis = Vector3::new(about[0], about[1], 0.0).normalize();
+        let turn = so3::exp(&(axis * degrees.to_radians()));
+        let mut q = Configuration::NEUTRAL;
+        q.joints = core::array::from_fn(|i| [0.0, 0.9, -1.8][i % 3]);
+        q.base = Transform::new(turn, Vector3::zeros());
+        let mut s = Snapshot::<f64, 12>::ZERO;
+        s.update(&A1, &q, &Tangent::ZERO);
+        let mut qp = TorqueQp::<f64, 12, 12, 24, 46>::new();
+        let contacts = feet(turn * Vector3::z()).map(|c| if inscribed { c.inscribed() } else { c });
+        qp.begin(&A1, &s, &contacts, &[0.0; 12]).unwrap();
+        // At rest: all of the weight is carried.
+        qp.constrain(&s.com(), &[0.0; 3], &[0.0; 3], Rank::Task)
+            .unwrap();
+        qp.minimise_joints(&[0.0; 12], &[1.0; 12]);
+        qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
+        let answer = qp.solve().unwrap();
+        // The equations of motion, with forces from their coordinates.
+        let mut rest = rnea(&A1, &s.posture, &s.velocity, &answer.acceleration).base;
+        for (contact, f) in contacts.iter().zip(answer.forces.chunks(3)) {
+            let (point, f) = contact.wrench_w(&s, [f[0], f[1], f[2], 0.0, 0.0, 0.0]);
+            let arm = q.base.inverse().point(&point);
+            let f = turn.inverse() * f.linear;
+            rest = rest - rbd_core::Force::new(f, arm.cross(&f));
+        }
+        assert!(rest.to_array().iter().all(|x| x.abs() < 1e-8), "{rest:?}");
+        answer.yielded == Yielded::Nothing
+    };
+    // atan 0.5 = 26.6°.
+    assert!(holds(25.0, [1.0, 0.0], false) && !holds(28.0, [1.0, 0.0], false));
+    // Along a diagonal the pyramid reaches to atan 0.707 = 35.3°, the inscribed one to 26.6°.
+    assert!(holds(33.0, [1.0, 1.0], false) && !holds(37.0, [1.0, 1.0], false));
+    assert!(holds(25.0, [1.0, 1.0], true) && !holds(28.0, [1.0, 1.0], true));
+}
+
+static SQUARE: [[f64; 2]; 4] = [[0.1, -0.04], [0.1, 0.06], [-0.05, 0.06], [-0.05, -0.04]];
+static TRIANGLE: [[f64; 2]; 3] = [[0.1, 0.0], [-0.05, 0.05], [-0.05, -0.05]];
+static STAR: [[f64; 2]; 5] = [
+    [1.0, 0.0],
+    [-0.8, 0.6],
+    [0.3, -0.95],
+    [0.3, 0.95],
+    [-0.8, -0.6],
+];
+static CLOCKWISE: [[f64; 2]; 3] = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
+
+/// A polygon of four is the rectangle; of three, a wrench is allowed exactly where its centre of pressure is inside.
+#[test]
+fn a_polygon_bounds_the_centre_of_pressure() {
+    let frame = SOLES[0].frame;
+    let square = Contact::polygon(&frame, &SQUARE, 0.5, 100.0).unwrap();
+    let rectangle = rbd_core::Contact {
+        name: "",
+        frame,
+        shape: ContactShape::Rectangle {
+            x: [-0.05, 0.1],
+            y: [-0.04, 0.06],
+        },
+    };
+    let rectangle = Contact::new(&rectangle, 0.5, 100.0);
+    let allowed = |contact: &Contact<f64>, f: &[f64; 6]| {
+        let rows = (0..).map_while(|k| contact.cone(k));
+        rows.fold(f64::NEG_INFINITY, |m, row| {
+            m.max(row.iter().zip(f).map(|(a, b)| a * b).sum())
+        }) <= 0.0
+    };
+    assert!((square.yaw - rectangle.yaw).abs() < 1e-15);
+    let triangle = Contact::polygon(&frame, &TRIANGLE, 0.5, 100.0).unwrap();
+    let mut rng = Rng(31);
+    let mut inside = [0; 3];
+    for _ in 0..20_000 {
+        let (x, y) = (0.15 * rng.next(), 0.1 * rng.next());
+        let f = [
+            10.0 * rng.next(),
+            10.0 * rng.next(),
+            30.0,
+            30.0 * y,
+            -30.0 * x,
+            rng.next(),
+        ];
+        assert_eq!(allowed(&square, &f), allowed(&rectangle, &f));
+        inside[0] += u32::from(allowed(&square, &f));
+        // No tangential force and no yaw: the triangle alone decides.
+        let f = [0.0, 0.0, 30.0, f[3], f[4], 0.0];
+        let is_inside = x > -0.05 && y.abs() < (0.1 - x) / 3.0;
+        assert_eq!(allowed(&triangle, &f), is_inside, "{x} {y}");
+        inside[1] += u32::from(is_inside);
+    }
+    assert!(inside[0] > 1000 && inside[1] > 1000, "{inside:?}");
+    for vertices in [&STAR[..], &CLOCKWISE, &SQUARE[..2], &[]] {
+        assert_eq!(
+            Contact::polygon(&frame, vertices, 0.5, 1.0),
+            Err(Error::NotConvex)
+        );
+    }
+}
+
+/// The error's rate along a motion is minus the contact's velocity, and in both programs a displaced sole goes back.
+#[test]
+fn contacts_go_back_to_where_they_were() {
+    let mut rng = Rng(32);
+    let mut q = [0.0; N];
+    for leg in [0, 6] {
+        (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
+    }
+    let (q, v) = anchored(
+        &Icub23,
+        &q,
+        &[0.0; N],
+        &SOLES[0].frame,
+        &Transform::IDENTITY,
+    );
+    let home = snapshot(&q, &v);
+    let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+    let places = contacts.map(|c| home.pose(&c.frame));
+    let mut q = q;
+    for x in &mut q.joints[..12] {
+        *x += 0.02 * rng.next();
+    }
+    let miss = |s: &Snapshot<f64, N>| {
+        let each = contacts
+            .iter()
+            .zip(&places)
+            .flat_map(|(c, at)| c.error(s, at));
+        each.collect::<Vec<f64>>()
+    };
+    let size = |e: &[f64]| e.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let before = size(&miss(&snapshot(&q, &v)));
+    let mut qp = VelocityQp::<f64, N, 29, 12>::new();
+    for _ in 0..100 {
+        let s = snapshot(&q, &Tangent::ZERO);
+        qp.begin(&Icub23, &s, &contacts).unwrap();
+        let wanted: Vec<f64> = miss(&s).iter().map(|e| 5.0 * e).collect();
+        qp.correct_contacts(&wanted);
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Nothing);
+        q = integrate(&q, &(answer.velocity * 0.01));
+    }
+    let after = size(&miss(&snapshot(&q, &v)));
+    assert!(before > 0.005 && after < 0.02 * before, "{before} {after}");
+
+    // At the level of torques: the acceleration asked for is had.
+    let s = snapshot(&q, &Tangent::ZERO);
+    let mut qp = TorqueQp::<f64, N, 12, 35, 55>::new();
+    qp.begin(&Icub23, &s, &contacts, &[0.0; N]).unwrap();
+    let wanted = core::array::from_fn(|k| 0.1 * (k as f64 - 6.0));
+    qp.correct_contacts(&wanted);
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
+    let answer = qp.solve().unwrap();
+    assert!(answer.contact_violation < 1e-7);
+    let sole = s.frame_pose(&Icub23, &SOLES[0].frame);
+    let rotation = s.pose(&SOLES[0].frame).rotation;
+    let linear = sole.select([0, 1, 2]).in_axes(&rotation);
+    for (a, b) in linear.reached(&answer.acceleration).iter().zip(&wanted) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+#[test]
+fn forces_that_contradict_each_other_are_refused() {
+    let s = standing(&Transform::IDENTITY);
+    let mut contacts = feet(Vector3::z());
+    contacts[2].min_force = 301.0;
+    let mut qp = TorqueQp::<f64, 12, 12, 24, 40>::new();
+    let refused = Err(Error::NormalForces { contact: 2 });
+    assert_eq!(qp.begin(&A1, &s, &contacts, &[0.0; 12]), refused);
+    contacts[2].min_force = f64::NAN;
+    assert_eq!(qp.begin(&A1, &s, &contacts, &[0.0; 12]), refused);
+    let frame: Frame<f64> = contacts[0].frame;
+    assert!(matches!(
+        Contact::ball(&frame, 0.02, Vector3::z(), 0.5, 1.0).shape,
+        Patch::Ball { .. }
+    ));
+}

@@ -1,0 +1,149 @@
+//! Both programs on an arm that is bolted to the world, beside the recursive dynamics.
+#![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
+
+use rbd_core::joint::Kind;
+use rbd_core::{
+    Axes, BaseBody, BaseKind, Body, Configuration, Contact, ContactShape, Effort, Force, Frame,
+    FrameJacobian, JointLimits, Link, TableModel, Tangent, frame_jacobian, rnea,
+};
+use wbc_qp::{Horizon, Limit, Rank, Snapshot, TorqueQp, VelocityQp, Yielded};
+
+const N: usize = 4;
+type Arm = TableModel<f64, N>;
+
+/// A turntable and three rods of 2 kg and 0.3 m.
+fn arm() -> Arm {
+    let base = BaseBody {
+        mass: 30.0,
+        first: [1.0, 2.0, 3.0],
+        second: [5.0, 5.0, 5.0, 0.0, 0.0, 0.0],
+    };
+    let turntable = Body {
+        kind: Kind::RevoluteZ,
+        mass: 1.0,
+        second: [0.002, 0.002, 0.002, 0.0, 0.0, 0.0],
+        ..Body::EMPTY
+    };
+    let rod = |parent, x| Body {
+        kind: Kind::RevoluteY,
+        parent: Link::Joint(parent),
+        offset: [x, 0.0, 0.1],
+        mass: 2.0,
+        first: [0.3, 0.0, 0.0],
+        second: [0.06, 0.001, 0.001, 0.0, 0.0, 0.0],
+        ..Body::EMPTY
+    };
+    Arm::new(
+        BaseKind::Fixed,
+        base,
+        &[turntable, rod(0, 0.0), rod(1, 0.3), rod(2, 0.3)],
+    )
+    .unwrap()
+}
+
+const TOOL: Frame<f64> = Frame {
+    link: Link::Joint(3),
+    offset: [0.3, 0.0, 0.0],
+    ..Frame::IDENTITY
+};
+
+fn state() -> Snapshot<f64, N> {
+    let mut q = Configuration::NEUTRAL;
+    q.joints = [0.3, -0.8, 1.2, 0.4];
+    let mut v = Tangent::ZERO;
+    v.joints = [0.5, -0.4, 0.3, 0.9];
+    let mut s = Snapshot::ZERO;
+    s.update(&arm(), &q, &v);
+    s
+}
+
+#[test]
+fn torques_are_those_of_the_inverse_dynamics() {
+    let s = state();
+    let mut qp = TorqueQp::<f64, N, 0, N, 7>::new();
+    qp.begin(&arm(), &s, &[], &[0.0; N]).unwrap();
+    let tool = s.frame_position(&arm(), &TOOL);
+    qp.hold(&tool, &[0.5, -0.3, 1.0]).unwrap();
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.yielded, Yielded::Nothing);
+    let reached = tool.reached(&answer.acceleration);
+    for (a, b) in reached.iter().zip([0.5, -0.3, 1.0]) {
+        assert!((a - b).abs() < 1e-9, "{reached:?}");
+    }
+    assert_eq!(answer.acceleration.base.to_array(), [0.0; 6]);
+    let wanted = rnea(&arm(), &s.posture, &s.velocity, &answer.acceleration);
+    for (a, b) in answer.torques.iter().zip(&wanted.joints) {
+        assert!((a - b).abs() < 1e-10, "{a} {b}");
+    }
+    // Holding up the arm takes torque.
+    assert!(answer.torques[1].abs() > 5.0);
+}
+
+/// The tool leans on a table: M q̈ + h = τ + Jᵀ f, the force inside its cone, the tool at rest.
+#[test]
+fn a_contact_of_an_arm() {
+    let s = state();
+    let ball = Contact {
+        name: "tool",
+        frame: TOOL,
+        shape: ContactShape::Sphere { radius: 0.0 },
+    };
+    let contact = wbc_qp::Contact::new(&ball, 0.5, 50.0);
+    let mut qp = TorqueQp::<f64, N, 3, 7, 14>::new();
+    qp.begin(&arm(), &s, &[contact], &[0.0; N]).unwrap();
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0, 0.0, 20.0], &[1.0; 3]);
+    let answer = qp.solve().unwrap();
+    assert!(answer.contact_violation < 1e-9);
+    assert!((answer.forces[2] - 20.0).abs() < 1e-6);
+    let mut j = FrameJacobian::ZERO;
+    let axes = Axes::LocalWorldAligned;
+    frame_jacobian(&arm(), &s.kinematics, &TOOL, axes, &mut j);
+    let [x, y, z] = answer.forces;
+    let pushed: Effort<f64, N> = j.tr_mul(&Force::from_array([x, y, z, 0.0, 0.0, 0.0]));
+    let wanted = rnea(&arm(), &s.posture, &s.velocity, &answer.acceleration);
+    for i in 0..N {
+        let rest = wanted.joints[i] - pushed.joints[i] - answer.torques[i];
+        assert!(rest.abs() < 1e-9, "{rest}");
+    }
+}
+
+#[test]
+fn a_torque_limit_is_kept_and_named() {
+    let s = state();
+    let mut qp = TorqueQp::<f64, N, 0, N, 7>::new();
+    qp.begin(&arm(), &s, &[], &[0.0; N]).unwrap();
+    qp.hold(&s.frame_position(&arm(), &TOOL), &[0.0, 0.0, 40.0])
+        .unwrap();
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.limit_torques(&[[-20.0, 20.0]; N]).unwrap();
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.yielded, Yielded::Tasks);
+    assert!(answer.torques.iter().all(|tau| tau.abs() < 20.0 + 1e-6));
+    let named: Vec<Limit> = qp.report(&answer, 1e-6).map(|x| x.limit).collect();
+    assert!(
+        named.contains(&Limit::Torque(1)) && named.contains(&Limit::Row(2)),
+        "{named:?}"
+    );
+}
+
+#[test]
+fn the_velocity_program_leaves_the_base_alone() {
+    let s = state();
+    let mut qp = VelocityQp::<f64, N, 10, 3>::new();
+    qp.begin(&arm(), &s, &[]).unwrap();
+    let tool = s.frame_position(&arm(), &TOOL);
+    qp.constrain(&tool, &[0.1, 0.0, 0.0], &[0.1, 0.0, 0.0], Rank::Task)
+        .unwrap();
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    let horizon = Horizon {
+        position: 0.02,
+        velocity: 0.005,
+        acceleration: 500.0,
+    };
+    qp.limit_joints(&s, &[JointLimits::NONE; N], &horizon);
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.velocity.base.to_array(), [0.0; 6]);
+    assert!((tool.of(&answer.velocity)[0] - 0.1).abs() < 1e-9);
+}
