@@ -41,5 +41,5 @@ fn main() {
         }
     }
     assert!(machine.fault().is_some(), "the machine has named the joint");
-    // A plan is given by `machine.arm(jump, start)`: see `saltus/src/closed_loop` for the whole loop.
+    // A plan is given by `machine.arm(jump, start)`: see `jump-lab/src/closed_loop` for the whole loop.
 }

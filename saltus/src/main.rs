@@ -7,15 +7,11 @@
 #[macro_use]
 mod stream;
 
-mod closed_loop;
 mod cmd;
 mod examples;
 mod humanoid;
-mod jump;
-mod lab;
-mod log;
-mod noise;
-mod observer;
+mod plant;
+mod quadruped;
 mod recording;
 mod reference;
 mod report;

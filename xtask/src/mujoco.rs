@@ -59,15 +59,16 @@ pub(crate) fn saltus() -> Result<Command> {
     Ok(cargo)
 }
 
-/// `cargo test` of `saltus` with both simulators, in the release build that the other checks use too.
-pub(crate) fn saltus_tests() -> Result<Command> {
+/// `cargo test` of `jump-lab` and `saltus` with both simulators, in the release build that the other checks use too.
+pub(crate) fn tests() -> Result<Command> {
     let (folder, search) = library(Path::new("python3"))?;
     let mut cargo = run::cargo();
     cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
     cargo.env("LD_LIBRARY_PATH", search);
     aside(&mut cargo);
-    cargo.args(["test", "--release", "--package", "saltus"]);
-    cargo.args(["--features", "mujoco"]);
+    cargo.args(["test", "--release"]);
+    cargo.args(["--package", "jump-lab", "--package", "saltus"]);
+    cargo.args(["--features", "jump-lab/mujoco,saltus/mujoco"]);
     Ok(cargo)
 }
 

@@ -10,7 +10,7 @@ use crate::{mujoco, run};
 /// A part of the suites, so that CI's lanes can share them.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Part {
-    /// What `saltus` does as a program, iCub and noise at length, in both simulators and its release build.
+    /// iCub and noise at length in closed loop, and what `saltus` does as a program, in both simulators and the release build.
     Program,
     /// Every algorithm beside Pinocchio, a counting allocator under every call of the control crates, A1 dropped from a metre, and the
     /// bounds beside the solver, in the build of `cargo test --workspace`.
@@ -51,10 +51,10 @@ fn algorithms() -> Result<()> {
 }
 
 fn program() -> Result<()> {
-    let mut units = mujoco::saltus_tests()?;
-    units.args(["--bin", "saltus", "--", "--include-ignored"]);
-    units.args(["humanoid::tests", "jump::fuzz"]);
+    let mut units = mujoco::tests()?;
+    units.args(["--lib", "--", "--include-ignored"]);
+    units.args(["humanoid::tests", "quadruped::fuzz"]);
     run::succeed(&mut units)?;
-    let mut whole = mujoco::saltus_tests()?;
+    let mut whole = mujoco::tests()?;
     run::succeed(whole.args(["--test", "*", "--", "--ignored"]))
 }

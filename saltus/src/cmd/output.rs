@@ -1,9 +1,13 @@
 //! What a command prints: text, one JSON object, or nothing; and how far it is, on a terminal only.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use core::ops::RangeInclusive;
+use core::str::FromStr;
 use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
+use jump_lab::Sim;
+use jump_lab::humanoid::Landing;
+use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
 use jump_planner::robot::Quadruped;
 
@@ -66,8 +70,34 @@ pub(crate) fn whole(
     }
 }
 
+/// One of these names.
+fn named<T: FromStr<Err = String> + Clone + Send + Sync + 'static>(
+    names: impl IntoIterator<Item = PossibleValue>,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<T>())
+}
+
+/// A name with what it means.
+fn value(name: &'static str, what: &'static str) -> PossibleValue {
+    PossibleValue::new(name).help(what)
+}
+
+/// Simulators by their names.
+pub(crate) fn sims() -> impl TypedValueParser<Value = Sim> {
+    named(Sim::ALL.map(|sim| value(sim.name(), sim.what())))
+}
+
+/// Measures against disturbances by their names.
+pub(crate) fn measures() -> impl TypedValueParser<Value = Measure> {
+    named(Measure::ALL.map(|measure| value(measure.name(), measure.what())))
+}
+
+/// Landings of a humanoid by their names.
+pub(crate) fn landings() -> impl TypedValueParser<Value = Landing> {
+    named(Landing::ALL.map(|landing| value(landing.name(), landing.what())))
+}
+
 /// Planners by their names.
 pub(crate) fn planners() -> impl TypedValueParser<Value = Planner> {
-    PossibleValuesParser::new(Planner::ALL.map(Planner::name))
-        .try_map(|name| name.parse::<Planner>())
+    named(Planner::ALL.map(|planner| PossibleValue::new(planner.name())))
 }

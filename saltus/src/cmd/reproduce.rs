@@ -5,9 +5,9 @@ use super::failure::Failure;
 use super::folder::{create, describe, write};
 use super::interrupt;
 use super::output::Output;
-use crate::jump::plant::Sim;
 use crate::reproduce::{Row, humanoid, json, page, quadruped};
 use core::ops::ControlFlow;
+use jump_lab::Sim;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -1,10 +1,6 @@
 //! The report of a humanoid jump, with the figures of paper B: 1 (the profile), 2 and 3 (joints and centre of mass), 5 (the
 //! animation), 6 (the base's pitch with and without the rows on angular momentum).
 
-use super::execute::Run;
-use super::log::Sample;
-use super::{JOINTS, ROBOT, State, Task, links, poses};
-use crate::log::Log;
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{
     COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, shape, turn, vector,
@@ -12,6 +8,10 @@ use crate::report::{
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
 use jump_control::Phase;
+use jump_lab::humanoid::execute::Run;
+use jump_lab::humanoid::log::Sample;
+use jump_lab::humanoid::{JOINTS, ROBOT, State, Task, links, poses};
+use jump_lab::log::Log;
 use nalgebra::Vector3;
 use rbd_core::{Model, Transform};
 use serde_json::{Value, json};

@@ -11,8 +11,8 @@
 
 mod schema;
 
-use crate::log::Log;
 use crate::report::{FRAME, round};
+use jump_lab::log::Log;
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -1,13 +1,14 @@
 //! Paper B: the jumps of iCub.
 
 use super::{Row, write_report};
-use crate::humanoid::execute::{self, Run};
-use crate::humanoid::judge::Judged;
-use crate::humanoid::{GRAVITY, Landing, Task, report};
-use crate::jump::plant::Sim;
-use crate::lab::Disturbance;
+use crate::humanoid::{report, table};
 use core::ops::ControlFlow;
 use jump_control::takeoff_speed;
+use jump_lab::Sim;
+use jump_lab::humanoid::execute::{self, Run};
+use jump_lab::humanoid::judge::Judged;
+use jump_lab::humanoid::{GRAVITY, Landing, Task};
+use jump_lab::lab::Disturbance;
 use std::path::Path;
 
 fn run(task: &Task, sim: Sim) -> Result<Run, String> {
@@ -54,7 +55,7 @@ pub(crate) fn rows(
                     rows.extend(jump(row, &task, &held, &free, sim, [com, soles]));
                     let judged = Judged::of(&task, &held);
                     let nominal = Disturbance::NOMINAL;
-                    let table = judged.table(&task, &held, sim.name(), &nominal);
+                    let table = table::table(&judged, &task, &held, sim.name(), &nominal);
                     let html = report::html(&task, &held, Some(&free), &table);
                     let name = format!("{}-{}", name.replace('/', "-"), sim.name());
                     if let Err(error) = html.and_then(|html| write_report(folder, &name, &html)) {

@@ -8,7 +8,7 @@ pub(crate) mod quadruped;
 mod touchdown;
 
 use crate::cmd::expected::Found;
-use crate::jump::plant::Sim;
+use jump_lab::Sim;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -20,7 +20,7 @@ pub(crate) fn html(rows: &[Row], reports: &[String]) -> String {
             escape(&row.item),
             escape(&row.theirs),
             escape(&row.ours),
-            row.sim.map_or("", crate::jump::plant::Sim::name),
+            row.sim.map_or("", jump_lab::Sim::name),
             escape(&row.reason),
             mark = row.mark(),
         )

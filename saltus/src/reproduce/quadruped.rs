@@ -2,11 +2,11 @@
 
 use super::touchdown;
 use super::{Row, direct, exponential, write_report};
-use crate::jump::execute::{self, Run};
-use crate::jump::judge::Judged;
-use crate::jump::plant::Sim;
-use crate::jump::report;
+use crate::quadruped::report;
 use core::ops::ControlFlow;
+use jump_lab::Sim;
+use jump_lab::quadruped::execute::{self, Run};
+use jump_lab::quadruped::judge::Judged;
 use jump_planner::answer::Answer;
 use jump_planner::bounds::impossible;
 use jump_planner::planned::Planner;

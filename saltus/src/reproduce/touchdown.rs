@@ -2,11 +2,11 @@
 
 use super::Row;
 use super::quadruped::outcome;
-use crate::jump::FOOT_COUNT;
-use crate::jump::execute::Run;
-use crate::jump::judge::{Judged, tilt};
-use crate::jump::log::Sample;
-use crate::jump::plant::Sim;
+use jump_lab::Sim;
+use jump_lab::quadruped::FOOT_COUNT;
+use jump_lab::quadruped::execute::Run;
+use jump_lab::quadruped::judge::{Judged, tilt};
+use jump_lab::quadruped::log::Sample;
 use jump_planner::reference::Reference;
 use jump_planner::task::Task;
 use landing::Settings;

@@ -4,10 +4,10 @@ use super::study::{Study, refuse_strangers};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::write;
 use crate::cmd::interrupt;
-use crate::jump::envelope::{Counts, wilson};
-use crate::jump::measure::Measure;
 use core::fmt::Write;
 use indicatif::ProgressBar;
+use jump_lab::quadruped::envelope::{Counts, wilson};
+use jump_lab::quadruped::measure::Measure;
 use serde_json::{Map, Value, json};
 
 /// Name of the row with all measures, and of its folder.

@@ -1,17 +1,18 @@
 //! `saltus envelope`: how often a jump succeeds, over what may differ from the plan.
 
 mod ablation;
+mod picture;
 mod study;
 
 use super::failure::Failure;
 use super::folder::check_new;
 use super::interrupt;
 use super::output::{Output, whole};
-use crate::cmd::output::planners;
-use crate::jump::envelope::{Counts, table};
-use crate::jump::measure::Measure;
-use crate::jump::plant::Sim;
-use crate::lab::{Interface, PlantArgument};
+use crate::cmd::output::{measures, planners, sims};
+use jump_lab::Sim;
+use jump_lab::lab::{Interface, PlantArgument};
+use jump_lab::quadruped::envelope::{Counts, table};
+use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
 use jump_planner::task::Task;
 use serde_json::{Value, json};
@@ -34,7 +35,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
     seed: u64,
     /// Simulator.
-    #[arg(long, default_value = "native")]
+    #[arg(long, default_value = "native", value_parser = sims())]
     sim: Sim,
     /// How the legs are planned along the single rigid body's motion.
     #[arg(long, default_value = "whole-body", value_parser = planners())]
@@ -46,7 +47,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "torque")]
     interface: Interface,
     /// Measures against disturbances to do without, separated by commas.
-    #[arg(long, value_name = "MEASURE", value_delimiter = ',')]
+    #[arg(long, value_name = "MEASURE", value_delimiter = ',', value_parser = measures())]
     without: Vec<Measure>,
     /// The study with all measures, and once without each.
     #[arg(long, conflicts_with = "without")]

@@ -3,16 +3,17 @@
 //! Sample i of seed S is the same run on every machine, whatever the shard. Every finished sample is one line in the shard's
 //! file, so a run that was stopped goes on where it was, and the files of all shards in one folder make one table.
 
+use super::picture::picture;
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{describe, write};
 use crate::cmd::interrupt;
-use crate::jump::envelope::{Sample, picture, table};
-use crate::jump::execute::{self, Trial};
-use crate::jump::judge::Judged;
-use crate::jump::measure::Measure;
-use crate::jump::plant::Sim;
-use crate::lab::{Interface, Lab, PlantArgument};
 use indicatif::ProgressBar;
+use jump_lab::Sim;
+use jump_lab::lab::{Interface, Lab, PlantArgument};
+use jump_lab::quadruped::envelope::{Sample, table};
+use jump_lab::quadruped::execute::{self, Trial};
+use jump_lab::quadruped::judge::Judged;
+use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
 use jump_planner::reference::Reference;
 use jump_planner::task::Task;
@@ -136,7 +137,7 @@ impl Study<'_> {
 
     fn sample(&self, reference: &Reference, index: u64) -> Result<Sample, String> {
         // Seed 0 would be the nominal run.
-        let seed = crate::noise::mix(self.seed, index).max(1);
+        let seed = jump_lab::noise::mix(self.seed, index).max(1);
         let trial = Trial {
             sim: self.sim,
             disturbance: PlantArgument::plant(self.plant.as_ref(), Lab::A1, seed),

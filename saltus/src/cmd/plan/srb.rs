@@ -1,8 +1,8 @@
 //! The SRB stage.
 
 use super::{Args, Planned};
-use crate::noise::Noise;
 use crate::reference::{FEET, File};
+use jump_lab::noise::Noise;
 use ocp_solver::{Settings, Stage};
 use serde_json::{Value, json};
 use srb_opt::{Problem, State};

@@ -1,9 +1,9 @@
 //! The whole-body stage.
 
 use super::{Args, Planned};
-use crate::noise::Noise;
 use crate::reference::whole_body::{DT, N, SrbMotion};
 use crate::reference::{FEET, File};
+use jump_lab::noise::Noise;
 use nalgebra::Vector3;
 use ocp_solver::Stage;
 use serde_json::{Value, json};

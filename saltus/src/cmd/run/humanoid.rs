@@ -3,8 +3,9 @@
 use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::check_new;
-use crate::humanoid::{Task, execute, judge::Judged, log, report};
-use crate::lab::Lab;
+use crate::humanoid::{json, report, table};
+use jump_lab::humanoid::{Task, execute, judge::Judged, log};
+use jump_lab::lab::Lab;
 use std::process::ExitCode;
 
 /// Runs the jump.
@@ -16,7 +17,13 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
     let jump = |task: &Task| execute::run(task, args.sim, &disturbance, args.seed, |_, _| {});
     let run = jump(task)?;
     let judged = Judged::of(task, &run);
-    let result = judged.json(task, &run, (args.sim.name(), args.seed), &disturbance);
+    let result = json::json(
+        &judged,
+        task,
+        &run,
+        (args.sim.name(), args.seed),
+        &disturbance,
+    );
     // Figure 6 of paper B compares a jump with one that leaves the angular momentum alone.
     let free = if task.momentum {
         bar.set_message("simulating without control of the angular momentum");
@@ -28,7 +35,7 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
         None
     };
     bar.finish_and_clear();
-    let table = judged.table(task, &run, args.sim.name(), &disturbance);
+    let table = table::table(&judged, task, &run, args.sim.name(), &disturbance);
     if args.output.is_text() {
         for (name, value, _) in &table {
             say!("{name:26} {value}");

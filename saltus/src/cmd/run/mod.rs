@@ -6,11 +6,11 @@ mod quadruped;
 use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
-use super::output::{planners, whole};
-use crate::humanoid as icub;
-use crate::jump::plant::Sim;
-use crate::lab::{Disturbance, Interface, Lab, PlantArgument};
-use crate::log::Log;
+use super::output::{landings, planners, sims, whole};
+use jump_lab::Sim;
+use jump_lab::humanoid as icub;
+use jump_lab::lab::{Disturbance, Interface, Lab, PlantArgument};
+use jump_lab::log::Log;
 use jump_planner::planned::Planner;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub(crate) struct Args {
     #[arg(long)]
     task: Option<String>,
     /// Simulator.
-    #[arg(long, default_value = "native")]
+    #[arg(long, default_value = "native", value_parser = sims())]
     sim: Sim,
     /// Seed of the lab: 0 is the nominal run, others draw what differs from the plan, and the noise.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[arg(long, allow_negative_numbers = true, value_parser = share)]
     torque_share: Option<f64>,
     /// Humanoid tasks: what holds the robot in flight and landing [default: qp].
-    #[arg(long)]
+    #[arg(long, value_parser = landings())]
     landing: Option<icub::Landing>,
     /// What differs from the plan, instead of a seed's draw: lab, noise or KEY=VALUE, separated by commas, such as
     /// payload=2@0,0,0.05,ground=soft; `saltus verdicts --ranges` lists the keys.

@@ -3,20 +3,20 @@
 use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{check_file, check_new, describe, write_file};
-use crate::jump::execute::Trial;
-use crate::jump::judge::Judged;
-use crate::jump::programs::Programs;
-use crate::jump::{execute, log, report, strip};
-use crate::lab::Lab;
+use crate::quadruped::{json as result_json, report, strip};
 use crate::report::Line;
+use crate::verdict;
 use indicatif::ProgressBar;
+use jump_lab::lab::Lab;
+use jump_lab::quadruped::execute::Trial;
+use jump_lab::quadruped::judge::Judged;
+use jump_lab::quadruped::programs::Programs;
+use jump_lab::quadruped::{Planned, execute, log};
 use jump_planner::answer::Answer;
-use jump_planner::audit::check_values;
 use jump_planner::bounds::impossible;
 use jump_planner::planned::{Origin, Planner};
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
-use jump_planner::stored;
 use jump_planner::task::{SrbPlan, Task};
 use serde_json::json;
 use std::path::Path;
@@ -79,7 +79,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let wall = clock.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let judged = Judged::of(task, reference, &run);
-    let result = judged.json(task, made.srb.as_ref(), reference, &run, &trial);
+    let result = result_json::json(&judged, task, made.srb.as_ref(), reference, &run, &trial);
     let table = table(&made, &run, &judged, &trial, wall);
     if args.output.is_text() {
         for (name, value, _) in &table {
@@ -128,15 +128,12 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
         Some(urdf) => format!("{}: {error}", urdf.display()),
         None => error.to_string(),
     })?;
-    let plan = stored::open(&bytes, &robot).map_err(|error| show(&error))?;
-    check_values(&robot, &plan).map_err(|error| show(&error))?;
-    let name = args.task.as_deref().unwrap_or(plan.header().task);
-    let task = Task::load_for(name, args.robot.as_deref(), &args.lock).map_err(|error| {
-        show(&format!(
-            "its task cannot be read, give it with --task: {error}"
-        ))
-    })?;
-    let reference = stored::reference(&plan, &task).map_err(|error| show(&error))?;
+    let planned = Planned::open(&robot, &bytes, |stored| {
+        let name = args.task.as_deref().unwrap_or(stored);
+        Task::load_for(name, args.robot.as_deref(), &args.lock)
+            .map_err(|error| format!("its task cannot be read, give it with --task: {error}"))
+    });
+    let Planned { task, reference } = planned.map_err(|error| show(&error))?;
     Ok(Made {
         task,
         srb: None,
@@ -167,7 +164,7 @@ fn table(
     let seconds = |x: Option<f64>| x.map_or("never".to_owned(), |x| format!("{x:.3} s"));
     let span = run.samples.len() as f64 * 1e-3;
     let mut lines = vec![plain("task", made.task.name.clone())];
-    lines.extend(judged.verdict.lines());
+    lines.extend(verdict::lines(&judged.verdict));
     lines.extend(plan_lines(made));
     lines.extend([
         plain(

@@ -3,8 +3,8 @@
 use super::Args;
 use super::subject::Subject;
 use crate::cmd::failure::Failure;
-use crate::jump::plant::Sim;
 use core::fmt::Write;
+use jump_lab::Sim;
 use serde_json::{Value, json};
 use std::process::ExitCode;
 

@@ -1,8 +1,8 @@
 //! The table of measures: a line per task and simulator.
 
 use super::subject::Cell;
-use crate::verdict::Verdict;
 use core::fmt::Write;
+use jump_lab::verdict::Verdict;
 
 /// As Markdown.
 pub(super) fn table(cells: &[Cell]) -> String {

@@ -3,16 +3,16 @@
 mod agreement;
 mod conditions;
 mod measures;
+mod ranges;
 mod subject;
 
 use super::expected::{Expected, Found};
 use super::failure::Failure;
 use super::interrupt;
-use super::output::{Output, whole};
-use crate::jump::plant::Sim;
-use crate::lab::{Interface, PlantArgument, keys};
-
+use super::output::{Output, sims, whole};
 use indicatif::ProgressBar;
+use jump_lab::Sim;
+use jump_lab::lab::{Interface, PlantArgument};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::json;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// Tasks, by name or file; by default the nine of A1.
     tasks: Vec<String>,
     /// Simulators; by default all that this build has.
-    #[arg(long)]
+    #[arg(long, value_parser = sims())]
     sim: Vec<Sim>,
     /// What differs from the plan; as in `saltus run`.
     #[arg(long)]
@@ -77,7 +77,7 @@ impl Args {
 /// Runs the command. Exit code 0 when every verdict is on target, or as expected; 2 when one is not.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     if args.ranges {
-        put!("{}", keys::markdown());
+        put!("{}", ranges::markdown());
         return Ok(ExitCode::SUCCESS);
     }
     args.sim.iter().try_for_each(|sim| sim.check())?;

@@ -1,12 +1,13 @@
 //! What is judged: a task with its plan, run under a condition.
 
 use crate::cmd::expected::Found;
-use crate::humanoid;
-use crate::jump::execute::{self, Trial};
-use crate::jump::judge::Judged;
-use crate::jump::plant::Sim;
-use crate::lab::{Interface, Lab, PlantArgument};
-use crate::verdict::{TARGET, Verdict};
+use crate::verdict;
+use jump_lab::Sim;
+use jump_lab::humanoid;
+use jump_lab::lab::{Interface, Lab, PlantArgument};
+use jump_lab::quadruped::execute::{self, Trial};
+use jump_lab::quadruped::judge::Judged;
+use jump_lab::verdict::{TARGET, Verdict};
 use jump_planner::answer::Answer;
 use jump_planner::bounds::impossible;
 use jump_planner::planned::Planner;
@@ -198,7 +199,7 @@ impl Cell {
             "task": self.task,
             "sim": self.sim.name(),
             "outcome": self.outcome(),
-            "verdict": self.verdict.as_ref().ok().map(Verdict::json),
+            "verdict": self.verdict.as_ref().ok().map(verdict::json),
             "error": self.verdict.as_ref().err(),
         })
     }

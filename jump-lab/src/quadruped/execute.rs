@@ -1,0 +1,368 @@
+//! A quadruped's jump in the closed loop, and what is kept of it.
+
+use super::log::Sample;
+use super::measure::Measure;
+use super::plant::plant;
+use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
+use crate::Sim;
+use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
+use crate::lab::{Disturbance, Interface};
+use crate::verdict::{Hardware, Tick as HardwareTick};
+use jump_control::{Fault, Phase, Plan, sample};
+use jump_machine::{Jump, Machine, Settings, Tick, Work};
+use jump_planner::reference::Reference;
+use jump_planner::robot::Quadruped;
+use jump_planner::stored::Stored;
+use jump_planner::task::Task;
+use landing::Outcome;
+use nalgebra::Vector3;
+use rbd_core::Model;
+use state_est::Foot;
+
+/// Time of standing still before the jump, s.
+pub const HOLD: f64 = 0.3;
+/// Time after touchdown at which the robot must stand, s.
+pub const SETTLE: f64 = 2.0;
+/// Force at which a foot is certainly loaded, N.
+const LOADED: f64 = 15.0;
+/// Force on a foot that counts as its touchdown, N.
+const TOUCHDOWN: f64 = 15.0;
+
+/// Which run of a plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a> {
+    /// The simulator.
+    pub sim: Sim,
+    /// How the lab differs from the plan.
+    pub disturbance: Disturbance,
+    /// Of the noise.
+    pub seed: u64,
+    /// How the motors are commanded.
+    pub interface: Interface,
+    /// Measures that the controller does without.
+    pub without: &'a [Measure],
+}
+
+impl Trial<'_> {
+    /// The nominal run.
+    #[must_use]
+    pub const fn nominal(sim: Sim) -> Self {
+        Self {
+            sim,
+            disturbance: Disturbance::NOMINAL,
+            seed: 0,
+            interface: Interface::Torque,
+            without: &[],
+        }
+    }
+
+    /// Nothing differs from the plan.
+    #[must_use]
+    pub fn is_nominal(&self) -> bool {
+        self.disturbance == Disturbance::NOMINAL
+    }
+}
+
+/// Everything a run leaves behind.
+pub struct Run {
+    robot: Quadruped,
+    /// Of the container whose bytes the machine followed.
+    pub plan_checksum: u32,
+    /// One per millisecond.
+    pub samples: Vec<Sample>,
+    /// Of the machine, in the end.
+    pub final_phase: Phase,
+    /// Why the machine gave up, where it did.
+    pub fault: Option<Fault>,
+    /// When a foot touched the ground after the flight, s.
+    pub first_contact: Option<f64>,
+    /// What the run asked of motors, joints and supply.
+    pub hardware: Hardware<JOINTS>,
+    /// Largest torque of a joint, N m.
+    pub peak_torque: f64,
+    /// Largest force on a foot, N.
+    pub peak_foot_force: f64,
+    /// Ticks of the plant, of the machine in the push-off by Cartesian feedback, and in the landing.
+    pub ticks: [u64; 3],
+    /// Programs of the landing that were solved.
+    pub qp_solves: u64,
+    /// Those without an answer.
+    pub qp_failures: u64,
+    /// Most iterations of one.
+    pub qp_max_iterations: u32,
+    /// Largest errors of the estimated base: m, rad.
+    pub estimate_errors: [f64; 2],
+}
+
+impl Run {
+    pub(super) fn new(task: &Task, plan_checksum: u32, tick: f64) -> Self {
+        let robot = &task.robot;
+        let weight = task.problem.mass * task.problem.gravity;
+        Self {
+            robot: *robot,
+            plan_checksum,
+            samples: Vec::new(),
+            final_phase: Phase::Hold,
+            fault: None,
+            first_contact: None,
+            hardware: Hardware::new(
+                robot.budgets,
+                robot.drives(),
+                Model::limits(robot),
+                weight,
+                tick,
+            ),
+            peak_torque: 0.0,
+            peak_foot_force: 0.0,
+            ticks: [0; 3],
+            qp_solves: 0,
+            qp_failures: 0,
+            qp_max_iterations: 0,
+            estimate_errors: [0.0; 2],
+        }
+    }
+
+    /// What one tick of the machine did.
+    fn count(&mut self, tick: &Tick) {
+        let Work::Landing(outcome) = tick.work else {
+            self.ticks[1] += u64::from(tick.work == Work::Cartesian);
+            return;
+        };
+        self.ticks[2] += 1;
+        match outcome {
+            Outcome::Airborne => {}
+            Outcome::Solved(iterations) => {
+                self.qp_solves += 1;
+                self.qp_max_iterations = self.qp_max_iterations.max(iterations);
+            }
+            Outcome::Failed(_) | Outcome::BadData => {
+                self.qp_solves += 1;
+                self.qp_failures += 1;
+            }
+        }
+    }
+
+    /// Extremes and events of one tick of the plant.
+    fn observe(&mut self, world: &World, step: &Step<JOINTS>, phase: Phase) {
+        let plant = world.plant();
+        self.ticks[0] += 1;
+        let delivered = plant.delivered();
+        let most = delivered.iter().fold(0.0, |m, tau| f64::max(m, tau.abs()));
+        self.peak_torque = self.peak_torque.max(most);
+        let forces = plant.contact_forces_w();
+        let feet = forces[..FOOT_COUNT].iter().map(Vector3::norm);
+        let foot = feet.fold(0.0, f64::max);
+        self.peak_foot_force = self.peak_foot_force.max(foot);
+        let looking = matches!(phase, Phase::PreLanding | Phase::Landing);
+        if self.first_contact.is_none() && looking && foot > TOUCHDOWN {
+            self.first_contact = Some(step.time);
+        }
+        let owners = self
+            .robot
+            .owners
+            .iter()
+            .zip(forces)
+            .zip(plant.link_forces());
+        let touches: Vec<(&'static str, f64)> = owners
+            .enumerate()
+            // A foot may touch the ground, and no link.
+            .map(|(i, ((name, ground), link))| {
+                let ground = if i < FOOT_COUNT { 0.0 } else { ground.norm() };
+                (*name, ground + link)
+            })
+            .filter(|(_, force)| *force > 0.0)
+            .collect();
+        self.hardware.add(&HardwareTick {
+            time: step.time,
+            dt: step.dt,
+            stage: stage(phase),
+            asked: &step.asked,
+            given: delivered,
+            speeds: &step.speeds,
+            stops: plant.stop_torques(),
+            ground: forces.iter().sum::<Vector3<f64>>().norm(),
+            power: step.power,
+            touches: &touches,
+        });
+    }
+}
+
+/// Runs the jump nominally; `progress` hears the plan time and the phase once per simulated 10 ms.
+///
+/// # Errors
+/// A sentence: the machine refuses the jump, this build lacks the simulator, or that fails.
+pub fn run(
+    task: &Task,
+    reference: &Reference,
+    sim: Sim,
+    progress: impl FnMut(f64, Phase),
+) -> Result<Run, String> {
+    let trial = Trial::nominal(sim);
+    run_watched(task, reference, trial, |_, _| {}, progress, |_| {})
+}
+
+/// Force of the ground on each foot, N.
+fn foot_forces(world: &World) -> [f64; FOOT_COUNT] {
+    let forces = world.plant().contact_forces_w();
+    core::array::from_fn(|i| forces[i].norm())
+}
+
+/// The feet of a robot.
+fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
+    Feet {
+        feet: robot.feet.map(|frame| Foot {
+            frame,
+            radius: robot.foot_radius,
+        }),
+        loaded: LOADED,
+        settling: 5,
+        forces: foot_forces,
+    }
+}
+
+/// What is kept of a run.
+struct Keeper<'a, 'p, T, W> {
+    run: Run,
+    plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
+    /// Node of the plan's last sample.
+    node: usize,
+    /// Whether the machine is told how old its observations are.
+    delayed: bool,
+    tamper: T,
+    watch: W,
+}
+
+impl<'m, T, W> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
+    for Keeper<'_, '_, T, W>
+where
+    T: FnMut(u64, &mut Observed),
+    W: FnMut(&landing::Workspace<f64, 12, 4>),
+{
+    fn tell(&mut self, k: u64, told: &mut Observed) {
+        if !self.delayed && told.measured.age.is_finite() {
+            told.measured.age = 0.0;
+        }
+        (self.tamper)(k, told);
+    }
+
+    fn ticked(
+        &mut self,
+        t: f64,
+        tick: &Tick,
+        machine: &Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+        world: &World,
+    ) {
+        self.run.count(tick);
+        let mut commanded_forces_w = [Vector3::zeros(); FOOT_COUNT];
+        if let Work::Landing(Outcome::Solved(_) | Outcome::Failed(_)) = tick.work {
+            commanded_forces_w = machine.workspace().forces_w();
+            (self.watch)(machine.workspace());
+        }
+        let planned = sample(self.plan, t, self.node);
+        self.node = planned.node;
+        let robot = &self.run.robot;
+        let sample = Sample {
+            commanded_forces_w,
+            ..record(robot, world, tick.phase, self.plan, &planned, t)
+        };
+        self.run.samples.push(sample);
+    }
+
+    fn stepped(
+        &mut self,
+        step: &Step<JOINTS>,
+        machine: &Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+        world: &World,
+    ) {
+        self.run.observe(world, step, machine.phase());
+    }
+}
+
+/// As [`run`], for any trial; `tamper` may change what the controller is told at each millisecond since the start, `watch` sees the
+/// landing's memory after every tick that solved a program.
+///
+/// # Errors
+/// A sentence: the machine refuses the jump, this build lacks the simulator, or that fails.
+pub fn run_watched(
+    task: &Task,
+    reference: &Reference,
+    trial: Trial<'_>,
+    tamper: impl FnMut(u64, &mut Observed),
+    progress: impl FnMut(f64, Phase),
+    watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
+) -> Result<Run, String> {
+    let robot = task.robot;
+    let (drives, build) = (robot.drives(), robot.build(&task.start));
+    let mut settings = Settings::new(&build, robot.feet, drives, task.start.joints);
+    for measure in trial.without {
+        measure.leave(&mut settings);
+    }
+    let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
+    let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
+    let mut workspace = landing::Workspace::new();
+    let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
+    let armed = machine.arm(jump, 0.0);
+    armed.map_err(|refusal| refusal.to_string())?;
+    let limits = (Model::limits(&robot), drives);
+    let setting = Setting {
+        disturbance: &trial.disturbance,
+        interface: trial.interface,
+        seed: trial.seed,
+        start: &task.start,
+    };
+    let mut closed = ClosedLoop {
+        machine,
+        sensors: Sensors::<_, _, _, _, { FOOT_COUNT + 2 }>::new(robot, feet(&robot), &setting),
+        drive: Drive::new(
+            &trial.disturbance,
+            (trial.interface, trial.seed),
+            limits,
+            &robot.budgets,
+        ),
+        world: plant(trial.sim, task, &trial.disturbance)?,
+    };
+    let mut keeper = Keeper {
+        run: Run::new(task, stored.checksum(), closed.world.plant().tick()),
+        plan: &jump.plan,
+        node: 0,
+        delayed: !trial.without.contains(&Measure::Delay),
+        tamper,
+        watch,
+    };
+    let end = reference.touchdown + SETTLE + 0.5;
+    closed.run((HOLD, end), &mut keeper, progress)?;
+    let mut run = keeper.run;
+    run.final_phase = closed.machine.phase();
+    run.fault = closed.machine.fault();
+    run.estimate_errors = closed.sensors.worst;
+    Ok(run)
+}
+
+fn record(
+    robot: &Quadruped,
+    world: &World,
+    phase: Phase,
+    plan: &Plan<'_, f64, JOINTS, FOOT_COUNT>,
+    planned: &jump_control::Reference<f64, JOINTS>,
+    t: f64,
+) -> Sample {
+    let (q, v) = (world.configuration(), world.velocity());
+    let node = plan.node(planned.node);
+    Sample {
+        time: t,
+        phase,
+        position: q.base.translation,
+        orientation: so3::quat::from_rotation(&q.base.rotation),
+        velocity_w: q.base.rotation * v.base.linear,
+        omega_b: v.base.angular,
+        com: robot.com(&q),
+        joints: q.joints,
+        joint_velocities: v.joints,
+        torques: *world.plant().delivered(),
+        forces_w: *world.plant().contact_forces_w(),
+        planned_position: node.map_or_else(Vector3::zeros, |n| n.base.translation),
+        planned_joints: planned.joints,
+        planned_forces_w: node.map_or([Vector3::zeros(); FOOT_COUNT], |n| n.forces_w),
+        commanded_forces_w: [Vector3::zeros(); FOOT_COUNT],
+    }
+}

@@ -1,0 +1,241 @@
+//! What makes an execution robust; a study can do without each of them, which shows what it is worth.
+
+use super::{FOOT_COUNT, JOINTS, Node};
+use core::str::FromStr;
+use jump_machine::Settings;
+use jump_planner::planned::Planner;
+use jump_planner::reference::Reference;
+use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
+use jump_planner::whole_body::FRICTION_SMOOTHING;
+use rbd_core::{Model, Tree, joint_friction};
+
+/// One measure against disturbances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Measure {
+    /// Weighing while the robot waits, and the plan's torques scaled by what it weighs.
+    Weighing,
+    /// Rotor inertia and joint friction in the plan's torques.
+    Drives,
+    /// Plan forces that keep to a share of friction, torque and speed.
+    Margins,
+    /// References as late as the measurements that they are compared with.
+    Delay,
+    /// The plan's torques a millisecond early, for what holding and the slew limit delay them by.
+    Lookahead,
+    /// A landing posture that follows tilt and speed before touchdown.
+    Posture,
+    /// Forces of the feet against a wrong turning rate.
+    BaseFeedback,
+    /// Plan forces that keep their direction in the world, however the body leans.
+    Direction,
+    /// Feet pulled to their places in the world, however the body leans, while fewer than all push.
+    AttitudeCompensation,
+    /// A touchdown and an attitude there that are predicted, not taken from the plan and from now.
+    Retiming,
+    /// Legs drawn in or stretched in flight, so that the body turns on time.
+    InertiaShaping,
+    /// Stiffer gains of a body that rests off its target.
+    Resting,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::Weighing,
+        Self::Drives,
+        Self::Margins,
+        Self::Delay,
+        Self::Lookahead,
+        Self::Posture,
+        Self::BaseFeedback,
+        Self::Direction,
+        Self::AttitudeCompensation,
+        Self::Retiming,
+        Self::InertiaShaping,
+        Self::Resting,
+    ];
+
+    /// Its name on the command line and in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Weighing => "weighing",
+            Self::Drives => "drives",
+            Self::Margins => "margins",
+            Self::Delay => "delay",
+            Self::Lookahead => "lookahead",
+            Self::Posture => "posture",
+            Self::BaseFeedback => "steady",
+            Self::Direction => "direction",
+            Self::AttitudeCompensation => "grip",
+            Self::Retiming => "retiming",
+            Self::InertiaShaping => "tuck",
+            Self::Resting => "resting",
+        }
+    }
+
+    /// What it is, in a line.
+    #[must_use]
+    pub const fn what(self) -> &'static str {
+        match self {
+            Self::Weighing => {
+                "Weighing while the robot waits, and the plan's torques scaled by what it weighs"
+            }
+            Self::Drives => "Rotor inertia and joint friction in the plan's torques",
+            Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
+            Self::Delay => "References as late as the measurements that they are compared with",
+            Self::Lookahead => {
+                "The plan's torques a millisecond early, for what holding and the slew limit delay them by"
+            }
+            Self::Posture => "A landing posture that follows tilt and speed before touchdown",
+            Self::BaseFeedback => "Forces of the feet against a wrong turning rate",
+            Self::Direction => {
+                "Plan forces that keep their direction in the world, however the body leans"
+            }
+            Self::AttitudeCompensation => {
+                "Feet pulled to their places in the world, however the body leans, while fewer than all push"
+            }
+            Self::Retiming => {
+                "A touchdown and an attitude there that are predicted, not taken from the plan and from now"
+            }
+            Self::InertiaShaping => "Legs drawn in or stretched in flight, so that the body turns on time",
+            Self::Resting => "Stiffer gains of a body that rests off its target",
+        }
+    }
+
+    /// Whether the plan is another without it.
+    #[must_use]
+    pub const fn is_planned(self) -> bool {
+        matches!(self, Self::Drives | Self::Margins)
+    }
+
+    /// Plans a task without these measures.
+    ///
+    /// # Errors
+    /// Why there is no plan.
+    pub fn plan(task: &Task, planner: Planner, without: &[Self]) -> Result<Reference, String> {
+        let mut task = task.clone();
+        if without.contains(&Self::Margins) {
+            let limits = &mut task.limits;
+            (limits.friction_share, limits.speed_share) = (1.0, 1.0);
+            limits.torque_shares = [1.0; 3];
+            task.problem.friction = limits.friction;
+        }
+        let body = task.solve()?;
+        let mut reference = planner.plan(&task, &body)?;
+        if without.contains(&Self::Drives) {
+            if planner != Planner::WholeBody {
+                return Err("only whole-body plans can do without drives".into());
+            }
+            forget_drives(&task.robot, &mut reference.nodes);
+            reference.store_torques()?;
+        }
+        Ok(reference)
+    }
+
+    /// Takes the measure out of the controller.
+    pub fn leave(self, settings: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
+        match self {
+            Self::Weighing => settings.max_payload = 0.0,
+            Self::Lookahead => settings.lookahead = 0.0,
+            // No time before touchdown is that long after it.
+            Self::Posture => settings.levelling = -f64::INFINITY,
+            Self::BaseFeedback => {
+                let feedback = &mut settings.base_feedback;
+                (feedback.stiffness, feedback.damping, feedback.turning) = (0.0, 0.0, 0.0);
+            }
+            Self::Direction => settings.base_feedback.direction = 0.0,
+            Self::AttitudeCompensation => settings.base_feedback.compensation = 0.0,
+            Self::Retiming => (settings.max_late, settings.foresight) = (0.0, 0.0),
+            Self::InertiaShaping => settings.inertia_shaping.gain = 0.0,
+            Self::Resting => settings.landing.resting = settings.landing.horizontal,
+            Self::Drives | Self::Margins | Self::Delay => {}
+        }
+    }
+}
+
+impl FromStr for Measure {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|measure| measure.name() == name);
+        found.ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            format!("no measure `{name}`; there are {names}")
+        })
+    }
+}
+
+/// Takes the torques that turn rotors and overcome joint friction out of a whole-body plan, whose accelerations are the
+/// differences of its nodes' velocities.
+fn forget_drives(robot: &Quadruped, nodes: &mut [Node]) {
+    let rotors = Tree::<f64, JOINTS>::bodies(robot).map(|body| body.rotor_inertia);
+    let mut rest = nodes;
+    while let [node, after @ ..] = rest {
+        let Some(next) = after.first() else { return };
+        let (now, then) = (node.joint_velocities, next.joint_velocities);
+        let dt = next.time - node.time;
+        let middle = core::array::from_fn(|i| 0.5 * (now[i] + then[i]));
+        let lost = joint_friction(Model::limits(robot), &middle, FRICTION_SMOOTHING);
+        for (i, torque) in node.torques.iter_mut().enumerate() {
+            *torque += lost[i] - rotors[i] * (then[i] - now[i]) / dt;
+        }
+        rest = after;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Measure, forget_drives};
+    use crate::quadruped::{JOINTS, Node, State};
+    use a1_model::{A1, a1};
+    use jump_planner::Velocity;
+    use jump_planner::robot::Quadruped;
+    use jump_planner::whole_body::FRICTION_SMOOTHING;
+    use rbd_core::{Posture, joint_friction, rnea};
+
+    #[test]
+    fn names_are_read_back() {
+        for measure in Measure::ALL {
+            assert_eq!(measure.name().parse(), Ok(measure));
+        }
+        assert!("weight".parse::<Measure>().is_err());
+    }
+
+    /// What is left are the torques of a robot without rotors and friction, by inverse dynamics.
+    #[test]
+    fn a_plan_without_drives_has_the_torques_of_a_robot_without_them() {
+        const DT: f64 = 0.005;
+        let robot = Quadruped::a1().unwrap();
+        let speeds = |k: usize| core::array::from_fn(|i| 0.3 * (i as f64 - 5.0) + 0.1 * k as f64);
+        let accelerations: [f64; JOINTS] = [0.1 / DT; JOINTS];
+        let middle = speeds(0).map(|speed: f64| speed + 0.05);
+        let q = State {
+            joints: core::array::from_fn(|i| 0.2 * i as f64 - 1.0),
+            ..State::NEUTRAL
+        };
+        let joints_only = |joints| Velocity {
+            joints,
+            ..Velocity::ZERO
+        };
+        let (v, a) = (joints_only(middle), joints_only(accelerations));
+        let with = rnea(&robot, &Posture::new(&robot, &q), &v, &a).joints;
+        let lost = joint_friction(&a1::LIMITS, &middle, FRICTION_SMOOTHING);
+        let mut nodes = [0, 1].map(|k| Node {
+            time: DT * k as f64,
+            joint_velocities: speeds(k),
+            ..Node::ZERO
+        });
+        nodes[0].torques = core::array::from_fn(|i| with[i] - lost[i]);
+        forget_drives(&robot, &mut nodes);
+        let without = rnea(&A1, &Posture::new(&A1, &q), &v, &a).joints;
+        for i in 0..JOINTS {
+            assert!((nodes[0].torques[i] - without[i]).abs() < 1e-9, "joint {i}");
+            // Otherwise nothing would be shown.
+            assert!((with[i] - lost[i] - without[i]).abs() > 1e-3, "joint {i}");
+        }
+        assert_eq!(nodes[1].torques, [0.0; JOINTS]);
+    }
+}
