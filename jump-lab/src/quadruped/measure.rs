@@ -99,7 +99,9 @@ impl Measure {
             Self::Retiming => {
                 "A touchdown and an attitude there that are predicted, not taken from the plan and from now"
             }
-            Self::InertiaShaping => "Legs drawn in or stretched in flight, so that the body turns on time",
+            Self::InertiaShaping => {
+                "Legs drawn in or stretched in flight, so that the body turns on time"
+            }
             Self::Resting => "Stiffer gains of a body that rests off its target",
         }
     }
