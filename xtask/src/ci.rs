@@ -19,6 +19,9 @@ pub(crate) struct Args {
     /// Only list the steps.
     #[arg(long)]
     list: bool,
+    /// Go on after a failure, to see all that fail in one pass.
+    #[arg(long)]
+    keep_going: bool,
     /// A command of cargo to run besides, as one word: the test command, which takes longest
     #[arg(long)]
     tests: Option<String>,
@@ -118,10 +121,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return Ok(());
     }
     let failed = AtomicBool::new(false);
-    lane(FIRST, &failed)?;
+    let lane = |steps: &[Step<'_>]| lane(steps, &failed, args.keep_going);
+    lane(FIRST)?;
     thread::scope(|scope| {
-        let beside = [RELEASE, FIRMWARE].map(|steps| scope.spawn(|| lane(steps, &failed)));
-        let here = lane(&host, &failed);
+        let beside = [RELEASE, FIRMWARE].map(|steps| scope.spawn(move || lane(steps)));
+        let here = lane(&host);
         beside.into_iter().fold(here, |before, lane| {
             before.and(
                 lane.join()
@@ -131,17 +135,21 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     })
 }
 
-/// Runs steps one after the other, until one fails in this lane or another.
-fn lane(steps: &[Step<'_>], failed: &AtomicBool) -> Result<()> {
+/// Runs steps one after the other, until one fails in this lane or another; or all of them, and names the first that failed.
+fn lane(steps: &[Step<'_>], failed: &AtomicBool, keep_going: bool) -> Result<()> {
+    let mut ended = Ok(());
     for (name, arguments) in steps {
-        if failed.load(Ordering::Relaxed) {
+        if failed.load(Ordering::Relaxed) && !keep_going {
             break;
         }
-        step(name, arguments)
-            .inspect_err(|_| failed.store(true, Ordering::Relaxed))
-            .with_context(|| format!("step `{name}`"))?;
+        let step = step(name, arguments).with_context(|| format!("step `{name}`"));
+        if let Err(error) = &step {
+            failed.store(true, Ordering::Relaxed);
+            println!("== {error:#}");
+        }
+        ended = ended.and(step);
     }
-    Ok(())
+    ended
 }
 
 /// Runs a step, and prints what it said once it has ended, so that lanes do not mix.
