@@ -1,5 +1,6 @@
 //! What the reports of all robots share: one HTML file with a jump in 3D and its plots, no network needed.
 
+use jump_control::Phase;
 use nalgebra::Vector3;
 use rbd_core::{Link, Shape, Transform};
 use serde_json::{Value, json};
@@ -66,6 +67,16 @@ pub(crate) fn shape(shape: &Shape<f64>) -> Value {
 pub(crate) fn turn(pose: &Transform<f64>) -> Value {
     let turn = so3::quat::from_rotation(&pose.rotation);
     json!(so3::quat::to_xyzw(&turn).map(|x| round(x, 4)))
+}
+
+/// Runs of equal phase: name, begin, end, by the phase and the time of a sample.
+pub(crate) fn phases<S>(samples: &[S], of: impl Fn(&S) -> (Phase, f64)) -> Vec<Value> {
+    let runs = samples.chunk_by(|a, b| of(a).0 == of(b).0);
+    let named = runs.filter_map(|run| {
+        let ((phase, begin), (_, last)) = (of(run.first()?), of(run.last()?));
+        Some(json!([format!("{phase:?}"), begin, last + 1e-3]))
+    });
+    named.collect()
 }
 
 /// One curve over samples.

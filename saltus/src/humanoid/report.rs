@@ -3,7 +3,7 @@
 
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{
-    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, shape, turn, vector,
+    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, phases, plot, round, shape, turn, vector,
 };
 use icub_model::gazebo::joint;
 use icub_model::{LIMITS, SOLES};
@@ -43,7 +43,7 @@ pub(crate) fn html(
             "nose": -0.07,
             "goal": [0.0, 0.0, 0.0],
         },
-        "phases": phases(&run.samples),
+        "phases": phases(&run.samples, |s| (s.phase, s.time)),
         "table": lines(table),
         "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
         "plots": plots(task, run, free)?,
@@ -119,17 +119,6 @@ fn frames(samples: &[Sample]) -> Value {
         "points": each(&|s| json!(limbs(s).as_flattened().iter().map(vector).collect::<Vec<_>>())),
         "forces": each(&forces),
     })
-}
-
-/// Runs of equal phase: name, begin, end.
-fn phases(samples: &[Sample]) -> Vec<Value> {
-    let runs = samples.chunk_by(|a, b| a.phase == b.phase);
-    let named = runs.filter_map(|run| {
-        let (first, last) = (run.first()?, run.last()?);
-        let name = format!("{:?}", first.phase);
-        Some(json!([name, first.time, last.time + 1e-3]))
-    });
-    named.collect()
 }
 
 fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, String> {

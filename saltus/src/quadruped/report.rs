@@ -2,7 +2,7 @@
 
 use crate::recording::{self, Frame, LIMBS, POINTS, Scene};
 use crate::report::{
-    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, plot, round, shape, turn, vector,
+    COLORS, FRAME, LIMIT, Line, POINT, curve, lines, page, phases, plot, round, shape, turn, vector,
 };
 use jump_lab::log::Log;
 use jump_lab::quadruped::execute::Run;
@@ -36,7 +36,7 @@ pub(crate) fn html(task: &Task, reference: &Reference, run: &Run, table: &[Line]
     let data = json!({
         "frames": frames(&task.robot, &run.samples),
         "scene": scene(task),
-        "phases": phases(&run.samples),
+        "phases": phases(&run.samples, |s| (s.phase, s.time)),
         "table": lines(table),
         "plot_times": run.samples.iter().step_by(POINT).map(|s| round(s.time, 4)).collect::<Vec<_>>(),
         "plots": plots(&task.robot, &run.samples, reference),
@@ -119,21 +119,6 @@ fn scene(task: &Task) -> Value {
         "nose": 0.145,
         "goal": vector(&(task.start.base.translation + task.goal)),
     })
-}
-
-/// Runs of equal phase: name, begin, end.
-fn phases(samples: &[Sample]) -> Vec<Value> {
-    samples
-        .chunk_by(|a, b| a.phase == b.phase)
-        .filter_map(|run| {
-            let (first, last) = (run.first()?, run.last()?);
-            Some(json!([
-                format!("{:?}", first.phase),
-                first.time,
-                last.time + 1e-3
-            ]))
-        })
-        .collect()
 }
 
 fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Value> {
