@@ -13,7 +13,6 @@ mod humanoid;
 mod plant;
 mod quadruped;
 mod recording;
-mod reference;
 mod report;
 mod reproduce;
 mod verdict;

@@ -20,7 +20,8 @@ fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
 
 /// The shipped problem file with one value changed.
 fn problem(path: &Path, change: impl FnOnce(&mut Value)) {
-    let mut file: Value = serde_json::from_str(include_str!("../data/a1-jumps.json")).unwrap();
+    let mut file: Value =
+        serde_json::from_str(include_str!("../../reference-problems/data/a1-jumps.json")).unwrap();
     change(&mut file);
     fs::write(path, file.to_string()).unwrap();
 }
@@ -132,7 +133,8 @@ fn a_problem_file_is_looked_at_before_it_is_solved() {
 #[test]
 fn a_solution_to_follow_is_looked_at() {
     let folder = folder("solution");
-    let shipped: Value = serde_json::from_str(include_str!("../data/srb/spin.json")).unwrap();
+    let shipped: Value =
+        serde_json::from_str(include_str!("../../reference-problems/data/srb/spin.json")).unwrap();
     for (pointer, value, word) in [
         ("/sol/T/0", json!(3e10), "T of"),
         ("/sol/R/3/0", json!(2.0), "R of"),

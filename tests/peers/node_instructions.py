@@ -1,6 +1,6 @@
 """Instructions per iteration and node of the single rigid body's solve, by part, from 25 to 400 intervals.
 
-usage: python node_instructions.py --saltus target/release/saltus --problem saltus/data/a1-jumps.json [--task lateral]
+usage: python node_instructions.py --saltus target/release/saltus --problem reference-problems/data/a1-jumps.json [--task lateral]
 
 Needs valgrind. Counts do not depend on what else the machine does, unlike the times of `srb-opt/examples/nodes.rs`.
 """

@@ -1,6 +1,6 @@
 """Times `saltus plan --stage whole-body` against CasADi + IPOPT on the same problems, in one run.
 
-usage: python wb_ratio.py --saltus target/release/saltus --peer tests/peers/a1_ipopt --srb saltus/data/srb [--task NAME ...] [--repeat 20]
+usage: python wb_ratio.py --saltus target/release/saltus --peer tests/peers/a1_ipopt --srb reference-problems/data/srb [--task NAME ...] [--repeat 20]
 
 --peer holds `wbto.py`, `verify.py`, `tasks.py` (needs casadi, numpy, pin); --srb the SRB solutions `NAME.json`. Per
 task: the median cold solve of both in one process each (ours counts every attempt), costs, violations, the worst

@@ -1,6 +1,6 @@
 """Contact-timing + single-rigid-body trajectory optimisation, eq. (1)-(3), problem (2).
 usage: python srb.py --task spin [--out sol.json] [--repeat 3] [--inertia table|composite] [--tol 1e-6] [--print]
-Prints one JSON line.  The exact problem is written down in saltus/data/a1-jumps.json."""
+Prints one JSON line.  The exact problem is written down in reference-problems/data/a1-jumps.json."""
 import argparse, json, os, sys, time, resource
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np, casadi as ca

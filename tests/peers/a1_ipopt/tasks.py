@@ -1,4 +1,4 @@
-"""Problem data shared by srb.py and wbto.py.  saltus/data/a1-jumps.json is the same as JSON."""
+"""Problem data shared by srb.py and wbto.py.  reference-problems/data/a1-jumps.json is the same as JSON."""
 import numpy as np
 
 # ---- robot, Table I -------------------------------------------------------

@@ -1,6 +1,6 @@
 """Whole-body trajectory optimisation, eq. (4)-(6), warm-started from an srb.py solution.
 usage: python wbto.py --task spin --srb solutions/srb_spin.json [--out sol.json] [--stance acc|pos] [--guess paper|ik] [--jit] [--print]
-Prints one JSON line.  The exact problem is written down in saltus/data/a1-jumps.json."""
+Prints one JSON line.  The exact problem is written down in reference-problems/data/a1-jumps.json."""
 import argparse, hashlib, json, os, subprocess, sys, tempfile, time, resource
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np, casadi as ca

@@ -57,7 +57,9 @@ pub(super) fn run(table: Table, short: bool) -> Result<()> {
         }
     }
     if matches!(table, Table::WholeBody) {
-        python.arg("--srb").arg(root.join("saltus/data/srb"));
+        python
+            .arg("--srb")
+            .arg(root.join("reference-problems/data/srb"));
     }
     run::succeed(&mut python)
 }

@@ -38,8 +38,8 @@ const SEEDS: &[(&str, &str)] = &[
     ("TASK", "jump-planner/tasks/a1/lateral-down.toml"),
     ("TASK", "jump-planner/tasks/a1/spin-90.toml"),
     ("TASK", "jump-planner/tasks/a1/barrel-roll-box.toml"),
-    ("PROBLEM", "saltus/data/a1-jumps.json"),
-    ("SRB", "saltus/data/srb/spin.json"),
+    ("PROBLEM", "reference-problems/data/a1-jumps.json"),
+    ("SRB", "reference-problems/data/srb/spin.json"),
     ("ROBOT", "models/a1.urdf"),
     ("EXPECTED", "jump-planner/tasks/expected.toml"),
 ];

@@ -1,22 +1,17 @@
 //! `saltus plan`: plan a task, or solve a reference problem.
 
 mod layout;
-mod srb;
+mod reference;
 mod task;
-mod whole_body;
 
 use super::failure::Failure;
-use super::folder::{check_file, describe, write_file};
+use super::folder::check_file;
 use super::output::{Output, whole};
-use crate::reference::whole_body::shipped;
-use crate::reference::{File, SHIPPED};
 use core::ops::ControlFlow;
 use jump_planner::range::Range;
-use ocp_solver::{Barrier, Progress, Solution};
-use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use ocp_solver::Progress;
+use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Instant;
 
 /// Options of `saltus plan`.
 #[derive(clap::Args, Clone)]
@@ -86,119 +81,16 @@ fn noise(text: &str) -> Result<f64, String> {
     Range::From(0.0, 10.0).check(number).map(|()| number)
 }
 
-/// What a stage hands back.
-struct Planned {
-    /// How the solve ended.
-    status: String,
-    /// Durations of the phases, s.
-    durations: Vec<f64>,
-    /// The stage's entry of the report.
-    report: Value,
-    /// The solution in the layout of the reference checkers.
-    solution: Value,
-}
-
-impl Planned {
-    fn number(&self, key: &str) -> f64 {
-        self.report[key].as_f64().unwrap_or(f64::NAN)
-    }
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.solution.as_deref().map_or(Ok(()), check_file)?;
-    if let Some(name) = &args.task {
-        return Ok(task::run(args, name));
+    match &args.task {
+        Some(name) => Ok(task::run(args, name)),
+        None => reference::run(args),
     }
-    if args.srb.is_some() && args.stage != "whole-body" {
-        return Err("--srb is for --stage whole-body, which follows that solution".into());
-    }
-    let text = match &args.problem {
-        Some(path) => read(path)?,
-        None => SHIPPED.to_owned(),
-    };
-    let shown = |error| match &args.problem {
-        Some(path) => format!(
-            "{}: {error}: it must be like saltus/data/a1-jumps.json",
-            path.display()
-        ),
-        None => error,
-    };
-    let file = File::parse(&text).map_err(shown)?;
-    let name = file.pick(args.reference.as_deref())?;
-    let mut report = json!({ "task": name });
-    let (key, planned) = if args.stage == "whole-body" {
-        let srb = match &args.srb {
-            Some(path) => read(path)?,
-            None => match shipped(name).filter(|_| args.problem.is_none()) {
-                Some(text) => text.to_owned(),
-                None => {
-                    let first = srb::solve(&args.plain(), &file, name)?;
-                    report["srb"] = first.report;
-                    first.solution.to_string()
-                }
-            },
-        };
-        let named = |error| match &args.srb {
-            Some(path) => format!("{}: {error}", path.display()),
-            None => error,
-        };
-        let planned = whole_body::solve(args, &file, name, &srb).map_err(named)?;
-        ("whole_body", planned)
-    } else {
-        ("srb", srb::solve(args, &file, name)?)
-    };
-    let solved = planned.status == "Solved";
-    // What is not solved must not lie there like a solution.
-    if let Some(path) = args.solution.as_deref().filter(|_| solved) {
-        write_file(path, planned.solution.to_string().as_bytes())?;
-    }
-    if args.output.json {
-        let phase = |t: &f64| json!({ "duration_s": t });
-        report["status"] = json!(planned.status);
-        report["phases"] = planned.durations.iter().map(phase).collect();
-        report[key] = planned.report;
-        say!("{report}");
-    } else if !args.output.quiet {
-        say!(
-            "{name}: {} in {:.2} ms, {} iterations, cost {:.6}, violation {:.1e}, durations {:.3?} s",
-            planned.status,
-            planned.number("wall_ms"),
-            planned.report["iterations"],
-            planned.number("cost"),
-            planned.number("max_violation"),
-            planned.durations,
-        );
-    }
-    Ok(if solved {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
-    })
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    jump_planner::file::read_text(path).map_err(|error| describe(path, &error))
 }
 
 impl Args {
-    /// The same task, solved once from the plain guess.
-    fn plain(&self) -> Self {
-        Self {
-            guess_noise: 0.0,
-            repeat: 1,
-            ..self.clone()
-        }
-    }
-
-    fn barrier(&self) -> Barrier {
-        match self.barrier.as_str() {
-            "adaptive" => Barrier::Adaptive,
-            "monotone" => Barrier::Monotone,
-            _ => Barrier::Portfolio,
-        }
-    }
-
     /// Prints an iteration where that is asked for.
     fn observe(&self, progress: &Progress<f64>) -> ControlFlow<()> {
         if self.trace {
@@ -217,22 +109,5 @@ impl Args {
             );
         }
         ControlFlow::Continue(())
-    }
-
-    /// Solves as often as asked for; the outcome and the median wall time, ms.
-    fn timed(
-        &self,
-        mut solve: impl FnMut() -> Result<Solution<f64>, String>,
-    ) -> Result<(Solution<f64>, f64), String> {
-        let mut times = Vec::new();
-        let mut outcome = None;
-        for _ in 0..self.repeat {
-            let start = Instant::now();
-            outcome = Some(solve()?);
-            times.push(start.elapsed().as_secs_f64() * 1e3);
-        }
-        times.sort_by(f64::total_cmp);
-        let outcome = outcome.ok_or("nothing was solved")?;
-        Ok((outcome, times[times.len() / 2]))
     }
 }

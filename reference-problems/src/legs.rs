@@ -1,6 +1,6 @@
-//! The whole-body reference problem of a task, from a solution of its SRB problem.
+//! The whole-body problem of a task, along a solution of its single-rigid-body problem.
 
-use super::{FEET, File};
+use crate::file::{Constants, FEET, File, Task};
 use a1_model::{A1Reference, a1_reference::frame};
 use jump_planner::track::Track;
 use nalgebra::{Matrix3, Vector3};
@@ -32,9 +32,9 @@ const WEIGHTS: Weights<f64> = Weights {
     goal: 10.0,
 };
 
-/// A solution of the SRB problem in the layout of the reference checkers.
+/// A solution of the single-rigid-body problem in the layout of the reference checkers.
 #[derive(Deserialize)]
-pub(crate) struct SrbMotion {
+pub struct SrbMotion {
     sol: SrbArrays,
 }
 
@@ -49,18 +49,19 @@ struct SrbArrays {
     f: Vec<[f64; 3 * FEET]>,
 }
 
-/// SRB solutions shipped for the nine tasks.
-pub(crate) fn shipped(name: &str) -> Option<&'static str> {
+/// The single-rigid-body solution that is shipped for one of the nine tasks.
+#[must_use]
+pub fn shipped(name: &str) -> Option<&'static str> {
     let text = match name {
-        "lateral" => include_str!("../../data/srb/lateral.json"),
-        "lateral_down" => include_str!("../../data/srb/lateral_down.json"),
-        "spin" => include_str!("../../data/srb/spin.json"),
-        "diagonal" => include_str!("../../data/srb/diagonal.json"),
-        "barrel" => include_str!("../../data/srb/barrel.json"),
-        "double_barrel" => include_str!("../../data/srb/double_barrel.json"),
-        "double_backflip" => include_str!("../../data/srb/double_backflip.json"),
-        "forward" => include_str!("../../data/srb/forward.json"),
-        "barrel_box" => include_str!("../../data/srb/barrel_box.json"),
+        "lateral" => include_str!("../data/srb/lateral.json"),
+        "lateral_down" => include_str!("../data/srb/lateral_down.json"),
+        "spin" => include_str!("../data/srb/spin.json"),
+        "diagonal" => include_str!("../data/srb/diagonal.json"),
+        "barrel" => include_str!("../data/srb/barrel.json"),
+        "double_barrel" => include_str!("../data/srb/double_barrel.json"),
+        "double_backflip" => include_str!("../data/srb/double_backflip.json"),
+        "forward" => include_str!("../data/srb/forward.json"),
+        "barrel_box" => include_str!("../data/srb/barrel_box.json"),
         _ => return None,
     };
     Some(text)
@@ -68,7 +69,10 @@ pub(crate) fn shipped(name: &str) -> Option<&'static str> {
 
 impl SrbMotion {
     /// Parses a solution.
-    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// What is missing or no number.
+    pub fn parse(text: &str) -> Result<Self, String> {
         serde_json::from_str(text).map_err(|error| format!("SRB solution: {error}"))
     }
 
@@ -97,7 +101,7 @@ impl SrbMotion {
         let mut times = vec![0.0];
         let mut begin = 0.0;
         for (n, duration) in intervals.iter().zip(&sol.durations) {
-            let named = super::values::DURATION.check(*duration);
+            let named = crate::values::DURATION.check(*duration);
             named.map_err(|what| format!("T of the SRB solution: {what}"))?;
             times.extend((1..=*n).map(|i| begin + duration / *n as f64 * i as f64));
             begin += duration;
@@ -167,91 +171,83 @@ fn with_landing_legs(base: [f64; BASE]) -> Pose<f64, N> {
     }))
 }
 
-impl File {
-    /// The whole-body problem of a task.
-    pub(crate) fn whole_body(&self, name: &str, srb: &SrbMotion) -> Result<Data, String> {
-        let c = &self.constants;
-        let t = self
-            .tasks
-            .get(name)
-            .ok_or_else(|| format!("no task `{name}`"))?;
-        // Data that both stages share is checked by the SRB problem.
-        let shared: srb_opt::Problem<f64, FEET, 12> = self.problem(name)?;
-        let order = match t.euler.as_deref() {
-            None | Some("zyx") => EulerOrder::Zyx,
-            Some("zxy") => EulerOrder::Zxy,
-            Some(other) => {
-                return Err(format!(
-                    "task {name}: euler must be zyx or zxy, not {other}"
-                ));
-            }
-        };
-        let track = srb
-            .track(&t.n, order)
-            .map_err(|error| format!("task {name}: {error}"))?;
-        let phases: Vec<Phase<f64, FEET>> = shared
-            .used_phases()
-            .iter()
-            .zip(&srb.sol.durations)
-            .map(|(phase, duration)| Phase {
-                contacts: phase.contacts,
-                intervals: (duration / DT).round_ties_even().max(1.0) as usize,
-                dt: DT,
-            })
-            .collect();
-        // The clock of the reference is stretched phase by phase onto the intervals.
-        let mut times = vec![0.0];
-        let mut begin = 0.0;
-        for (phase, duration) in phases.iter().zip(&srb.sol.durations) {
-            let step = duration / phase.intervals as f64;
-            times.extend((1..=phase.intervals).map(|i| begin + step * i as f64));
-            begin += duration;
+impl Task {
+    fn order(&self) -> Result<EulerOrder, String> {
+        match self.euler.as_deref() {
+            None | Some("zyx") => Ok(EulerOrder::Zyx),
+            Some("zxy") => Ok(EulerOrder::Zxy),
+            Some(other) => Err(format!("euler must be zyx or zxy, not {other}")),
         }
-        let nodes: Vec<Pose<f64, N>> = times
-            .iter()
-            .map(|time| with_landing_legs(track.at(*time)))
-            .collect();
-        let intervals = times.len() - 1;
-        let forces = times[..intervals]
-            .iter()
-            .map(|time| srb.sol.f[track.interval(*time)]);
-        let forces = forces.collect();
-        let p = shared.goal_w;
-        let turn = shared.axis * shared.angle;
-        let filed = [p.x, p.y, p.z, turn.x, turn.y, turn.z];
-        let goal = with_landing_legs(order.columns().map(|i| filed[i]));
-        let mut reference: Vec<Pose<f64, N>> = nodes
-            .windows(2)
-            .map(|pair| {
-                let middle = |i: usize| 0.5 * (pair[0].q[i] + pair[1].q[i]);
-                Pose::level(core::array::from_fn(middle))
-            })
-            .collect();
-        if let Some(last) = reference.last_mut() {
-            *last = goal;
-        }
-        let s = shared.start_w;
+    }
+}
+
+/// Phases of whole intervals, as long as those of the solution within half an interval.
+fn rounded(contacts: &[srb_opt::Phase<f64, FEET>], durations: &[f64]) -> Vec<Phase<f64, FEET>> {
+    let phase = |(phase, duration): (&srb_opt::Phase<f64, FEET>, &f64)| Phase {
+        contacts: phase.contacts,
+        intervals: (duration / DT).round_ties_even().max(1.0) as usize,
+        dt: DT,
+    };
+    contacts.iter().zip(durations).map(phase).collect()
+}
+
+/// When the nodes are on the clock of the solution, which is stretched phase by phase onto the intervals.
+fn node_times(phases: &[Phase<f64, FEET>], durations: &[f64]) -> Vec<f64> {
+    let mut times = vec![0.0];
+    let mut begin = 0.0;
+    for (phase, duration) in phases.iter().zip(durations) {
+        let step = duration / phase.intervals as f64;
+        times.extend((1..=phase.intervals).map(|i| begin + step * i as f64));
+        begin += duration;
+    }
+    times
+}
+
+/// References of the intervals: the middles between nodes, and the goal in the end.
+fn interval_references(nodes: &[Pose<f64, N>], goal: Pose<f64, N>) -> Vec<Pose<f64, N>> {
+    let middle = |pair: &[Pose<f64, N>]| {
+        Pose::level(core::array::from_fn(|i| {
+            0.5 * (pair[0].q[i] + pair[1].q[i])
+        }))
+    };
+    let mut references: Vec<_> = nodes.windows(2).map(middle).collect();
+    if let Some(last) = references.last_mut() {
+        *last = goal;
+    }
+    references
+}
+
+impl Constants {
+    fn robot(&self, order: EulerOrder) -> Robot<f64, N> {
         let mut robot = Robot::on_euler_base(&A1Reference, order);
         for limit in robot.limits.iter_mut().skip(BASE) {
-            (limit.effort, limit.speed) = (c.tau_max, c.qd_max);
+            (limit.effort, limit.speed) = (self.tau_max, self.qd_max);
         }
+        robot
+    }
+
+    fn contacts(&self) -> [Foot<f64>; FEET] {
         let frames = [
             frame::FL_FOOT,
             frame::FR_FOOT,
             frame::RL_FOOT,
             frame::RR_FOOT,
         ];
-        let foot = |i: usize| Foot {
+        core::array::from_fn(|i| Foot {
             point: Robot::<f64, N>::point(&frames[i]),
-            pos_wf: Vector3::from(c.feet0[i]),
+            pos_wf: Vector3::from(self.feet0[i]),
             radius: 0.0,
-        };
+        })
+    }
+
+    /// The trunk's corners and the knees.
+    fn clearances(&self) -> Vec<Clearance<f64>> {
         let corner = |offset: &[f64; 3]| Clearance {
             point: Point {
                 link: BASE - 1,
                 offset_l: Vector3::from(*offset),
             },
-            height: c.clear,
+            height: self.clear,
         };
         let knee = |leg: usize| Clearance {
             point: Point {
@@ -260,19 +256,37 @@ impl File {
             },
             height: KNEE_CLEARANCE,
         };
+        let corners = self.corners.iter().map(corner);
+        corners.chain((0..FEET).map(knee)).collect()
+    }
+}
+
+impl File {
+    /// The whole-body problem of a task.
+    pub(crate) fn whole_body(&self, name: &str, srb: &SrbMotion) -> Result<Data, String> {
+        let t = self.task(name)?;
+        // Data that both stages share is checked by the rigid body's problem.
+        let shared: srb_opt::Problem<f64, FEET, 12> = self.problem(name)?;
+        let named = |error: String| format!("task {name}: {error}");
+        let order = t.order().map_err(named)?;
+        let track = srb.track(&t.n, order).map_err(named)?;
+        let phases = rounded(shared.used_phases(), &srb.sol.durations);
+        let times = node_times(&phases, &srb.sol.durations);
+        let pose = |time: &f64| with_landing_legs(track.at(*time));
+        let nodes: Vec<Pose<f64, N>> = times.iter().map(pose).collect();
+        let force = |time: &f64| srb.sol.f[track.interval(*time)];
+        let (p, turn) = (shared.goal_w, shared.axis * shared.angle);
+        let filed = [p.x, p.y, p.z, turn.x, turn.y, turn.z];
+        let goal = with_landing_legs(order.columns().map(|i| filed[i]));
+        let s = shared.start_w;
         Ok(Data {
-            robot,
-            feet: core::array::from_fn(foot),
-            clearances: c
-                .corners
-                .iter()
-                .map(corner)
-                .chain((0..FEET).map(knee))
-                .collect(),
+            robot: self.constants.robot(order),
+            feet: self.constants.contacts(),
+            clearances: self.constants.clearances(),
             phases,
-            reference,
+            reference: interval_references(&nodes, goal),
+            forces: times[..times.len() - 1].iter().map(force).collect(),
             nodes,
-            forces,
             edge: shared.edge,
             start: with_landing_legs([s.x, s.y, s.z, 0.0, 0.0, 0.0]),
             goal,

@@ -1,6 +1,6 @@
 //! What the numbers of a problem file may be: nothing is computed, and no memory asked for, before each was looked at and named.
 
-use super::{Constants, FEET, Task};
+use crate::file::{Constants, FEET, Task};
 use jump_planner::range::Range::{self, Above, From};
 use nalgebra::{Cholesky, Matrix3, Vector3};
 
@@ -13,7 +13,7 @@ const LENGTH: Range = From(-100.0, 100.0);
 /// Ten turns, rad.
 const TURN: Range = From(-63.0, 63.0);
 /// Durations, s.
-pub(super) const DURATION: Range = Above(0.0, 10.0);
+pub(crate) const DURATION: Range = Above(0.0, 10.0);
 /// What must be more than nothing.
 const POSITIVE: Range = Above(0.0, 1e6);
 /// Weights of costs.
@@ -31,7 +31,7 @@ fn within<'a>(
 }
 
 impl Constants {
-    pub(super) fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self) -> Result<(), String> {
         for (key, value) in [
             ("M", self.m),
             ("G", self.g),
@@ -100,7 +100,7 @@ fn ordered(key: &str, [low, high]: [f64; 2]) -> Result<(), String> {
 }
 
 impl Task {
-    pub(super) fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self) -> Result<(), String> {
         let count = self.n.len();
         if !(1..=MOST_PHASES).contains(&count) {
             return Err(format!("N: 1 to {MOST_PHASES} phases, not {count}"));

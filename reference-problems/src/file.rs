@@ -1,7 +1,4 @@
-//! The reference problems: `a1-jumps.json` read into srb-opt's problem.
-
-mod values;
-pub(crate) mod whole_body;
+//! The file of problems, read into srb-opt's problem.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
@@ -10,47 +7,47 @@ use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::collections::BTreeMap;
 
 /// Feet of the reference robot.
-pub(crate) const FEET: usize = 4;
+pub const FEET: usize = 4;
 
 /// The nine problems as shipped.
-pub(crate) const SHIPPED: &str = include_str!("../../data/a1-jumps.json");
+pub const SHIPPED: &str = include_str!("../data/a1-jumps.json");
 
 /// The file: numbers shared by all tasks, and the tasks. A key that is not known is refused: it may be one that is misspelt.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct File {
-    constants: Constants,
-    tasks: BTreeMap<String, Task>,
+pub struct File {
+    pub(crate) constants: Constants,
+    pub(crate) tasks: BTreeMap<String, Task>,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "UPPERCASE", deny_unknown_fields)]
-struct Constants {
-    m: f64,
-    i_b: [[f64; 3]; 3],
-    g: f64,
-    l1: f64,
-    hip: [[f64; 3]; FEET],
-    side: [f64; FEET],
-    feet0: [[f64; 3]; FEET],
-    corners: [[f64; 3]; 8],
-    z0: f64,
-    mu: f64,
-    fz_max: f64,
-    reach_x: f64,
-    reach_y: f64,
-    reach_z: [f64; 2],
-    t_lo: f64,
-    t_hi: f64,
-    ttot_lo: f64,
-    clear: f64,
-    eps_w: f64,
-    eps_f: f64,
-    eps_r: f64,
-    eps_log: f64,
-    edge_w: f64,
-    tau_max: f64,
-    qd_max: f64,
+pub(crate) struct Constants {
+    pub(crate) m: f64,
+    pub(crate) i_b: [[f64; 3]; 3],
+    pub(crate) g: f64,
+    pub(crate) l1: f64,
+    pub(crate) hip: [[f64; 3]; FEET],
+    pub(crate) side: [f64; FEET],
+    pub(crate) feet0: [[f64; 3]; FEET],
+    pub(crate) corners: [[f64; 3]; 8],
+    pub(crate) z0: f64,
+    pub(crate) mu: f64,
+    pub(crate) fz_max: f64,
+    pub(crate) reach_x: f64,
+    pub(crate) reach_y: f64,
+    pub(crate) reach_z: [f64; 2],
+    pub(crate) t_lo: f64,
+    pub(crate) t_hi: f64,
+    pub(crate) ttot_lo: f64,
+    pub(crate) clear: f64,
+    pub(crate) eps_w: f64,
+    pub(crate) eps_f: f64,
+    pub(crate) eps_r: f64,
+    pub(crate) eps_log: f64,
+    pub(crate) edge_w: f64,
+    pub(crate) tau_max: f64,
+    pub(crate) qd_max: f64,
     // What the reference checkers read and the problem does not need.
     #[serde(rename = "TRUNK")]
     _trunk: Option<IgnoredAny>,
@@ -80,20 +77,20 @@ struct Constants {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Task {
-    phases: Vec<Vec<usize>>,
+pub(crate) struct Task {
+    pub(crate) phases: Vec<Vec<usize>>,
     #[serde(rename = "N")]
-    n: Vec<usize>,
+    pub(crate) n: Vec<usize>,
     #[serde(rename = "T0")]
-    t0: Vec<f64>,
-    goal: [f64; 3],
-    axis: [f64; 3],
-    angle: f64,
-    bp: Option<Vec<f64>>,
-    r#box: f64,
-    edge: Option<(usize, f64, f64)>,
-    ttot: f64,
-    euler: Option<String>,
+    pub(crate) t0: Vec<f64>,
+    pub(crate) goal: [f64; 3],
+    pub(crate) axis: [f64; 3],
+    pub(crate) angle: f64,
+    pub(crate) bp: Option<Vec<f64>>,
+    pub(crate) r#box: f64,
+    pub(crate) edge: Option<(usize, f64, f64)>,
+    pub(crate) ttot: f64,
+    pub(crate) euler: Option<String>,
 }
 
 /// Product names of the nine tasks, beside the names of the reference file.
@@ -110,8 +107,11 @@ const ALIASES: [(&str, &str); 9] = [
 ];
 
 impl File {
-    /// Parses the JSON description.
-    pub(crate) fn parse(text: &str) -> Result<Self, String> {
+    /// Parses the JSON description, and looks at every value.
+    ///
+    /// # Errors
+    /// The key that is unknown, or whose value cannot be, and what it may be.
+    pub fn parse(text: &str) -> Result<Self, String> {
         let file: Self =
             serde_json::from_str(text).map_err(|error| format!("problem file: {error}"))?;
         file.constants.check()?;
@@ -123,7 +123,10 @@ impl File {
     }
 
     /// The task's name in this file: the one asked for, or the only one there is.
-    pub(crate) fn pick(&self, name: Option<&str>) -> Result<&str, String> {
+    ///
+    /// # Errors
+    /// The tasks that there are.
+    pub fn pick(&self, name: Option<&str>) -> Result<&str, String> {
         let known = || {
             self.tasks
                 .keys()
@@ -150,58 +153,28 @@ impl File {
         }
     }
 
-    /// Number of contact phases of a task.
-    pub(crate) fn phase_count(&self, name: &str) -> usize {
-        self.tasks.get(name).map_or(0, |task| task.n.len())
+    /// A task by its name in this file.
+    pub(crate) fn task(&self, name: &str) -> Result<&Task, String> {
+        self.tasks
+            .get(name)
+            .ok_or_else(|| format!("no task `{name}`"))
     }
 
-    /// The problem of a task.
-    pub(crate) fn problem<const PHASES: usize>(
+    /// The single-rigid-body problem of a task of at most so many phases.
+    ///
+    /// # Errors
+    /// No such task, more phases, or what `srb-opt` says of it.
+    pub fn problem<const PHASES: usize>(
         &self,
         name: &str,
     ) -> Result<Problem<f64, FEET, PHASES>, String> {
-        let c = &self.constants;
-        let t = self
-            .tasks
-            .get(name)
-            .ok_or_else(|| format!("no task `{name}`"))?;
-        let count = t.n.len();
-        if count > PHASES {
-            return Err(format!(
-                "task {name}: N: at most {PHASES} phases, not {count}"
-            ));
-        }
-        let empty = Phase {
-            contacts: [false; FEET],
-            intervals: 0,
-            duration_guess: 0.0,
-            min_duration: c.t_lo,
-            max_duration: c.t_hi,
-            reference_angle: 0.0,
-        };
-        let mut phases = [empty; PHASES];
-        for (i, phase) in phases.iter_mut().enumerate().take(count) {
-            phase.contacts = core::array::from_fn(|foot| t.phases[i].contains(&foot));
-            phase.intervals = t.n[i];
-            phase.duration_guess = t.t0[i];
-            phase.reference_angle = t.bp.as_ref().map_or(0.0, |bp| bp[i]);
-        }
-        let edge = match (t.r#box, t.edge) {
-            (0.0, _) => None,
-            (drop, Some((axis, sign, distance))) => Some(Edge {
-                drop,
-                axis,
-                sign,
-                distance,
-                width: c.edge_w,
-            }),
-            (_, None) => return Err(format!("task {name}: a box needs an edge")),
-        };
+        let (c, t) = (&self.constants, self.task(name)?);
         let start_w = Vector3::new(0.0, 0.0, c.z0);
         let foot = |i: usize| Foot {
             pos_wf: Vector3::from(c.feet0[i]),
             nominal_b: Vector3::from(c.hip[i]) + Vector3::new(0.0, c.side[i] * c.l1, 0.0),
         };
+        let named = |error: String| format!("task {name}: {error}");
         let problem = Problem {
             mass: c.m,
             inertia_b: Matrix3::from_fn(|i, j| c.i_b[i][j]),
@@ -213,9 +186,9 @@ impl File {
             max_force: c.fz_max,
             corners: c.corners.map(Vector3::from),
             clearance: c.clear,
-            edge,
-            phases,
-            phase_count: count,
+            edge: t.edge_of_box(c),
+            phases: t.phases(c).map_err(named)?,
+            phase_count: t.phase_count(),
             min_total: c.ttot_lo,
             max_total: t.ttot,
             start_w,
@@ -236,9 +209,52 @@ impl File {
             exponential: Exponential::Taylor4,
             log_epsilon: c.eps_log,
         };
-        problem
-            .check()
-            .map_err(|error| format!("task {name}: {error}"))?;
+        problem.check().map_err(|error| named(error.to_string()))?;
         Ok(problem)
+    }
+}
+
+impl Task {
+    /// Number of contact phases.
+    pub(crate) fn phase_count(&self) -> usize {
+        self.n.len()
+    }
+
+    fn phases<const PHASES: usize>(
+        &self,
+        c: &Constants,
+    ) -> Result<[Phase<f64, FEET>; PHASES], String> {
+        let count = self.phase_count();
+        if count > PHASES {
+            return Err(format!("N: at most {PHASES} phases, not {count}"));
+        }
+        let empty = Phase {
+            contacts: [false; FEET],
+            intervals: 0,
+            duration_guess: 0.0,
+            min_duration: c.t_lo,
+            max_duration: c.t_hi,
+            reference_angle: 0.0,
+        };
+        let mut phases = [empty; PHASES];
+        for (i, phase) in phases.iter_mut().enumerate().take(count) {
+            phase.contacts = core::array::from_fn(|foot| self.phases[i].contains(&foot));
+            phase.intervals = self.n[i];
+            phase.duration_guess = self.t0[i];
+            phase.reference_angle = self.bp.as_ref().map_or(0.0, |bp| bp[i]);
+        }
+        Ok(phases)
+    }
+
+    /// The edge of the box that the robot jumps off, if there is one.
+    fn edge_of_box(&self, c: &Constants) -> Option<Edge<f64>> {
+        let (axis, sign, distance) = self.edge.filter(|_| self.r#box != 0.0)?;
+        Some(Edge {
+            drop: self.r#box,
+            axis,
+            sign,
+            distance,
+            width: c.edge_w,
+        })
     }
 }
