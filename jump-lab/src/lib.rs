@@ -5,6 +5,7 @@ pub mod humanoid;
 pub mod lab;
 pub mod log;
 pub mod noise;
+pub mod papers;
 pub mod quadruped;
 mod sim;
 pub mod verdict;

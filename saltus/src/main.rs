@@ -14,7 +14,6 @@ mod plant;
 mod quadruped;
 mod recording;
 mod report;
-mod reproduce;
 mod verdict;
 
 use clap::error::ErrorKind;

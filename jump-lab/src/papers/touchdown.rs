@@ -2,12 +2,11 @@
 
 use super::Row;
 use super::quadruped::outcome;
-use jump_lab::Sim;
-use jump_lab::quadruped::FOOT_COUNT;
-use jump_lab::quadruped::execute::Run;
-use jump_lab::quadruped::judge::{Judged, tilt};
-use jump_lab::quadruped::log::Sample;
-use jump_planner::reference::Reference;
+use crate::Sim;
+use crate::quadruped::execute::Run;
+use crate::quadruped::judge::{Judged, tilt};
+use crate::quadruped::log::Sample;
+use crate::quadruped::{FOOT_COUNT, Planned};
 use jump_planner::task::Task;
 use landing::Settings;
 
@@ -116,11 +115,11 @@ pub(super) fn recovered(task: &Task, run: &Run, sim: Sim) -> Row {
 }
 
 /// Remark 2: feet that land at different times.
-pub(super) fn swing_legs(reference: &Reference, run: &Run, judged: &Judged, sim: Sim) -> Row {
+pub(super) fn swing_legs(jump: &Planned, run: &Run, judged: &Judged, sim: Sim) -> Row {
     let after = run
         .samples
         .iter()
-        .filter(|s| s.time > reference.takeoff + 0.1);
+        .filter(|s| s.time > jump.reference.takeoff + 0.1);
     let lands = |foot: usize| {
         after
             .clone()

@@ -1,27 +1,20 @@
 //! Paper B: the jumps of iCub.
 
-use super::{Row, write_report};
-use crate::humanoid::{report, table};
+use super::{Row, Watch};
+use crate::Sim;
+use crate::humanoid::execute::{self, Run};
+use crate::humanoid::judge::Judged;
+use crate::humanoid::{GRAVITY, Landing, Task};
+use crate::lab::Disturbance;
 use core::ops::ControlFlow;
 use jump_control::takeoff_speed;
-use jump_lab::Sim;
-use jump_lab::humanoid::execute::{self, Run};
-use jump_lab::humanoid::judge::Judged;
-use jump_lab::humanoid::{GRAVITY, Landing, Task};
-use jump_lab::lab::Disturbance;
-use std::path::Path;
 
 fn run(task: &Task, sim: Sim) -> Result<Run, String> {
     execute::run(task, sim, &Disturbance::NOMINAL, 0, |_, _| {})
 }
 
 /// All rows.
-pub(crate) fn rows(
-    sims: &[Sim],
-    folder: &Path,
-    rows: &mut Vec<Row>,
-    mut tell: impl FnMut(&str) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+pub(super) fn rows(sims: &[Sim], rows: &mut Vec<Row>, watch: &mut impl Watch) -> ControlFlow<()> {
     rows.extend(takeoff());
     for &sim in sims {
         for (name, item, theirs, com, soles) in [
@@ -40,7 +33,7 @@ pub(crate) fn rows(
                 0.023,
             ),
         ] {
-            tell(name)?;
+            watch.next(name)?;
             let row = Row::new('B', format!("{item}: height of 4 cm asked for"), theirs);
             let row = row.simulated(sim);
             let Some(task) = Task::named(name) else {
@@ -53,14 +46,8 @@ pub(crate) fn rows(
             match (run(&task, sim), run(&free, sim)) {
                 (Ok(held), Ok(free)) => {
                     rows.extend(jump(row, &task, &held, &free, sim, [com, soles]));
-                    let judged = Judged::of(&task, &held);
-                    let nominal = Disturbance::NOMINAL;
-                    let table = table::table(&judged, &task, &held, sim.name(), &nominal);
-                    let html = report::html(&task, &held, Some(&free), &table);
                     let name = format!("{}-{}", name.replace('/', "-"), sim.name());
-                    if let Err(error) = html.and_then(|html| write_report(folder, &name, &html)) {
-                        tell!("saltus: {error}");
-                    }
+                    watch.pushed(&name, &task, sim, [&held, &free]);
                 }
                 (Err(error), _) | (_, Err(error)) => rows.push(row.failed(error)),
             }
@@ -68,7 +55,7 @@ pub(crate) fn rows(
     }
     for &sim in sims {
         for name in ["icub/velocity", "icub/torque"] {
-            tell("paper B's own landing")?;
+            watch.next("paper B's own landing")?;
             rows.extend(own_landing(name, sim));
         }
     }

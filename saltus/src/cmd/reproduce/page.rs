@@ -1,6 +1,6 @@
 //! One page: the table, and below it every report with its pictures.
 
-use super::Row;
+use jump_lab::papers::Row;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:76rem;padding:0 1rem;color:#1f2328}\
 table{border-collapse:collapse;width:100%}td,th{border-bottom:1px solid #d0d7de;padding:.35rem .5rem;text-align:left;vertical-align:top}\
@@ -41,8 +41,8 @@ pub(crate) fn html(rows: &[Row], reports: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Row;
     use super::html;
+    use jump_lab::papers::Row;
 
     #[test]
     fn text_does_not_become_markup() {
