@@ -18,6 +18,8 @@ fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
     refused::refused(Duration::from_secs(60), folder, arguments, words)
 }
 
+const LATERAL: &str = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+
 /// The shipped problem file with one value changed.
 fn problem(path: &Path, change: impl FnOnce(&mut Value)) {
     let mut file: Value =
@@ -26,12 +28,82 @@ fn problem(path: &Path, change: impl FnOnce(&mut Value)) {
     fs::write(path, file.to_string()).unwrap();
 }
 
+/// Values of the problem file that cannot be, and what is told of each.
+fn impossible_problems() -> Vec<(&'static str, Value, &'static [&'static str])> {
+    vec![
+        (
+            "/tasks/spin/N",
+            json!([1_000_000_000, 30]),
+            &["spin", "N", "2000", "1000000000"],
+        ),
+        (
+            "/tasks/spin/N",
+            json!([usize::MAX, usize::MAX]),
+            &["N", "2000"],
+        ),
+        (
+            "/tasks/spin/N",
+            json!(vec![50; 100]),
+            &["N", "12 phases", "100"],
+        ),
+        (
+            "/tasks/spin/phases",
+            json!([[0, 1, 2, 2], []]),
+            &["phases", "foot 2", "twice"],
+        ),
+        (
+            "/tasks/spin/phases",
+            json!([[0, 1, 2, 7], []]),
+            &["phases", "no foot 7"],
+        ),
+        (
+            "/tasks/lateral_down/edge",
+            json!([1, 0, 0.18]),
+            &["lateral_down", "edge", "sign", "1 or -1", "0"],
+        ),
+        (
+            "/tasks/lateral_down/edge",
+            json!([2, 1, 0.18]),
+            &["edge", "axis"],
+        ),
+        ("/tasks/lateral_down/edge", json!(null), &["edge"]),
+        (
+            "/tasks/spin/angle",
+            json!(1e8),
+            &["angle", "63", "100000000"],
+        ),
+        (
+            "/tasks/spin/goal",
+            json!([0.0, 1e300, 0.0]),
+            &["goal", "100", "1e300"],
+        ),
+        ("/tasks/spin/T0", json!([1e9, 0.3]), &["T0", "10"]),
+        (
+            "/tasks/spin/axis",
+            json!([0.0, 0.0, 0.0]),
+            &["axis", "unit"],
+        ),
+        (
+            "/constants/I_B/0/1",
+            json!(0.01),
+            &["I_B", "symmetric", "0.01"],
+        ),
+        (
+            "/constants/I_B/0/0",
+            json!(-1.0),
+            &["I_B", "positive definite"],
+        ),
+        ("/constants/M", json!(0.0), &["M", "above 0"]),
+        ("/constants/SIDE/0", json!(3.0), &["SIDE", "1 or -1"]),
+    ]
+}
+
 #[test]
 fn a_problem_file_is_looked_at_before_it_is_solved() {
     let folder = folder("problem");
     let path = folder.join("p.json");
     let big = 1_000_000_000;
-    let task = |pointer: &str, value: Value, words: &[&str]| {
+    for (pointer, value, words) in impossible_problems() {
         problem(&path, |file| *file.pointer_mut(pointer).unwrap() = value);
         for stage in ["srb", "whole-body"] {
             let arguments = [
@@ -48,71 +120,7 @@ fn a_problem_file_is_looked_at_before_it_is_solved() {
             refused(&folder, &arguments, words);
             assert!(!folder.join("s.json").exists(), "{pointer}");
         }
-    };
-    task(
-        "/tasks/spin/N",
-        json!([big, 30]),
-        &["spin", "N", "2000", "1000000000"],
-    );
-    task(
-        "/tasks/spin/N",
-        json!([usize::MAX, usize::MAX]),
-        &["N", "2000"],
-    );
-    task(
-        "/tasks/spin/N",
-        json!(vec![50; 100]),
-        &["N", "12 phases", "100"],
-    );
-    task(
-        "/tasks/spin/phases",
-        json!([[0, 1, 2, 2], []]),
-        &["phases", "foot 2", "twice"],
-    );
-    task(
-        "/tasks/spin/phases",
-        json!([[0, 1, 2, 7], []]),
-        &["phases", "no foot 7"],
-    );
-    task(
-        "/tasks/lateral_down/edge",
-        json!([1, 0, 0.18]),
-        &["lateral_down", "edge", "sign", "1 or -1", "0"],
-    );
-    task(
-        "/tasks/lateral_down/edge",
-        json!([2, 1, 0.18]),
-        &["edge", "axis"],
-    );
-    task("/tasks/lateral_down/edge", json!(null), &["edge"]);
-    task(
-        "/tasks/spin/angle",
-        json!(1e8),
-        &["angle", "63", "100000000"],
-    );
-    task(
-        "/tasks/spin/goal",
-        json!([0.0, 1e300, 0.0]),
-        &["goal", "100", "1e300"],
-    );
-    task("/tasks/spin/T0", json!([1e9, 0.3]), &["T0", "10"]);
-    task(
-        "/tasks/spin/axis",
-        json!([0.0, 0.0, 0.0]),
-        &["axis", "unit"],
-    );
-    task(
-        "/constants/I_B/0/1",
-        json!(0.01),
-        &["I_B", "symmetric", "0.01"],
-    );
-    task(
-        "/constants/I_B/0/0",
-        json!(-1.0),
-        &["I_B", "positive definite"],
-    );
-    task("/constants/M", json!(0.0), &["M", "above 0"]);
-    task("/constants/SIDE/0", json!(3.0), &["SIDE", "1 or -1"]);
+    }
     for (pointer, key) in [
         ("", "tsaks"),
         ("/constants", "MASS"),
@@ -186,16 +194,14 @@ fn a_problem_without_solution_leaves_none() {
     assert_eq!(left, ["far.toml", "p.json"]);
 }
 
-#[test]
-fn a_task_file_names_key_value_and_what_is_allowed() {
-    let folder = folder("task");
-    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+/// Task files with a value that cannot be, and what is told of each.
+fn impossible_tasks() -> Vec<(String, &'static [&'static str])> {
     let turn =
-        |angle: &str| format!("{lateral}\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = {angle}\n");
-    let limit = |line: &str| format!("{lateral}\n[limits]\n{line}\n");
-    let first = |line: &str| format!("{line}\n{lateral}");
+        |angle: &str| format!("{LATERAL}\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = {angle}\n");
+    let limit = |line: &str| format!("{LATERAL}\n[limits]\n{line}\n");
+    let first = |line: &str| format!("{line}\n{LATERAL}");
     let edge = "[box]\naxis = \"y\"\ndrop_m = 0.0\n";
-    for (text, words) in [
+    vec![
         (
             turn("1e8"),
             &["turn.angle_deg", "100000000", "-3600 to 3600"][..],
@@ -222,35 +228,41 @@ fn a_task_file_names_key_value_and_what_is_allowed() {
             &["lock", "FL_hip_joint=0.3", "a1"],
         ),
         (
-            lateral.replace("max_s = 0.8", "max_s = 1e12"),
+            LATERAL.replace("max_s = 0.8", "max_s = 1e12"),
             &["total.max_s", "up to 10"],
         ),
         (
-            lateral.replace("guess_s = 0.5", "guess_s = 1e12"),
+            LATERAL.replace("guess_s = 0.5", "guess_s = 1e12"),
             &["guess_s", "up to 5"],
         ),
         (
-            lateral.replace("intervals = 50", "intervals = 1000000000"),
+            LATERAL.replace("intervals = 50", "intervals = 1000000000"),
             &["intervals", "1 to 1000"],
         ),
         (
-            format!("{lateral}\n{edge}side = -128\ndistance_m = 1.0\n"),
+            format!("{LATERAL}\n{edge}side = -128\ndistance_m = 1.0\n"),
             &["box.side", "1 or -1"],
         ),
         (
-            format!("{lateral}\n{edge}side = 1\ndistance_m = 1e9\n"),
+            format!("{LATERAL}\n{edge}side = 1\ndistance_m = 1e9\n"),
             &["box.distance_m", "-100 to 100"],
         ),
         (
-            format!("{lateral}\n{edge}side = 1\n"),
+            format!("{LATERAL}\n{edge}side = 1\n"),
             &["box.beyond_feet_m", "distance_m"],
         ),
         (
-            format!("{lateral}\n[weights]\ngoal = 1e300\n"),
+            format!("{LATERAL}\n[weights]\ngoal = 1e300\n"),
             &["weights.goal", "1e300"],
         ),
-    ] {
-        assert_ne!(text, lateral);
+    ]
+}
+
+#[test]
+fn a_task_file_names_key_value_and_what_is_allowed() {
+    let folder = folder("task");
+    for (text, words) in impossible_tasks() {
+        assert_ne!(text, LATERAL);
         fs::write(folder.join("task.toml"), text).unwrap();
         for command in ["plan", "run", "envelope", "verdicts"] {
             refused(&folder, &[command, "task.toml"], words);

@@ -123,6 +123,30 @@ fn frames(samples: &[Sample]) -> Value {
 
 fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, String> {
     let samples = run.samples.as_slice();
+    let mut out = height(task, samples)?;
+    out.extend(joints(task, samples));
+    out.push(pitch(task, samples, free));
+    out.push(plot(
+        "Forces on the soles, normal",
+        "N",
+        vec![
+            curve("left", COLORS[0], false, samples, |s| s.forces_w[0].z),
+            curve("right", COLORS[1], false, samples, |s| s.forces_w[1].z),
+        ],
+    ));
+    let axes = ["x", "y", "z"].iter().enumerate();
+    let momentum =
+        axes.map(|(i, name)| curve(name, COLORS[i], false, samples, move |s| s.momentum[i]));
+    out.push(plot(
+        "Angular momentum about the CoM",
+        "kg m²/s",
+        momentum.collect(),
+    ));
+    Ok(out)
+}
+
+/// Speed, acceleration and height of the centre of mass beside their profile.
+fn height(task: &Task, samples: &[Sample]) -> Result<Vec<Value>, String> {
     let profile = task.profile()?;
     let pushing = |t: f64| (0.0..=profile.duration).contains(&t);
     let planned = |f: &dyn Fn(f64) -> f64| {
@@ -134,7 +158,7 @@ fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, Strin
         Phase::Landing | Phase::Stand | Phase::Abort => f64::NAN,
         _ => s.wanted_height,
     };
-    let mut out = vec![
+    Ok(vec![
         plot(
             "Figure 1: speed of the CoM, vertical",
             "m/s",
@@ -156,7 +180,12 @@ fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, Strin
                 curve("measured", COLORS[1], false, samples, |s| s.com.z),
             ],
         ),
-    ];
+    ])
+}
+
+/// Speeds and torques of the joints that the paper shows, with their limits.
+fn joints(task: &Task, samples: &[Sample]) -> Vec<Value> {
+    let mut out = Vec::new();
     let names = Model::<f64, JOINTS>::joint_names(&ROBOT);
     for (letter, i) in [
         ("a", joint::L_ANKLE_PITCH),
@@ -179,6 +208,11 @@ fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, Strin
         let all = with(torque, task.motors()[i].torque);
         out.push(plot(&title("torque"), "N m", all));
     }
+    out
+}
+
+/// Pitch of the base, and what it is without the momentum rows.
+fn pitch(task: &Task, samples: &[Sample], free: Option<&Run>) -> Value {
     let mut pitch = vec![curve(
         if task.momentum {
             "with the rows"
@@ -200,22 +234,5 @@ fn plots(task: &Task, run: &Run, free: Option<&Run>) -> Result<Vec<Value>, Strin
             Sample::pitch_deg,
         ));
     }
-    out.push(plot("Figure 6: pitch of the base", "degrees", pitch));
-    out.push(plot(
-        "Forces on the soles, normal",
-        "N",
-        vec![
-            curve("left", COLORS[0], false, samples, |s| s.forces_w[0].z),
-            curve("right", COLORS[1], false, samples, |s| s.forces_w[1].z),
-        ],
-    ));
-    let axes = ["x", "y", "z"].iter().enumerate();
-    let momentum =
-        axes.map(|(i, name)| curve(name, COLORS[i], false, samples, move |s| s.momentum[i]));
-    out.push(plot(
-        "Angular momentum about the CoM",
-        "kg m²/s",
-        momentum.collect(),
-    ));
-    Ok(out)
+    plot("Figure 6: pitch of the base", "degrees", pitch)
 }

@@ -122,8 +122,43 @@ fn scene(task: &Task) -> Value {
 }
 
 fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Value> {
+    let mut out = base(samples);
+    out.extend(torques(robot, samples));
+    out.extend(forces(robot, samples));
+    let touchdown = reference.touchdown;
+    let error = move |s: &Sample| {
+        if s.time > touchdown {
+            return f64::NAN;
+        }
+        let pairs = (0..JOINTS).map(|j| (s.joints[j] - s.planned_joints[j]).abs());
+        pairs.fold(0.0, f64::max)
+    };
+    out.push(plot(
+        "Largest joint tracking error up to the planned touchdown",
+        "rad",
+        vec![curve("error", COLORS[0], false, samples, error)],
+    ));
+    let fastest = robot.drives()[0].no_load_speed;
+    let speed = |s: &Sample| {
+        s.joint_velocities
+            .iter()
+            .fold(0.0, |m: f64, v| m.max(v.abs()))
+    };
+    out.push(plot(
+        "Fastest joint",
+        "rad/s",
+        vec![
+            curve("speed", COLORS[0], false, samples, speed),
+            curve("no-load speed", LIMIT, true, samples, move |_| fastest),
+        ],
+    ));
+    out
+}
+
+/// Place and attitude of the base.
+fn base(samples: &[Sample]) -> Vec<Value> {
     let axes = ["x", "y", "z"];
-    let mut out = vec![
+    vec![
         plot(
             "Base position",
             "m",
@@ -152,10 +187,14 @@ fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Va
                 })
                 .collect(),
         ),
-    ];
+    ]
+}
+
+/// Torques of the joints by kind, with their limits.
+fn torques(robot: &Quadruped, samples: &[Sample]) -> Vec<Value> {
     let names = joint_names(robot);
     let motors = robot.drives();
-    let fastest = motors[0].no_load_speed;
+    let mut out = Vec::new();
     for (i, kind) in ["Hip", "Thigh", "Calf"].iter().enumerate() {
         let mut series: Vec<Value> = (0..FOOT_COUNT)
             .map(|leg| {
@@ -170,6 +209,12 @@ fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Va
         series.push(curve("-limit", LIMIT, true, samples, move |_| -limit));
         out.push(plot(&format!("{kind} torques"), "N m", series));
     }
+    out
+}
+
+/// Forces of the feet, and those that are wanted.
+fn forces(robot: &Quadruped, samples: &[Sample]) -> Vec<Value> {
+    let mut out = Vec::new();
     for (axis, title) in [
         (2, "Contact forces, normal"),
         (1, "Contact forces, sideways (y)"),
@@ -198,31 +243,5 @@ fn plots(robot: &Quadruped, samples: &[Sample], reference: &Reference) -> Vec<Va
             .collect();
         out.push(plot(title, "N", series));
     }
-    let touchdown = reference.touchdown;
-    let error = move |s: &Sample| {
-        if s.time > touchdown {
-            return f64::NAN;
-        }
-        let pairs = (0..JOINTS).map(|j| (s.joints[j] - s.planned_joints[j]).abs());
-        pairs.fold(0.0, f64::max)
-    };
-    out.push(plot(
-        "Largest joint tracking error up to the planned touchdown",
-        "rad",
-        vec![curve("error", COLORS[0], false, samples, error)],
-    ));
-    let speed = |s: &Sample| {
-        s.joint_velocities
-            .iter()
-            .fold(0.0, |m: f64, v| m.max(v.abs()))
-    };
-    out.push(plot(
-        "Fastest joint",
-        "rad/s",
-        vec![
-            curve("speed", COLORS[0], false, samples, speed),
-            curve("no-load speed", LIMIT, true, samples, move |_| fastest),
-        ],
-    ));
     out
 }
