@@ -53,16 +53,6 @@ impl<'a> Reader<'a> {
         out
     }
 
-    /// The next numbers where they stand, each as its bytes.
-    pub(super) const fn stored(&mut self, count: usize) -> &'a [[u8; 4]] {
-        let Some((numbers, rest)) = self.0.split_at_checked(count.saturating_mul(4)) else {
-            self.0 = &[];
-            return &[];
-        };
-        self.0 = rest;
-        numbers.as_chunks().0
-    }
-
     /// A text of up to `ROOM` bytes: its length, and its field. None where the length is beyond the field, or the text is no UTF-8.
     pub(super) const fn text<const ROOM: usize>(&mut self) -> Option<&'a str> {
         let [length] = self.take();
