@@ -1,8 +1,8 @@
 //! `cargo xtask c-abi`: the C header is what the source gives, and programs in C do with it what they should.
 //!
-//! Two of them misuse the library: null, unaligned and moved blocks, wrong sizes, versions, plans, numbers. They end with an error if
+//! Three of them misuse the library: null, unaligned and moved blocks, wrong sizes, versions, plans, numbers. They end with an error if
 //! a status is not the promised one, and what they compute on a Cortex-M7 is what they compute here, bit for bit. Together they call every
-//! function of the header, so that their link for the board shows that no panic is reachable. A third flies A1 in MuJoCo.
+//! function of the header, so that their link for the board shows that no panic is reachable. A fourth flies A1 in MuJoCo.
 
 use core::time::Duration;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::{image, mujoco, run};
 
 const LIMIT: Duration = Duration::from_secs(120);
 /// Programs that run here and on the board.
-const EXAMPLES: [&str; 2] = ["landing", "machine"];
+const EXAMPLES: [&str; 3] = ["landing", "machine", "machine_icub"];
 /// The plan that they are given.
 const PLAN: &str = "firmware/probe/plans/a1-double-backflip.bin";
 /// What is flown.

@@ -193,19 +193,19 @@ static void estimates(void) {
     expect("estimator in too little", saltus_a1_estimator_init(estimator, 8, SALTUS_VERSION, &start), SALTUS_STATUS_TOO_SMALL);
     expect("estimator", saltus_a1_estimator_init(estimator, sizeof estimator, SALTUS_VERSION, &start), SALTUS_STATUS_OK);
     expect("estimate to nowhere", saltus_a1_estimator_update(estimator, &sample, 1e-3, NULL), SALTUS_STATUS_NULL_POINTER);
-    unsigned long most = 0;
+    Cost most = {0, 0};
     for (int i = 0; i < 50; ++i) {
-        unsigned long since = instructions();
-        expect("estimate", saltus_a1_estimator_update(estimator, &sample, 1e-3, &found), SALTUS_STATUS_OK);
-        since = instructions() - since;
-        most = since > most ? since : most;
+        unsigned long since = begin_cost();
+        SaltusStatus status = saltus_a1_estimator_update(estimator, &sample, 1e-3, &found);
+        end_cost(&most, since);
+        expect("estimate", status, SALTUS_STATUS_OK);
     }
     hold("a good estimate", found.status == SALTUS_ESTIMATE_STATUS_GOOD && found.fault == SALTUS_SAMPLE_FAULT_NONE);
     print("estimate", found.position_w, 3);
     print("estimate", found.orientation_wb, 4);
     print("estimate", found.linear_velocity_b, 3);
     print("estimate", found.confidence, 4);
-    printf("costs estimate %lu\n", most);
+    print_cost("A1", "estimate", most);
     static const struct { SaltusSampleFault fault; size_t at; uint32_t index; } wrong[] = {
         {SALTUS_SAMPLE_FAULT_ACCELEROMETER, offsetof(SaltusA1Sample, specific_force_i), 0},
         {SALTUS_SAMPLE_FAULT_GYROSCOPE, offsetof(SaltusA1Sample, angular_velocity_i), 0},
@@ -230,52 +230,42 @@ static void estimates(void) {
 
 /* All phases of the plan, in the order of time; digests of what the machine says. */
 static void walk(void) {
-    static const uint64_t prime = 0x100000001b3u;
-    unsigned long most[SALTUS_PHASE_ABORT + 1] = {0}, joint = 0, deepest = 0, arm;
-    uint64_t hash = 0xcbf29ce484222325u;
-    double tau[12];
+    Cost most[SALTUS_PHASE_ABORT + 1] = {{0, 0}}, joint = {0, 0}, arm = {0, 0};
     int visited[SALTUS_PHASE_ABORT + 1] = {0};
+    double tau[12];
     begin();
-    paint_stack();
-    arm = instructions();
-    expect("arm", saltus_a1_machine_arm(machine, plan_begin, length, 0.3, NULL), SALTUS_STATUS_OK);
-    arm = instructions() - arm;
-    printf("costs arm %lu, bytes of stack %lu\n", arm, stack_used());
+    unsigned long since = begin_cost();
+    SaltusStatus status = saltus_a1_machine_arm(machine, plan_begin, length, 0.3, NULL);
+    end_cost(&arm, since);
+    expect("arm", status, SALTUS_STATUS_OK);
+    print_cost("A1", "arm", arm);
     for (int k = 1; clock_now < 0.3 + about.touchdown + 0.2; ++k) {
         clock_now = 1e-3 * k;
-        paint_stack();
-        unsigned long since = instructions(), used;
-        SaltusStatus status = saltus_a1_machine_tick(machine, clock_now, &seen, &tick);
-        since = instructions() - since;
-        used = stack_used();
-        deepest = used > deepest ? used : deepest;
+        Cost cost = {0, 0};
+        since = begin_cost();
+        status = saltus_a1_machine_tick(machine, clock_now, &seen, &tick);
+        end_cost(&cost, since);
         expect("walk", status, SALTUS_STATUS_OK);
-        ++visited[tick.phase];
-        most[tick.phase] = since > most[tick.phase] ? since : most[tick.phase];
-        since = instructions();
-        expect("walk", saltus_a1_machine_joint_tick(machine, seen.joints, seen.joint_velocities, 1e-4, tau),
-               SALTUS_STATUS_OK);
-        since = instructions() - since;
-        joint = since > joint ? since : joint;
+        most[tick.phase] = larger(most[tick.phase], cost);
+        since = begin_cost();
+        status = saltus_a1_machine_joint_tick(machine, seen.joints, seen.joint_velocities, 1e-4, tau);
+        end_cost(&joint, since);
+        expect("walk", status, SALTUS_STATUS_OK);
         if (tick.phase == SALTUS_PHASE_HOLD) {
             memcpy(seen.torques, tau, sizeof tau); /* Of a robot that stands: with any others its feet would not be believed. */
         }
-        unsigned char bytes[sizeof tick.command + sizeof tau];
-        memcpy(bytes, &tick.command, sizeof tick.command);
-        memcpy(bytes + sizeof tick.command, tau, sizeof tau);
-        for (size_t i = 0; i < sizeof bytes; ++i) {
-            hash = (hash ^ bytes[i]) * prime;
-        }
+        ++visited[tick.phase];
+        take(&tick.command, sizeof tick.command);
+        take(tau, sizeof tau);
         if (k % 20 == 0) {
-            printf("walk %s %08lx%08lx\n", saltus_phase_text((uint32_t)tick.phase), (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffu));
+            print_digest(tick.phase);
         }
     }
     for (int phase = SALTUS_PHASE_HOLD; phase <= SALTUS_PHASE_LANDING; ++phase) {
         hold(saltus_phase_text((uint32_t)phase), visited[phase] > 0);
-        printf("costs tick %s %lu\n", saltus_phase_text((uint32_t)phase), most[phase]);
+        print_cost("A1", saltus_phase_text((uint32_t)phase), most[phase]);
     }
-    printf("costs joint-tick %lu\n", joint);
-    printf("costs tick, bytes of stack at most %lu\n", deepest);
+    print_cost("A1", "joint tick", joint);
 }
 
 int main(void) {
@@ -294,7 +284,7 @@ int main(void) {
     refusals();
     estimates();
     walk();
-    printf("blocks machine %lu estimator %lu\n", (unsigned long)saltus_a1_machine_size(), (unsigned long)saltus_a1_estimator_size());
+    printf("blocks A1 machine %lu estimator %lu\n", (unsigned long)saltus_a1_machine_size(), (unsigned long)saltus_a1_estimator_size());
     puts(failures == 0 ? "c-abi: all as the header says" : "c-abi: FAILED");
     return failures == 0 ? 0 : 1;
 }

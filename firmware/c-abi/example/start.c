@@ -1,4 +1,5 @@
 /* Start of a Cortex-M7: vectors, coprocessor, data; console and end by newlib's semihosting. */
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -6,8 +7,8 @@ extern uint32_t stack_top, data_start, data_end, data_load, __bss_start__, __bss
 extern void initialise_monitor_handles(void);
 extern int main(void);
 unsigned long instructions(void);
-void paint_stack(void);
-unsigned long stack_used(void);
+void paint_stack(size_t bytes);
+unsigned long stack_used(size_t bytes);
 
 void reset(void) {
     *(volatile uint32_t *)0xE000ED88u |= 0xFu << 20; /* CPACR: the floating-point unit */
@@ -44,7 +45,7 @@ unsigned long instructions(void) {
 }
 
 /* What is painted ends a little below the stack pointer: these two functions have frames as well. */
-enum { WATCHED = 32 * 1024, OWN = 64, PAINT = 0x5a17a5a5 };
+enum { OWN = 64, PAINT = 0x5a17a5a5 };
 
 static volatile uint32_t *stack_now(void) {
     uint32_t pointer;
@@ -52,15 +53,15 @@ static volatile uint32_t *stack_now(void) {
     return (volatile uint32_t *)pointer;
 }
 
-__attribute__((noinline)) void paint_stack(void) {
+__attribute__((noinline)) void paint_stack(size_t bytes) {
     volatile uint32_t *top = stack_now() - OWN / 4;
-    for (volatile uint32_t *word = top - WATCHED / 4; word < top; ++word) {
+    for (volatile uint32_t *word = top - bytes / 4; word < top; ++word) {
         *word = PAINT;
     }
 }
 
-__attribute__((noinline)) unsigned long stack_used(void) {
-    volatile uint32_t *top = stack_now() - OWN / 4, *word = top - WATCHED / 4;
+__attribute__((noinline)) unsigned long stack_used(size_t bytes) {
+    volatile uint32_t *top = stack_now() - OWN / 4, *word = top - bytes / 4;
     while (word < top && *word == PAINT) {
         ++word;
     }

@@ -9,7 +9,7 @@
  * A controller lives in memory of the caller: ask for its size and alignment, give a block, initialise it, and call
  * it from one thread at a time. A block must not be copied or moved after it was initialised: that is noticed, and the
  * status says so. Every function checks its pointers; no function allocates, blocks, calls back or keeps a pointer, with one
- * exception: a machine follows its plan where it is, so the plan's bytes must stay there, unchanged, until the machine is armed with
+ * exception: A1's machine follows its plan where it is, so the plan's bytes must stay there, unchanged, until the machine is armed with
  * another plan or initialised anew. What a call writes must not overlap what it reads.
  */
 
@@ -22,7 +22,7 @@
 /*
  Version of the interface; a controller is initialised with the version that the caller was compiled with.
  */
-#define SALTUS_VERSION 3
+#define SALTUS_VERSION 4
 
 /*
  What came of a call.
@@ -209,22 +209,56 @@ typedef enum SaltusWork {
    */
   SALTUS_WORK_DAMPING = 0,
   /*
-   Feet pulled along the plan.
+   A1's feet pulled along the plan.
    */
   SALTUS_WORK_CARTESIAN = 1,
   /*
-   The landing, with no foot in contact: nothing to solve.
+   iCub's torques of holding still and pushing off, optimal.
    */
-  SALTUS_WORK_AIRBORNE = 2,
+  SALTUS_WORK_PUSH_OFF = 2,
   /*
-   The landing's forces, optimal.
+   The same, not optimal: the last iterate, inside every limit.
    */
-  SALTUS_WORK_LANDING = 3,
+  SALTUS_WORK_PUSH_OFF_CAPPED = 3,
   /*
-   The landing's forces, not optimal: the last iterate, inside every limit.
+   A1's landing, with no foot in contact: nothing to solve.
    */
-  SALTUS_WORK_LANDING_CAPPED = 4,
+  SALTUS_WORK_AIRBORNE = 4,
+  /*
+   A1's forces of landing and standing, iCub's torques of flight, landing and standing, optimal.
+   */
+  SALTUS_WORK_LANDING = 5,
+  /*
+   The same, not optimal: the last iterate, inside every limit.
+   */
+  SALTUS_WORK_LANDING_CAPPED = 6,
+  /*
+   A program of iCub's had no answer: the last command stays.
+   */
+  SALTUS_WORK_UNSOLVED = 7,
 } SaltusWork;
+
+/*
+ Which rows of a program had to yield, so that the others hold. None of A1's can.
+ */
+typedef enum SaltusYielded {
+  /*
+   None.
+   */
+  SALTUS_YIELDED_NOTHING = 0,
+  /*
+   Held tasks.
+   */
+  SALTUS_YIELDED_TASKS = 1,
+  /*
+   Limits on the joints' motion, too.
+   */
+  SALTUS_YIELDED_MOTION_LIMITS = 2,
+  /*
+   Contacts, too.
+   */
+  SALTUS_YIELDED_CONTACTS = 3,
+} SaltusYielded;
 
 /*
  Why a machine has aborted.
@@ -263,9 +297,13 @@ typedef enum SaltusFault {
    */
   SALTUS_FAULT_COMMAND = 7,
   /*
+   A controller's program had no answer for 5 ms.
+   */
+  SALTUS_FAULT_UNSOLVED = 8,
+  /*
    Another fault of a newer machine.
    */
-  SALTUS_FAULT_OTHER = 8,
+  SALTUS_FAULT_OTHER = 9,
 } SaltusFault;
 
 /*
@@ -295,7 +333,7 @@ typedef enum SaltusRefusal {
 } SaltusRefusal;
 
 /*
- State of A1: base and twelve joints.
+ State of a robot: base and joints.
  */
 typedef struct SaltusA1State {
   /*
@@ -438,7 +476,7 @@ typedef struct SaltusA1Sample {
    */
   double joint_velocities[12];
   /*
-   How certainly each foot stands, 0 to 1: its force over 15 N, for one.
+   How certainly each foot stands, 0 to 1: its force over 15 N of A1, over 40 N of iCub, for one.
    */
   double evidence[4];
 } SaltusA1Sample;
@@ -574,7 +612,7 @@ typedef struct SaltusCulprit {
 } SaltusCulprit;
 
 /*
- What the machine is told every millisecond; the base as an estimator has it, such as `saltus_a1_estimator_update`.
+ What the machine is told every millisecond; the base as an estimator has it, such as this header's.
  */
 typedef struct SaltusA1Observation {
   /*
@@ -602,7 +640,7 @@ typedef struct SaltusA1Observation {
    */
   double joint_velocities[12];
   /*
-   Mean torques of the joints since the last observation, friction included, N m.
+   Mean torques of the joints since the last observation, friction included, N m. iCub's machine does not read them.
    */
   double torques[12];
   /*
@@ -628,6 +666,14 @@ typedef struct SaltusA1Tick {
    */
   enum SaltusWork work;
   /*
+   Iterations of a program's solver, 0 where nothing was solved.
+   */
+  uint32_t iterations;
+  /*
+   Which rows of a program had to yield.
+   */
+  enum SaltusYielded yielded;
+  /*
    Why the machine has aborted: the first fault.
    */
   enum SaltusFault fault;
@@ -644,14 +690,14 @@ typedef struct SaltusA1Tick {
    */
   uint32_t refusal_joint;
   /*
-   What the joints are to do until the next tick: for motor boards that take such commands. Who calls
-   `saltus_a1_machine_joint_tick` need not look at it.
+   What the joints are to do until the next tick: for motor boards that take such commands. Who calls the machine's joint tick
+   need not look at it.
    */
   struct SaltusA1Command command;
 } SaltusA1Tick;
 
 /*
- State of iCub: base and 23 joints.
+ State of a robot: base and joints.
  */
 typedef struct SaltusIcubState {
   /*
@@ -681,49 +727,236 @@ typedef struct SaltusIcubState {
 } SaltusIcubState;
 
 /*
- Where the centre of mass is to be in this tick, world axes.
+ Where the robot stands still when the estimator begins, and where its IMU is.
  */
-typedef struct SaltusIcubTarget {
+typedef struct SaltusIcubStart {
   /*
-   Position, m.
+   Position of the base in the world, m.
    */
   double position_w[3];
   /*
-   Velocity, m/s.
+   Orientation of the base: a unit quaternion x, y, z, w.
    */
-  double velocity_w[3];
+  double orientation_wb[4];
   /*
-   Acceleration, m/s².
+   Joint positions, rad.
    */
-  double acceleration_w[3];
-} SaltusIcubTarget;
+  double joints[23];
+  /*
+   Position of the IMU in the base, m.
+   */
+  double imu_position_b[3];
+  /*
+   Orientation of the IMU in the base: a unit quaternion x, y, z, w that takes IMU axes to base axes.
+   */
+  double imu_orientation_bi[4];
+} SaltusIcubStart;
 
 /*
- What the push-off's program found.
+ What the sensors say every millisecond.
  */
-typedef struct SaltusIcubCommand {
+typedef struct SaltusIcubSample {
   /*
-   Joint torques, N m, inside their limits.
+   Accelerometer: acceleration minus gravity, IMU axes, m/s²; at rest it points up.
+   */
+  double specific_force_i[3];
+  /*
+   Gyroscope, IMU axes, rad/s.
+   */
+  double angular_velocity_i[3];
+  /*
+   Joint positions, rad.
+   */
+  double joints[23];
+  /*
+   Joint velocities, rad/s.
+   */
+  double joint_velocities[23];
+  /*
+   How certainly each foot stands, 0 to 1: its force over 15 N of A1, over 40 N of iCub, for one.
+   */
+  double evidence[2];
+} SaltusIcubSample;
+
+/*
+ Where the base is; always finite. The first four go into an observation of the machine as they are.
+ */
+typedef struct SaltusIcubEstimate {
+  /*
+   Position of the base in the world, m.
+   */
+  double position_w[3];
+  /*
+   Orientation of the base: a unit quaternion x, y, z, w.
+   */
+  double orientation_wb[4];
+  /*
+   Linear velocity of the base in base axes, m/s.
+   */
+  double linear_velocity_b[3];
+  /*
+   Angular velocity of the base in base axes, rad/s.
+   */
+  double angular_velocity_b[3];
+  /*
+   How sure it is that each foot stands on the ground, 0 to 1.
+   */
+  double confidence[2];
+  /*
+   Whether it may be acted on; what is lost makes an observation of infinite age.
+   */
+  enum SaltusEstimateStatus status;
+  /*
+   The first thing that was wrong with the sample.
+   */
+  enum SaltusSampleFault fault;
+  /*
+   Its joint or foot.
+   */
+  uint32_t fault_index;
+} SaltusIcubEstimate;
+
+/*
+ A jump of iCub on the spot: how far it rises, from where, and how it comes down.
+ */
+typedef struct SaltusIcubJump {
+  /*
+   Height that the centre of mass gains after the take-off, m.
+   */
+  double height;
+  /*
+   Its way up in the push-off, m.
+   */
+  double displacement;
+  /*
+   Position of the base before the jump, in the estimator's world, m: both soles flat on the ground.
+   */
+  double position_w[3];
+  /*
+   Orientation of the base there: a unit quaternion x, y, z, w.
+   */
+  double orientation_wb[4];
+  /*
+   Joint positions there, rad.
+   */
+  double start_joints[23];
+  /*
+   Joint positions in which the soles meet the ground and the robot then stands, rad.
+   */
+  double landing_joints[23];
+} SaltusIcubJump;
+
+/*
+ What the machine is told every millisecond; the base as an estimator has it, such as this header's.
+ */
+typedef struct SaltusIcubObservation {
+  /*
+   Position of the base in the world, m.
+   */
+  double position_w[3];
+  /*
+   Orientation of the base: a unit quaternion x, y, z, w.
+   */
+  double orientation_wb[4];
+  /*
+   Linear velocity of the base in base axes, m/s.
+   */
+  double linear_velocity_b[3];
+  /*
+   Angular velocity of the base in base axes, rad/s.
+   */
+  double angular_velocity_b[3];
+  /*
+   Joint positions, rad.
+   */
+  double joints[23];
+  /*
+   Joint velocities, rad/s.
+   */
+  double joint_velocities[23];
+  /*
+   Mean torques of the joints since the last observation, friction included, N m. iCub's machine does not read them.
    */
   double torques[23];
   /*
-   Wrenches on left and right sole in the soles' axes: force in N, then moment in N m.
+   Normal forces on the feet, N.
    */
-  double wrenches[12];
+  double foot_forces[2];
   /*
-   Which rows had to yield: 0 none, 1 held tasks, 2 also limits on the joints' motion, 3 also contacts.
+   Age of the oldest of these numbers, s; infinite where the base is not known.
    */
-  uint32_t yielded;
+  double age;
+} SaltusIcubObservation;
+
+/*
+ What the joints are to do until the next command: τ = `feed_forward` + `stiffness` (`position` − q) + `damping`
+ (`velocity` − q̇), inside what the motors can do.
+ */
+typedef struct SaltusIcubCommand {
   /*
-   Iterations of the solver.
+   Joint positions, rad.
+   */
+  double position[23];
+  /*
+   Joint velocities, rad/s.
+   */
+  double velocity[23];
+  /*
+   Torques, N m.
+   */
+  double feed_forward[23];
+  /*
+   Stiffnesses, N m/rad.
+   */
+  double stiffness[23];
+  /*
+   Dampings, N m s/rad.
+   */
+  double damping[23];
+} SaltusIcubCommand;
+
+/*
+ What came of a tick.
+ */
+typedef struct SaltusIcubTick {
+  /*
+   Where the jump is.
+   */
+  enum SaltusPhase phase;
+  /*
+   What was computed.
+   */
+  enum SaltusWork work;
+  /*
+   Iterations of a program's solver, 0 where nothing was solved.
    */
   uint32_t iterations;
   /*
-   1 if the cap on the solver's time ended the search: torques are the last iterate's, cut to their limits, and the next tick goes
-   on from there. Otherwise 0.
+   Which rows of a program had to yield.
    */
-  uint32_t capped;
-} SaltusIcubCommand;
+  enum SaltusYielded yielded;
+  /*
+   Why the machine has aborted: the first fault.
+   */
+  enum SaltusFault fault;
+  /*
+   The fault's joint or foot.
+   */
+  uint32_t fault_index;
+  /*
+   Why the last jump was not begun.
+   */
+  enum SaltusRefusal refusal;
+  /*
+   The refusal's joint.
+   */
+  uint32_t refusal_joint;
+  /*
+   What the joints are to do until the next tick: for motor boards that take such commands. Who calls the machine's joint tick
+   need not look at it.
+   */
+  struct SaltusIcubCommand command;
+} SaltusIcubTick;
 
 #ifdef __cplusplus
 extern "C" {
@@ -852,7 +1085,7 @@ enum SaltusStatus saltus_a1_machine_init(void *memory,
 /*
  Gives a standing robot a plan that begins at `start`, s, on the clock of `saltus_a1_machine_tick`; until then it holds the plan's first
  node. The start must be at least 0.15 s after the last tick. The plan is what `saltus plan` writes as `plan.bin`; version,
- checksum, robot and every number of it are looked at, which takes as long as hundreds of ticks. It is followed where it is: its bytes must
+ checksum, robot and every number of it are looked at, which takes as long as thirty ticks for 624 nodes. It is followed where it is: its bytes must
  stay there, unchanged, until the machine has another plan or is initialised anew. If the status is not `Ok`, nothing changes; a culprit
  that is not null then says what is to blame.
  */
@@ -913,51 +1146,112 @@ const char *saltus_refusal_text(uint32_t refusal);
 const char *saltus_sample_fault_text(uint32_t fault);
 
 /*
- Inverse dynamics of iCub: effort = M a + h. `acceleration` and `effort` have 29 numbers: 6 of the base, then joints.
+ Inverse dynamics of iCub with rotors: effort = M a + h. `acceleration` and `effort` have 29 numbers: 6 of the base, then joints.
  */
 enum SaltusStatus saltus_icub_inverse_dynamics(const struct SaltusIcubState *state,
                                                const double *acceleration,
                                                double *effort);
 
 /*
- Forward dynamics of iCub, free in the air: acceleration = M⁻¹ (effort − h); 29 numbers each.
+ Forward dynamics of iCub with rotors, free in the air: acceleration = M⁻¹ (effort − h); 29 numbers each.
  */
 enum SaltusStatus saltus_icub_forward_dynamics(const struct SaltusIcubState *state,
                                                const double *given,
                                                double *acceleration);
 
 /*
- Mass matrix of iCub, 29 × 29 numbers, symmetric.
+ Mass matrix of iCub with rotors, 29 × 29 numbers, symmetric.
  */
 enum SaltusStatus saltus_icub_mass_matrix(const struct SaltusIcubState *state, double *mass);
 
 /*
- Bytes of the block of the push-off controller.
+ Bytes of the block of an estimator.
  */
-size_t saltus_icub_push_size(void);
+size_t saltus_icub_estimator_size(void);
 
 /*
- Alignment of the block of the push-off controller.
+ Alignment of the block of an estimator.
  */
-size_t saltus_icub_push_align(void);
+size_t saltus_icub_estimator_align(void);
 
 /*
- Initialises the push-off controller in a block; `version` is `SALTUS_VERSION`, `posture` the 23 joints to stay near, rad, and `max_steps` the
- most steps of the solver in a tick, 0 for no cap: with 12 a tick takes 720,000 instructions on a Cortex-M7, with every other 15,000 more.
+ Initialises an estimator in a block, of a robot that stands still in a known place; `version` is `SALTUS_VERSION`. Before a jump it may be
+ initialised anew where the jump begins, so that what it has drifted is forgotten.
  */
-enum SaltusStatus saltus_icub_push_init(void *memory,
-                                        size_t bytes,
-                                        uint32_t version,
-                                        const double *posture,
-                                        uint32_t max_steps);
+enum SaltusStatus saltus_icub_estimator_init(void *memory,
+                                             size_t bytes,
+                                             uint32_t version,
+                                             const struct SaltusIcubStart *start);
 
 /*
- One tick of the push-off on both soles, for 1 kHz. If the status is not `Ok`, torques are zero.
+ One step of `dt` s, for 1 kHz; `sample` is null if none arrived. What is wrong with a sample, the estimate says.
  */
-enum SaltusStatus saltus_icub_push_tick(void *memory,
-                                        const struct SaltusIcubState *state,
-                                        const struct SaltusIcubTarget *target,
-                                        struct SaltusIcubCommand *command);
+enum SaltusStatus saltus_icub_estimator_update(void *memory,
+                                               const struct SaltusIcubSample *sample,
+                                               double dt,
+                                               struct SaltusIcubEstimate *estimate);
+
+/*
+ The jump of paper B: from its squat, the soles on ground of height 0, the toes along x and the soles' middle in the origin, to a gain of
+ `height`, m; the paper's is 0.04.
+ */
+enum SaltusStatus saltus_icub_jump(double height,
+                                   struct SaltusIcubJump *jump);
+
+/*
+ Bytes of the block of a machine.
+ */
+size_t saltus_icub_machine_size(void);
+
+/*
+ Alignment of the block of a machine.
+ */
+size_t saltus_icub_machine_align(void);
+
+/*
+ Initialises a machine in a block; `version` is `SALTUS_VERSION`. It stands, without a jump; until the first tick its joints are damped.
+ The way out of an abort, too. `max_steps` is the most steps of a program's solver in a tick, 0 for no cap: with 10 a tick takes a million instructions on
+ a Cortex-M7 at most, and with every other 15,000 more. The programs' memory is made on the stack before it is moved into the block: this call
+ takes 370 kB of it.
+ */
+enum SaltusStatus saltus_icub_machine_init(void *memory,
+                                           size_t bytes,
+                                           uint32_t version,
+                                           uint32_t max_steps);
+
+/*
+ Gives a standing robot a jump that begins at `start`, s, on the clock of `saltus_icub_machine_tick`; until then it holds the jump's first
+ posture. The start must not be before the last tick. The numbers are copied. `BadData` says that one of them is not finite, that height and displacement
+ are not positive, or that the orientation is none. If the status is not `Ok`, nothing changes.
+ */
+enum SaltusStatus saltus_icub_machine_arm(void *memory,
+                                          const struct SaltusIcubJump *jump,
+                                          double start);
+
+/*
+ One tick of 1 kHz at the time `now`, s, on a clock that only goes forward. `observation` is what has arrived since the last tick, null if
+ nothing: the last one is used until it is older than 10 ms. Whatever the status, `tick` holds a command that may be given to the joints
+ if it is neither null nor misaligned. `Aborted` says that joints are damped from now on, and the tick's fault why.
+ */
+enum SaltusStatus saltus_icub_machine_tick(void *memory,
+                                           double now,
+                                           const struct SaltusIcubObservation *observation,
+                                           struct SaltusIcubTick *tick);
+
+/*
+ Torques of the 23 joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can
+ do. Damping alone once ticks have been missing for 5 ms, or an encoder is not finite; and where the block is no machine.
+ */
+enum SaltusStatus saltus_icub_machine_joint_tick(void *memory,
+                                                 const double *joints,
+                                                 const double *joint_velocities,
+                                                 double dt,
+                                                 double *torques);
+
+/*
+ Where the jump is.
+ */
+enum SaltusStatus saltus_icub_machine_phase(void *memory, enum SaltusPhase *phase);
 
 #ifdef __cplusplus
 }  // extern "C"

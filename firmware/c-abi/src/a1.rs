@@ -3,31 +3,15 @@
 use core::ffi::c_void;
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
-use jump_control::{CartesianPd, JointCommand, JointGains, Measurement, Reference};
+use jump_control::{CartesianPd, Measurement, Reference};
 use landing::{Landing, Outcome, Settings, Target, Workspace};
 
+use crate::command::Command;
 use crate::memory::{Resident, align, input, output, place, resident, size, status};
-use crate::state::{A1State, effort, tangent};
+use crate::state::{State, effort, tangent};
 use crate::{Status, dynamics};
 
 const N: usize = 12;
-
-/// What the joints are to do until the next command: τ = `feed_forward` + `stiffness` (`position` − q) + `damping`
-/// (`velocity` − q̇), inside what the motors can do.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct A1Command {
-    /// Joint positions, rad.
-    pub position: [f64; 12],
-    /// Joint velocities, rad/s.
-    pub velocity: [f64; 12],
-    /// Torques, N m.
-    pub feed_forward: [f64; 12],
-    /// Stiffnesses, N m/rad.
-    pub stiffness: [f64; 12],
-    /// Dampings, N m s/rad.
-    pub damping: [f64; 12],
-}
 
 /// What a plan says about one instant.
 #[repr(C)]
@@ -55,6 +39,10 @@ pub struct A1Target {
     pub waiting: [f64; 12],
 }
 
+/// Damping of the safe command, N m s/rad.
+pub(crate) const SAFE_DAMPING: f64 = 2.0;
+const SAFE: Command<N> = Command::damp(SAFE_DAMPING);
+
 struct A1Landing {
     landing: Landing<f64, N, 4>,
     workspace: Workspace<f64, N, 4>,
@@ -65,51 +53,10 @@ impl Resident for A1Landing {
     type Lent = ();
 }
 
-/// Damping of the safe command, N m s/rad.
-pub(crate) const SAFE_DAMPING: f64 = 2.0;
-
-/// Damping alone: what a caller gets that must not trust anything else.
-pub(crate) const SAFE: A1Command = A1Command {
-    position: [0.0; N],
-    velocity: [0.0; N],
-    feed_forward: [0.0; N],
-    stiffness: [0.0; N],
-    damping: [SAFE_DAMPING; N],
-};
-
-impl A1Command {
-    pub(crate) fn of(c: &JointCommand<f64, N>) -> Self {
-        Self {
-            position: c.position,
-            velocity: c.velocity,
-            feed_forward: c.feed_forward,
-            stiffness: c.gains.map(|g| g.stiffness),
-            damping: c.gains.map(|g| g.damping),
-        }
-    }
-
-    fn read(&self) -> JointCommand<f64, N> {
-        let mut gains = [JointGains {
-            stiffness: 0.0,
-            damping: 0.0,
-        }; N];
-        let given = self.stiffness.iter().zip(&self.damping);
-        for (gains, (stiffness, damping)) in gains.iter_mut().zip(given) {
-            (gains.stiffness, gains.damping) = (*stiffness, *damping);
-        }
-        JointCommand {
-            position: self.position,
-            velocity: self.velocity,
-            feed_forward: self.feed_forward,
-            gains,
-        }
-    }
-}
-
 /// Inverse dynamics of A1 with rotors: effort = M a + h. `acceleration` and `effort` have 18 numbers: 6 of the base, then joints.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_inverse_dynamics(
-    state: *const A1State,
+    state: *const State<12>,
     acceleration: *const f64,
     effort: *mut f64,
 ) -> Status {
@@ -130,7 +77,7 @@ pub extern "C" fn saltus_a1_inverse_dynamics(
 /// Forward dynamics of A1 with rotors, free in the air: acceleration = M⁻¹ (effort − h); 18 numbers each.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_forward_dynamics(
-    state: *const A1State,
+    state: *const State<12>,
     given: *const f64,
     acceleration: *mut f64,
 ) -> Status {
@@ -150,7 +97,7 @@ pub extern "C" fn saltus_a1_forward_dynamics(
 
 /// Mass matrix of A1 with rotors, 18 × 18 numbers, symmetric.
 #[unsafe(no_mangle)]
-pub extern "C" fn saltus_a1_mass_matrix(state: *const A1State, mass: *mut f64) -> Status {
+pub extern "C" fn saltus_a1_mass_matrix(state: *const State<12>, mass: *mut f64) -> Status {
     status((|| {
         let (q, _) = input(state)?.read()?;
         dynamics::mass::<_, N, 18>(&A1Geared, &q, output(mass.cast())?);
@@ -162,7 +109,7 @@ pub extern "C" fn saltus_a1_mass_matrix(state: *const A1State, mass: *mut f64) -
 /// zero torque.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_joint_pd(
-    command: *const A1Command,
+    command: *const Command<12>,
     joints: *const f64,
     joint_velocities: *const f64,
     torques: *mut f64,
@@ -178,10 +125,10 @@ pub extern "C" fn saltus_a1_joint_pd(
 /// the state was measured.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_cartesian_pd(
-    state: *const A1State,
+    state: *const State<12>,
     reference: *const A1Reference,
     then: *const A1Reference,
-    command: *mut A1Command,
+    command: *mut Command<12>,
 ) -> Status {
     status((|| {
         let out = output(command)?;
@@ -209,7 +156,7 @@ pub extern "C" fn saltus_a1_cartesian_pd(
             age: 0.0,
         };
         let pd = CartesianPd::new(&BUILD, FEET.each_ref().map(|foot| foot.frame));
-        *out = A1Command::of(&pd.command(&A1Geared, &measured, &reference, &then));
+        *out = Command::of(&pd.command(&A1Geared, &measured, &reference, &then));
         Ok(())
     })())
 }
@@ -249,10 +196,10 @@ pub extern "C" fn saltus_a1_landing_init(
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_landing_step(
     memory: *mut c_void,
-    state: *const A1State,
+    state: *const State<12>,
     contacts: *const u8,
     target: *const A1Target,
-    command: *mut A1Command,
+    command: *mut Command<12>,
 ) -> Status {
     status((|| {
         let out = output(command)?;
@@ -260,7 +207,7 @@ pub extern "C" fn saltus_a1_landing_step(
         let controller = resident::<A1Landing>(memory)?;
         let (q, v) = input(state)?.read()?;
         let given = input(target)?;
-        let rotation = A1State {
+        let rotation = State {
             rotation_wb: given.rotation_wb,
             joints: given.waiting,
             position_w: [given.height, given.offset_w[0], given.offset_w[1]],
@@ -277,7 +224,7 @@ pub extern "C" fn saltus_a1_landing_step(
         let on = input::<[u8; 4]>(contacts.cast())?.map(|contact| contact != 0);
         let A1Landing { landing, workspace } = controller;
         let c = landing.step(&A1Geared, &q, &v, &on, &target, &given.waiting, workspace);
-        *out = A1Command {
+        *out = Command {
             position: c.position,
             velocity: [0.0; N],
             feed_forward: c.feed_forward,

@@ -4,70 +4,22 @@ use core::ffi::{c_char, c_void};
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::container::GroundStep;
-use jump_control::{JointCommand, Measurement};
-use jump_machine::{Machine, Observation, Settings};
+use jump_machine::{Machine, Settings};
 use landing::Workspace;
-use rbd_core::Motion;
+use rbd_core::Motor;
 
 use crate::Status;
-use crate::a1::{A1Command, SAFE, SAFE_DAMPING};
-use crate::codes::{Culprit, Fault, Phase, Refusal, Work, fault, refusal};
-use crate::machine::{alive, arm, blame, open, plain};
-use crate::memory::{
-    Resident, align, input, optional, output, place, resident, result, size, status,
-};
-use crate::state::{no_pose, pose, xyzw};
+use crate::a1::SAFE_DAMPING;
+use crate::codes::{Culprit, Phase};
+use crate::machine::{self, Jumper, Observation, Tick, blame, not_armed, open, plain};
+use crate::memory::{Resident, align, place, resident, result, size, status};
+use crate::state::xyzw;
 
 const N: usize = 12;
 const F: usize = 4;
 
 /// Legs without ground while no jump was armed yet: hip, thigh, calf, rad. The crouch in which A1's build is measured.
 const WAITING: [f64; 3] = [0.0, 0.9, -1.8];
-
-/// What the machine is told every millisecond; the base as an estimator has it, such as `saltus_a1_estimator_update`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct A1Observation {
-    /// Position of the base in the world, m.
-    pub position_w: [f64; 3],
-    /// Orientation of the base: a unit quaternion x, y, z, w.
-    pub orientation_wb: [f64; 4],
-    /// Linear velocity of the base in base axes, m/s.
-    pub linear_velocity_b: [f64; 3],
-    /// Angular velocity of the base in base axes, rad/s.
-    pub angular_velocity_b: [f64; 3],
-    /// Joint positions, rad.
-    pub joints: [f64; 12],
-    /// Joint velocities, rad/s.
-    pub joint_velocities: [f64; 12],
-    /// Mean torques of the joints since the last observation, friction included, N m.
-    pub torques: [f64; 12],
-    /// Normal forces on the feet, N.
-    pub foot_forces: [f64; 4],
-    /// Age of the oldest of these numbers, s; infinite where the base is not known.
-    pub age: f64,
-}
-
-/// What came of a tick.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct A1Tick {
-    /// Where the jump is.
-    pub phase: Phase,
-    /// What was computed.
-    pub work: Work,
-    /// Why the machine has aborted: the first fault.
-    pub fault: Fault,
-    /// The fault's joint or foot.
-    pub fault_index: u32,
-    /// Why the last jump was not begun.
-    pub refusal: Refusal,
-    /// The refusal's joint.
-    pub refusal_joint: u32,
-    /// What the joints are to do until the next tick: for motor boards that take such commands. Who calls
-    /// `saltus_a1_machine_joint_tick` need not look at it.
-    pub command: A1Command,
-}
 
 /// What a plan says about itself.
 #[repr(C)]
@@ -115,36 +67,14 @@ impl Resident for A1Machine {
     type Lent = Workspace<f64, N, F>;
 }
 
-impl A1Observation {
-    /// As the machine takes it. An impossible base is left to the machine: it aborts, and names it.
-    fn read(&self) -> Observation<f64, N, F> {
-        let ([vx, vy, vz], [wx, wy, wz]) = (self.linear_velocity_b, self.angular_velocity_b);
-        let measured = Measurement {
-            base: pose(&self.position_w, &self.orientation_wb).unwrap_or_else(no_pose),
-            base_velocity: Motion::from_array([vx, vy, vz, wx, wy, wz]),
-            joints: self.joints,
-            joint_velocities: self.joint_velocities,
-            foot_forces: self.foot_forces,
-            age: self.age,
-        };
-        Observation {
-            measured,
-            joint_torques: self.torques,
-        }
-    }
-}
+impl Jumper<N, F> for A1Machine {
+    const SAFE_DAMPING: f64 = SAFE_DAMPING;
+    const MOTORS: &'static [Motor<f64>; N] = &MOTORS;
+    type Machine = Machine<'static, f64, A1Geared, N, F>;
 
-impl A1Tick {
-    /// Of a machine that cannot be reached.
-    const UNKNOWN: Self = Self {
-        phase: Phase::Abort,
-        work: Work::Damping,
-        fault: Fault::None,
-        fault_index: 0,
-        refusal: Refusal::None,
-        refusal_joint: 0,
-        command: SAFE,
-    };
+    fn machine(&mut self) -> &mut Self::Machine {
+        &mut self.0
+    }
 }
 
 /// Looks at every number of a plan, and says what it is. `culprit` may be null.
@@ -228,7 +158,7 @@ pub extern "C" fn saltus_a1_machine_init(
 
 /// Gives a standing robot a plan that begins at `start`, s, on the clock of `saltus_a1_machine_tick`; until then it holds the plan's first
 /// node. The start must be at least 0.15 s after the last tick. The plan is what `saltus plan` writes as `plan.bin`; version,
-/// checksum, robot and every number of it are looked at, which takes as long as hundreds of ticks. It is followed where it is: its bytes must
+/// checksum, robot and every number of it are looked at, which takes as long as thirty ticks for 624 nodes. It is followed where it is: its bytes must
 /// stay there, unchanged, until the machine has another plan or is initialised anew. If the status is not `Ok`, nothing changes; a culprit
 /// that is not null then says what is to blame.
 #[unsafe(no_mangle)]
@@ -242,7 +172,8 @@ pub extern "C" fn saltus_a1_machine_arm(
     status(blame(culprit, || {
         let A1Machine(machine) = resident(memory).map_err(plain)?;
         let (_, jump) = open(&A1Geared, plan, bytes)?;
-        arm(machine, jump, start)
+        let armed = machine.arm(jump, start);
+        armed.map_err(|refusal| plain(not_armed(refusal)))
     }))
 }
 
@@ -253,27 +184,10 @@ pub extern "C" fn saltus_a1_machine_arm(
 pub extern "C" fn saltus_a1_machine_tick(
     memory: *mut c_void,
     now: f64,
-    observation: *const A1Observation,
-    tick: *mut A1Tick,
+    observation: *const Observation<12, 4>,
+    tick: *mut Tick<12>,
 ) -> Status {
-    status((|| {
-        let out = result(tick)?.write(A1Tick::UNKNOWN);
-        let A1Machine(machine) = resident(memory)?;
-        let heard = optional(observation)?.map(A1Observation::read);
-        let done = machine.tick(now, heard.as_ref());
-        let (fault, fault_index) = fault(done.fault);
-        let (refusal, refusal_joint) = refusal(done.refusal);
-        *out = A1Tick {
-            phase: done.phase.into(),
-            work: done.work.into(),
-            fault,
-            fault_index,
-            refusal,
-            refusal_joint,
-            command: A1Command::of(machine.command()),
-        };
-        alive(done.phase)
-    })())
+    machine::tick::<A1Machine, N, F>(memory, now, observation, tick)
 }
 
 /// Torques of the twelve joints, N m, for 10 kHz, `dt` s after the last call, from their positions and velocities: inside what the motors can
@@ -286,30 +200,11 @@ pub extern "C" fn saltus_a1_machine_joint_tick(
     dt: f64,
     torques: *mut f64,
 ) -> Status {
-    status((|| {
-        let out: &mut [f64; N] = output(torques.cast())?;
-        *out = [0.0; N];
-        let (q, qd): (&[f64; N], _) = (input(joints.cast())?, input(joint_velocities.cast())?);
-        match resident(memory) {
-            Ok(A1Machine(machine)) => {
-                *out = machine.joint_tick(q, qd, dt);
-                alive(machine.phase())
-            }
-            Err(error) => {
-                *out = JointCommand::damp(SAFE_DAMPING).torques(q, qd, &MOTORS);
-                Err(error)
-            }
-        }
-    })())
+    machine::joint_tick::<A1Machine, N, F>(memory, joints, joint_velocities, dt, torques)
 }
 
 /// Where the jump is.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_machine_phase(memory: *mut c_void, phase: *mut Phase) -> Status {
-    status((|| {
-        let out = result(phase)?.write(Phase::Abort);
-        let A1Machine(machine) = resident(memory)?;
-        *out = machine.phase().into();
-        Ok(())
-    })())
+    machine::phase::<A1Machine, N, F>(memory, phase)
 }

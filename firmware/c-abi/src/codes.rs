@@ -3,6 +3,7 @@
 use core::ffi::{CStr, c_char};
 
 use jump_control::container::{ContainerError, VERSION as PLAN_VERSION};
+use jump_machine::humanoid;
 
 use crate::Status;
 
@@ -32,14 +33,34 @@ pub enum Phase {
 pub enum Work {
     /// Joints damped, nothing else.
     Damping = 0,
-    /// Feet pulled along the plan.
+    /// A1's feet pulled along the plan.
     Cartesian = 1,
-    /// The landing, with no foot in contact: nothing to solve.
-    Airborne = 2,
-    /// The landing's forces, optimal.
-    Landing = 3,
-    /// The landing's forces, not optimal: the last iterate, inside every limit.
-    LandingCapped = 4,
+    /// iCub's torques of holding still and pushing off, optimal.
+    PushOff = 2,
+    /// The same, not optimal: the last iterate, inside every limit.
+    PushOffCapped = 3,
+    /// A1's landing, with no foot in contact: nothing to solve.
+    Airborne = 4,
+    /// A1's forces of landing and standing, iCub's torques of flight, landing and standing, optimal.
+    Landing = 5,
+    /// The same, not optimal: the last iterate, inside every limit.
+    LandingCapped = 6,
+    /// A program of iCub's had no answer: the last command stays.
+    Unsolved = 7,
+}
+
+/// Which rows of a program had to yield, so that the others hold. None of A1's can.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Yielded {
+    /// None.
+    Nothing = 0,
+    /// Held tasks.
+    Tasks = 1,
+    /// Limits on the joints' motion, too.
+    MotionLimits = 2,
+    /// Contacts, too.
+    Contacts = 3,
 }
 
 /// Why a machine has aborted.
@@ -62,8 +83,10 @@ pub enum Fault {
     Silent = 6,
     /// A controller's command was not finite.
     Command = 7,
+    /// A controller's program had no answer for 5 ms.
+    Unsolved = 8,
     /// Another fault of a newer machine.
-    Other = 8,
+    Other = 9,
 }
 
 /// Why the last jump was not begun; the robot goes on standing.
@@ -210,14 +233,72 @@ impl From<jump_control::Phase> for Phase {
     }
 }
 
-impl From<jump_machine::Work> for Work {
+/// What a tick computed, and how.
+pub(crate) struct Worked {
+    pub(crate) work: Work,
+    pub(crate) iterations: u32,
+    pub(crate) yielded: Yielded,
+}
+
+impl Worked {
+    const fn plain(work: Work, iterations: u32) -> Self {
+        Self {
+            work,
+            iterations,
+            yielded: Yielded::Nothing,
+        }
+    }
+
+    /// Of a program of iCub's; the works are those of its optimum and of what its cap ended.
+    fn program(
+        solved: Result<humanoid::Solved<f64>, wbc_qp::Error>,
+        [optimal, capped]: [Work; 2],
+    ) -> Self {
+        let Ok(solved) = solved else {
+            return Self::plain(Work::Unsolved, 0);
+        };
+        Self {
+            work: if solved.capped { capped } else { optimal },
+            iterations: solved.iterations,
+            yielded: match solved.yielded {
+                wbc_qp::Yielded::Nothing => Yielded::Nothing,
+                wbc_qp::Yielded::Tasks => Yielded::Tasks,
+                wbc_qp::Yielded::MotionLimits => Yielded::MotionLimits,
+                wbc_qp::Yielded::Contacts => Yielded::Contacts,
+            },
+        }
+    }
+}
+
+impl From<jump_machine::Work> for Worked {
     fn from(work: jump_machine::Work) -> Self {
         match work {
-            jump_machine::Work::Cartesian => Self::Cartesian,
-            jump_machine::Work::Landing(landing::Outcome::Airborne) => Self::Airborne,
-            jump_machine::Work::Landing(landing::Outcome::Solved(_)) => Self::Landing,
-            jump_machine::Work::Landing(landing::Outcome::Failed(_)) => Self::LandingCapped,
-            _ => Self::Damping,
+            jump_machine::Work::Cartesian => Self::plain(Work::Cartesian, 0),
+            jump_machine::Work::Landing(landing::Outcome::Airborne) => {
+                Self::plain(Work::Airborne, 0)
+            }
+            jump_machine::Work::Landing(landing::Outcome::Solved(count)) => {
+                Self::plain(Work::Landing, count)
+            }
+            jump_machine::Work::Landing(landing::Outcome::Failed(_)) => {
+                Self::plain(Work::LandingCapped, 0)
+            }
+            _ => Self::plain(Work::Damping, 0),
+        }
+    }
+}
+
+impl From<humanoid::Work<f64>> for Worked {
+    fn from(work: humanoid::Work<f64>) -> Self {
+        match work {
+            humanoid::Work::PushOff(solved) => {
+                Self::program(solved, [Work::PushOff, Work::PushOffCapped])
+            }
+            humanoid::Work::Landing(solved) => {
+                Self::program(solved, [Work::Landing, Work::LandingCapped])
+            }
+            // Machines in C land by the program: servos have no work here.
+            humanoid::Work::Servos | humanoid::Work::Damping => Self::plain(Work::Damping, 0),
         }
     }
 }
@@ -233,6 +314,7 @@ pub(crate) fn fault(fault: Option<jump_control::Fault>) -> (Fault, u32) {
         Some(jump_control::Fault::Clock) => (Fault::Clock, 0),
         Some(jump_control::Fault::Silent) => (Fault::Silent, 0),
         Some(jump_control::Fault::Command) => (Fault::Command, 0),
+        Some(jump_control::Fault::Unsolved) => (Fault::Unsolved, 0),
         Some(_) => (Fault::Other, 0),
     }
 }
@@ -328,6 +410,7 @@ pub extern "C" fn saltus_fault_text(fault: u32) -> *const c_char {
             c"clock not going forward",
             c"control loop not running",
             c"command not finite",
+            c"program without an answer for too long",
         ],
         fault,
     )

@@ -12,39 +12,53 @@ mod a1;
 mod a1_estimator;
 mod a1_machine;
 mod codes;
+mod command;
 mod dynamics;
+mod estimator;
 mod icub;
+mod icub_estimator;
+mod icub_machine;
 mod machine;
 mod memory;
 mod state;
 
 pub use a1::{
-    A1Command, A1Reference, A1Target, saltus_a1_cartesian_pd, saltus_a1_forward_dynamics,
+    A1Reference, A1Target, saltus_a1_cartesian_pd, saltus_a1_forward_dynamics,
     saltus_a1_inverse_dynamics, saltus_a1_joint_pd, saltus_a1_landing_align,
     saltus_a1_landing_init, saltus_a1_landing_size, saltus_a1_landing_step, saltus_a1_mass_matrix,
 };
 pub use a1_estimator::{
-    A1Estimate, A1Sample, A1Start, saltus_a1_estimator_align, saltus_a1_estimator_init,
-    saltus_a1_estimator_size, saltus_a1_estimator_update,
+    saltus_a1_estimator_align, saltus_a1_estimator_init, saltus_a1_estimator_size,
+    saltus_a1_estimator_update,
 };
 pub use a1_machine::{
-    A1Observation, A1Plan, A1Tick, saltus_a1_machine_align, saltus_a1_machine_arm,
-    saltus_a1_machine_init, saltus_a1_machine_joint_tick, saltus_a1_machine_phase,
-    saltus_a1_machine_size, saltus_a1_machine_tick, saltus_a1_plan_read,
+    A1Plan, saltus_a1_machine_align, saltus_a1_machine_arm, saltus_a1_machine_init,
+    saltus_a1_machine_joint_tick, saltus_a1_machine_phase, saltus_a1_machine_size,
+    saltus_a1_machine_tick, saltus_a1_plan_read,
 };
 pub use codes::{
-    Culprit, EstimateStatus, Fault, Phase, Refusal, SampleFault, Work, saltus_fault_text,
+    Culprit, EstimateStatus, Fault, Phase, Refusal, SampleFault, Work, Yielded, saltus_fault_text,
     saltus_phase_text, saltus_refusal_text, saltus_sample_fault_text, saltus_status_text,
 };
+pub use command::Command;
+pub use estimator::{Estimate, Sample, Start};
 pub use icub::{
-    IcubCommand, IcubTarget, saltus_icub_forward_dynamics, saltus_icub_inverse_dynamics,
-    saltus_icub_mass_matrix, saltus_icub_push_align, saltus_icub_push_init, saltus_icub_push_size,
-    saltus_icub_push_tick,
+    saltus_icub_forward_dynamics, saltus_icub_inverse_dynamics, saltus_icub_mass_matrix,
 };
-pub use state::{A1State, IcubState};
+pub use icub_estimator::{
+    saltus_icub_estimator_align, saltus_icub_estimator_init, saltus_icub_estimator_size,
+    saltus_icub_estimator_update,
+};
+pub use icub_machine::{
+    IcubJump, saltus_icub_jump, saltus_icub_machine_align, saltus_icub_machine_arm,
+    saltus_icub_machine_init, saltus_icub_machine_joint_tick, saltus_icub_machine_phase,
+    saltus_icub_machine_size, saltus_icub_machine_tick,
+};
+pub use machine::{Observation, Tick};
+pub use state::State;
 
 /// Version of the interface; a controller is initialised with the version that the caller was compiled with.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// What came of a call.
 #[repr(C)]

@@ -1,8 +1,7 @@
 //! Whether what a container says can be: a checksum tells that bytes are those that were written, not that they make sense.
 
-use so3::math;
-
-use super::{Container, ContainerError, Header, PlanNode};
+use super::record::is_rotation;
+use super::{Container, ContainerError, Header, PlanPhase};
 
 /// Farthest place, m, and fastest motion, m/s or rad/s, of any robot this is for.
 const FAR: f32 = 100.0;
@@ -13,36 +12,29 @@ const CONE: f32 = 5e-3;
 /// Largest normal force in multiples of the one that the rigid body's plan may use: single legs of the whole body come to three.
 const MOST: f32 = 10.0;
 
+/// The bit of a number's sign.
+const SIGN: u32 = 1 << 31;
+
 type Checked = Result<(), ContainerError>;
 
 impl<const N: usize, const F: usize> Container<'_, N, F> {
     /// Looks at every number: all are finite, times increase up to the touchdown, phases follow each other, rotations are rotations, feet on
-    /// the ground push within their cone and feet in the air do not. What depends on the robot's joints is left to who knows them. Takes as
-    /// long as reading the container once more.
+    /// the ground push within their cone and feet in the air do not. What depends on the robot's joints is left to who knows them. One pass over
+    /// the bytes where they are: most numbers are only compared.
     ///
     /// # Errors
     /// [`ContainerError::Value`] names the first number that cannot be.
     pub fn check(&self) -> Checked {
         self.check_header()?;
-        let mut before: Option<PlanNode<N, F>> = None;
-        for i in 0..self.header.nodes {
-            let wrong = |what| {
-                Err(ContainerError::Value {
-                    node: Some(i),
-                    what,
-                })
-            };
-            let Some(node) = self.node(usize::from(i)) else {
-                return wrong("bytes");
-            };
-            if let Some(what) = before.and_then(|before| order(&before, &node)) {
-                return wrong(what);
-            }
+        let rules = Rules::of(&self.header);
+        let mut before: Option<Begun> = None;
+        for (i, words) in (0..self.header.nodes).zip(self.stored().words()) {
             let last = i.saturating_add(1) == self.header.nodes;
-            if let Some(what) = fault(&self.header, &node, last) {
-                return wrong(what);
-            }
-            before = Some(node);
+            let node = rules.node::<N, F>(Words(words), before.as_ref(), last);
+            before = Some(node.map_err(|what| {
+                let node = Some(i);
+                ContainerError::Value { node, what }
+            })?);
         }
         let end = before.map_or(f32::NAN, |node| node.time);
         header(near(end, self.header.touchdown), "time of the last node")
@@ -102,72 +94,127 @@ fn near(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME_TIME
 }
 
-/// What is wrong with the order of two nodes.
-fn order<const N: usize, const F: usize>(
-    before: &PlanNode<N, F>,
-    node: &PlanNode<N, F>,
-) -> Option<&'static str> {
-    let rises = node.time > before.time;
-    let follows = node.phase == before.phase || node.phase == before.phase.saturating_add(1);
-    [(rises, "time"), (follows, "phase")]
-        .into_iter()
-        .find_map(unless)
+/// What of a node the next one is held against.
+struct Begun {
+    phase: u8,
+    time: f32,
 }
 
-/// What is wrong with a node. The last one holds nothing, so its forces are not looked at.
-fn fault<const N: usize, const F: usize>(
-    h: &Header<'_, N>,
-    node: &PlanNode<N, F>,
-    last: bool,
-) -> Option<&'static str> {
-    let all = |xs: &[f32]| xs.iter().all(|x| x.abs() <= FAR);
-    let finite = |xs: &[f32]| xs.iter().all(|x| x.is_finite());
-    let forces = node.forces_w.as_flattened();
-    let phase = h
-        .phases
-        .get(..usize::from(h.phase_count))
-        .unwrap_or_default();
-    let phase = phase.get(usize::from(node.phase));
-    let push = |(foot, f): (usize, &[f32; 3])| {
-        let stands = phase.is_some_and(|p| (u32::from(p.contacts) >> foot) & 1 == 1);
-        pushes(h, f, stands)
-    };
-    let checks = [
-        (
-            node.time.abs() <= FAR && node.time <= h.touchdown + SAME_TIME,
-            "time",
-        ),
-        (phase.is_some(), "phase"),
-        (all(&node.position_w), "position of the base"),
-        (node.has_rotation(), "rotation of the base"),
-        (all(&node.velocity_b), "velocity of the base"),
-        (all(&node.joints), "joints"),
-        (all(&node.joint_velocities), "joint velocities"),
-        (finite(&node.torques), "torques"),
-        (finite(forces), "forces"),
-        (last || node.forces_w.iter().enumerate().all(push), "forces"),
-        (all(node.feet_b.as_flattened()), "feet"),
-        (
-            all(node.foot_velocities_b.as_flattened()),
-            "velocities of the feet",
-        ),
-    ];
-    checks.into_iter().find_map(unless)
+/// What every node is held against.
+struct Rules<'h> {
+    phases: &'h [PlanPhase],
+    /// Time after which no node may be, s.
+    latest: f32,
+    friction: f64,
+    /// How far a force may be outside its cone, N.
+    slack: f64,
+    /// Largest normal force, N.
+    most: f64,
 }
 
-fn unless((ok, what): (bool, &'static str)) -> Option<&'static str> {
-    (!ok).then_some(what)
-}
+impl<'h> Rules<'h> {
+    fn of<const N: usize>(h: &'h Header<'_, N>) -> Self {
+        let count = usize::from(h.phase_count);
+        Self {
+            phases: h.phases.get(..count).unwrap_or_default(),
+            latest: h.touchdown + SAME_TIME,
+            friction: f64::from(h.margins.friction),
+            slack: f64::from(CONE * h.margins.max_force),
+            most: f64::from(MOST * h.margins.max_force),
+        }
+    }
 
-/// Whether a force is one of the ground: within the cone and not too large under a foot that stands, none under another.
-fn pushes<const N: usize>(h: &Header<'_, N>, f: &[f32; 3], stands: bool) -> bool {
-    let [x, y, z] = f.map(f64::from);
-    let slack = f64::from(CONE * h.margins.max_force);
-    let most = f64::from(MOST * h.margins.max_force);
-    let side = math::hypot(x, y);
-    if stands {
-        z >= -slack && z <= most && side <= f64::from(h.margins.friction) * z + slack
-    } else {
-        side <= slack && z.abs() <= slack
+    /// Reads a node that follows `before`; the first number that cannot be is the error. The last node holds nothing, so its forces have
+    /// to be finite and no more.
+    fn node<const N: usize, const F: usize>(
+        &self,
+        mut from: Words<'_>,
+        before: Option<&Begun>,
+        last: bool,
+    ) -> Result<Begun, &'static str> {
+        let [[phase, ..], time] = *from.numbers()?;
+        let time = f32::from_le_bytes(time);
+        if let Some(before) = before {
+            must(time > before.time, "time")?;
+            let follows = phase == before.phase || phase == before.phase.saturating_add(1);
+            must(follows, "phase")?;
+        }
+        must(time.abs() <= FAR && time <= self.latest, "time")?;
+        let now = self.phases.get(usize::from(phase)).ok_or("phase")?;
+        must(within(FAR, from.numbers::<3>()?), "position of the base")?;
+        let rows = from.vectors::<3>()?.each_ref().map(vector);
+        must(is_rotation(&rows), "rotation of the base")?;
+        must(within(FAR, from.numbers::<6>()?), "velocity of the base")?;
+        must(within(FAR, from.numbers::<N>()?), "joints")?;
+        must(within(FAR, from.numbers::<N>()?), "joint velocities")?;
+        must(within(f32::MAX, from.numbers::<N>()?), "torques")?;
+        let forces = from.vectors::<F>()?;
+        must(within(f32::MAX, forces.as_flattened()), "forces")?;
+        for (foot, force) in forces.iter().enumerate() {
+            let stands = (u32::from(now.contacts) >> foot) & 1 == 1;
+            must(last || self.pushes(vector(force), stands), "forces")?;
+        }
+        let mut feet = |what| must(within(FAR, from.vectors::<F>()?.as_flattened()), what);
+        feet("feet")?;
+        feet("velocities of the feet")?;
+        Ok(Begun { phase, time })
+    }
+
+    /// Whether a force is one of the ground: within the cone and not too large under a foot that stands, none under another. By squares:
+    /// those of single precision are finite in double precision.
+    fn pushes(&self, force: [f32; 3], stands: bool) -> bool {
+        let [x, y, z] = force.map(f64::from);
+        let (reach, normal) = if stands {
+            (
+                self.friction * z + self.slack,
+                z >= -self.slack && z <= self.most,
+            )
+        } else {
+            (self.slack, z.abs() <= self.slack)
+        };
+        normal && reach >= 0.0 && x * x + y * y <= reach * reach
     }
 }
+
+/// The numbers of a node from the next one on, each as its bytes.
+struct Words<'a>(&'a [[u8; 4]]);
+
+impl<'a> Words<'a> {
+    /// The next numbers. Inlined, so that loops over them have a known length.
+    #[inline(always)]
+    fn numbers<const K: usize>(&mut self) -> Result<&'a [[u8; 4]; K], &'static str> {
+        let (numbers, rest) = self.0.split_first_chunk().ok_or("bytes")?;
+        self.0 = rest;
+        Ok(numbers)
+    }
+
+    /// The next vectors.
+    #[inline(always)]
+    fn vectors<const K: usize>(&mut self) -> Result<&'a [[[u8; 4]; 3]; K], &'static str> {
+        let (vectors, _) = self.0.as_chunks();
+        let vectors = vectors.first_chunk().ok_or("bytes")?;
+        self.0 = self.0.get(3 * K..).unwrap_or_default();
+        Ok(vectors)
+    }
+}
+
+/// Whether all numbers are finite and at most `most` large: bits of positive numbers are in the order of the numbers, and those of
+/// infinity and of what is no number come behind. Inlined, because most of a plan's numbers pass here: each is four instructions where their
+/// number is known.
+#[inline(always)]
+fn within(most: f32, numbers: &[[u8; 4]]) -> bool {
+    let size = |number: &[u8; 4]| u32::from_le_bytes(*number) & !SIGN;
+    numbers.iter().all(|number| size(number) <= most.to_bits())
+}
+
+/// A vector from its bytes.
+fn vector(bytes: &[[u8; 4]; 3]) -> [f32; 3] {
+    bytes.map(f32::from_le_bytes)
+}
+
+fn must(ok: bool, what: &'static str) -> Result<(), &'static str> {
+    if ok { Ok(()) } else { Err(what) }
+}
+
+#[cfg(test)]
+mod tests;

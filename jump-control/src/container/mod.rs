@@ -242,6 +242,14 @@ impl<'a, const N: usize, const F: usize> StoredNodes<'a, N, F> {
         self.bytes.len() / PlanNode::<N, F>::BYTES
     }
 
+    /// The numbers of each node, each as its bytes.
+    fn words(&self) -> impl Iterator<Item = &'a [[u8; 4]]> + use<'a, N, F> {
+        self.bytes
+            .as_chunks()
+            .0
+            .chunks_exact(PlanNode::<N, F>::BYTES / 4)
+    }
+
     /// Bytes from node `i` on; none beyond the last.
     const fn from(&self, i: usize) -> Option<Reader<'a>> {
         let begin = i.saturating_mul(PlanNode::<N, F>::BYTES);

@@ -312,24 +312,6 @@ impl<const N: usize, const F: usize> PlanNode<N, F> {
         }
     }
 
-    /// Whether [`Self::rotation_wb`] is a rotation: rows of unit length, at right angles, and right-handed.
-    pub(super) const fn has_rotation(&self) -> bool {
-        let [x, y, z] = &self.rotation_wb;
-        let cross = [
-            x[1] as f64 * y[2] as f64 - x[2] as f64 * y[1] as f64,
-            x[2] as f64 * y[0] as f64 - x[0] as f64 * y[2] as f64,
-            x[0] as f64 * y[1] as f64 - x[1] as f64 * y[0] as f64,
-        ];
-        let volume = cross[0] * z[0] as f64 + cross[1] * z[1] as f64 + cross[2] * z[2] as f64;
-        is_near(dot(x, x), 1.0)
-            && is_near(dot(y, y), 1.0)
-            && is_near(dot(z, z), 1.0)
-            && is_near(dot(x, y), 0.0)
-            && is_near(dot(y, z), 0.0)
-            && is_near(dot(z, x), 0.0)
-            && volume > 0.0
-    }
-
     /// As the sampler takes it.
     #[must_use]
     #[inline]
@@ -358,6 +340,23 @@ impl<const N: usize, const F: usize> PlanNode<N, F> {
 /// The rows of no turn.
 const LEVEL: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
+/// Whether these are the rows of a rotation: of unit length, at right angles, and right-handed.
+pub(super) const fn is_rotation([x, y, z]: &[[f32; 3]; 3]) -> bool {
+    let cross = [
+        x[1] as f64 * y[2] as f64 - x[2] as f64 * y[1] as f64,
+        x[2] as f64 * y[0] as f64 - x[0] as f64 * y[2] as f64,
+        x[0] as f64 * y[1] as f64 - x[1] as f64 * y[0] as f64,
+    ];
+    let volume = cross[0] * z[0] as f64 + cross[1] * z[1] as f64 + cross[2] * z[2] as f64;
+    is_near(dot(x, x), 1.0)
+        && is_near(dot(y, y), 1.0)
+        && is_near(dot(z, z), 1.0)
+        && is_near(dot(x, y), 0.0)
+        && is_near(dot(y, z), 0.0)
+        && is_near(dot(z, x), 0.0)
+        && volume > 0.0
+}
+
 const fn dot(a: &[f32; 3], b: &[f32; 3]) -> f64 {
     a[0] as f64 * b[0] as f64 + a[1] as f64 * b[1] as f64 + a[2] as f64 * b[2] as f64
 }
@@ -379,7 +378,7 @@ macro_rules! conversion {
                     Vector3::new(x[0] as $T, x[1] as $T, x[2] as $T)
                 }
                 // No rotation at all can only come from a writer that went wrong: level is the safe reading.
-                let rows = if self.has_rotation() {
+                let rows = if is_rotation(&self.rotation_wb) {
                     &self.rotation_wb
                 } else {
                     &LEVEL

@@ -10,7 +10,7 @@ use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
-const ROBOT: u64 = 0x0123_4567_89ab_cdef;
+pub(super) const ROBOT: u64 = 0x0123_4567_89ab_cdef;
 /// What these tests write, as it is stored: see [`the_golden_is_written`].
 const GOLDEN: &[u8] = include_bytes!("../../tests/hop.bin");
 
@@ -81,7 +81,7 @@ fn written(header: &Header<'_, 2>, nodes: &[PlanNode<2, 1>]) -> Vec<u8> {
     out
 }
 
-fn bytes() -> Vec<u8> {
+pub(super) fn bytes() -> Vec<u8> {
     written(&header(), &nodes())
 }
 
@@ -204,7 +204,7 @@ fn damage_is_always_detected() {
 }
 
 /// Writes the checksum of bytes that were changed on purpose.
-fn sealed(mut stored: Vec<u8>) -> Vec<u8> {
+pub(super) fn sealed(mut stored: Vec<u8>) -> Vec<u8> {
     let sum = super::checksum(&stored);
     stored[super::CHECKSUM..PREFIX].copy_from_slice(&sum.to_le_bytes());
     stored
@@ -318,7 +318,7 @@ fn values_that_cannot_be_are_named() {
     // A mirrored base is none, and is read as level where nobody checks.
     let mut mirrored = nodes();
     mirrored[0].rotation_wb[2] = [0.0, -0.6, -0.8];
-    assert!(!mirrored[0].has_rotation());
+    assert!(!super::record::is_rotation(&mirrored[0].rotation_wb));
     let level = nalgebra::Rotation3::<f32>::identity();
     assert_eq!(mirrored[0].node::<f32>().base.rotation, level);
 }
