@@ -161,6 +161,7 @@ impl<T: Scalar, const S: usize> Filter<T, S> {
 mod tests {
     use super::{FEET, Filter, POSITION, VELOCITY};
     use nalgebra::{Matrix3, RowVector3, Vector3};
+    use proptest::prelude::*;
 
     /// The textbook filter with matrices, one axis, one foot.
     #[test]
@@ -206,5 +207,83 @@ mod tests {
         filter.measure(POSITION, None, &Vector3::new(1.0, 0.0, 0.0), 1e-6);
         assert!((filter.get(FEET).x - filter.get(POSITION).x).abs() < 1e-12);
         assert!(filter.get(POSITION).x > 0.99);
+    }
+
+    /// What may be measured: a state alone, or two apart.
+    fn measurement() -> impl Strategy<Value = (usize, Option<usize>, [f64; 3], f64)> {
+        let pairs = prop_oneof![
+            Just((POSITION, None)),
+            Just((VELOCITY, None)),
+            Just((FEET, Some(POSITION))),
+            Just((FEET + 1, Some(POSITION))),
+        ];
+        (pairs, prop::array::uniform3(-1.0..1.0_f64), 1e-4..1.0_f64)
+            .prop_map(|((plus, minus), value, variance)| (plus, minus, value, variance))
+    }
+
+    /// Some time into a flight over two feet.
+    fn filter() -> impl Strategy<Value = Filter<f64, 4>> {
+        let number = -2.0..2.0_f64;
+        let means = prop::array::uniform4(prop::array::uniform3(number.clone()));
+        let a = prop::array::uniform3(number);
+        (means, 0.05..2.0_f64, a, 1..20_u32).prop_map(|(means, deviation, a, steps)| {
+            let mut filter = Filter::new(means.map(Vector3::from), deviation);
+            for _ in 0..steps {
+                filter.predict(&Vector3::from(a), 0.7, 0.01);
+                filter.walk(FEET, &Vector3::zeros(), 1e-4);
+            }
+            filter
+        })
+    }
+
+    proptest! {
+        /// The order in which an instant's measurements come does not matter.
+        #[test]
+        fn measurements_commute(start in filter(), a in measurement(), b in measurement()) {
+            let mut ends = [start, start];
+            for (filter, order) in ends.iter_mut().zip([[a, b], [b, a]]) {
+                for (plus, minus, value, variance) in order {
+                    filter.measure(plus, minus, &Vector3::from(value), variance);
+                }
+            }
+            for row in 0..4 {
+                prop_assert!((ends[0].mean[row] - ends[1].mean[row]).amax() < 1e-9);
+                for column in 0..4 {
+                    let [p, q] = ends.map(|filter| filter.covariance[row][column]);
+                    prop_assert!((p - q).abs() < 1e-9, "{} {}", p, q);
+                }
+            }
+        }
+
+        /// A measurement never makes anything less certain, and leaves the covariance symmetric with products inside Schwarz's bound.
+        #[test]
+        fn measurements_never_harm(start in filter(), (plus, minus, value, variance) in measurement()) {
+            let mut after = start;
+            after.measure(plus, minus, &Vector3::from(value), variance);
+            let (p, q) = (start.covariance, after.covariance);
+            for i in 0..4 {
+                prop_assert!(q[i][i] <= p[i][i] * (1.0 + 1e-12) && q[i][i] > 0.0);
+                for j in 0..4 {
+                    prop_assert!((q[i][j] - q[j][i]).abs() < 1e-12);
+                    prop_assert!(q[i][j] * q[i][j] <= q[i][i] * q[j][j] * (1.0 + 1e-9));
+                }
+            }
+        }
+
+        /// In a world turned about any axis the same happens, turned.
+        #[test]
+        fn axes_do_not_matter(
+            start in filter(), (plus, minus, value, variance) in measurement(), turn in prop::array::uniform3(-3.0..3.0_f64),
+        ) {
+            let turn = so3::exp(&Vector3::from(turn));
+            let (mut here, mut there) = (start, start);
+            there.mean = there.mean.map(|x| turn * x);
+            here.measure(plus, minus, &Vector3::from(value), variance);
+            there.measure(plus, minus, &(turn * Vector3::from(value)), variance);
+            for (a, b) in here.mean.iter().zip(&there.mean) {
+                prop_assert!((turn * a - b).amax() < 1e-12);
+            }
+            prop_assert_eq!(here.covariance, there.covariance);
+        }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Robots: those of `models/`, and those that `tests/peers/golden.py --others` picks from pip `example-robot-data`.
 //! All crates stand in one workspace in `target/import-check`, with one program that compares them, so that the
-//! dynamics are compiled once. With `--all`, every URDF of that package at run time instead, and every quantity, on both bases;
+//! dynamics are compiled once. Before that, one robot is imported into an empty folder and built there as `saltus import` says.
+//! With `--all`, every URDF of that package at run time instead, and every quantity, on both bases;
 //! a robot is refused only if Pinocchio refuses it as well or has no forward dynamics of it.
 
 use core::fmt::Write as _;
@@ -68,6 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     build.args(["build", "--quiet", "--workspace", "--examples"]);
     run::succeed(build.args(["--bin", "saltus"]))?;
     let saltus = target(&root).join("debug/saltus");
+    stands_alone(&saltus, &root)?;
     let imported = robots
         .iter()
         .map(|robot| import(&saltus, &root, &crates, robot))
@@ -79,6 +81,33 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     // One target folder for all runs, whatever the caller's is.
     check.env("CARGO_TARGET_DIR", folder.join("target"));
     run::succeed(&mut check)
+}
+
+/// `saltus import FILE --out FOLDER`, and then what it says to type, letter by letter, in an empty folder with nothing around it.
+fn stands_alone(saltus: &Path, root: &Path) -> Result<()> {
+    let empty = std::env::temp_dir().join(format!("saltus import {}", std::process::id()));
+    run::remove_folder(&empty)?;
+    fs::create_dir_all(&empty)?;
+    let mut import = Command::new(saltus);
+    import.arg("import").arg(root.join("models/a1.urdf"));
+    let said = run::output(import.args(["--out", "a1-model"]).current_dir(&empty))?;
+    if !said.status.success() {
+        bail!("{}", String::from_utf8_lossy(&said.stderr));
+    }
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    let (_, commands) = said
+        .split_once("to build it:\n")
+        .context("`saltus import` names no commands")?;
+    let mut shell = Command::new("sh");
+    shell.args(["-ec", commands]).current_dir(&empty);
+    // A newcomer's shell knows nothing of our target folder and flags.
+    shell.env_remove("CARGO_TARGET_DIR").env_remove("RUSTFLAGS");
+    let built = run::output(&mut shell)?;
+    let errors = String::from_utf8_lossy(&built.stderr);
+    if !built.status.success() || errors.contains("warning") {
+        bail!("what `saltus import` says to type:\n{commands}\n{errors}");
+    }
+    run::remove_folder(&empty)
 }
 
 /// Every URDF or MJCF that the packages have, without crates of their own.

@@ -99,7 +99,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
             // A proximal step is no measure of those that would follow.
             let margin = T::of(if w.factor.proximal { 0.01 } else { 1.0 });
-            if gain + self.toll <= margin * self.s.optimality * self.worth {
+            // At the origin the cost has no terms: lengths count from the distance by which rows may be missed.
+            let worth = math::max(self.worth, self.s.feasibility * rest.scale);
+            if gain + self.toll <= margin * self.s.optimality * worth {
                 return true;
             }
         }

@@ -161,23 +161,30 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         if course.is_ascent() || course.minimum() <= length {
             return Ray::Stays;
         }
-        let mut far = self.first_limit();
-        if far == T::INFINITY && course.is_nearly_straight() && self.is_descent() {
+        // A step also corrects what the last one left across the ray: curvature and limits of such a share are not the ray's.
+        let is_bent = course.minimum() < T::INFINITY && course.minimum() > length + length;
+        let is_open = course.is_nearly_straight() && self.first_limit() == T::INFINITY;
+        let is_refined = (is_bent || is_open) && self.is_descent();
+        if is_refined {
             // Each round takes all but a share of what is left of curvature in the direction, the proximal weight's.
             for _ in 0..ROUNDS {
+                let before = course.minimum();
                 self.purify();
                 if self.is_ray() {
                     return Ray::Endless;
                 }
                 course = self.course();
-                if course.minimum() < T::INFINITY {
+                if course.minimum() < T::INFINITY && course.minimum() <= T::of(4.0) * before {
                     break;
                 }
             }
-            far = self.first_limit();
         }
-        let reach = math::min(course.minimum(), far);
+        let reach = math::min(course.minimum(), self.first_limit());
         if course.is_ascent() || !(reach > T::ZERO && reach < T::INFINITY) {
+            if is_refined {
+                // It has lent its place to the direction's.
+                self.evaluate_gradient();
+            }
             return Ray::Stays;
         }
         let w = &mut *self.w;
