@@ -15,7 +15,8 @@ use rbd_core::{
 use serde_json::{Value, json};
 use wbc_qp::task::{orientation_error, position_error};
 use wbc_qp::{
-    Contact, Extent, Gains, Horizon, Limit, Patch, Rank, Snapshot, TorqueQp, Yielded, anchored,
+    Contact, Extent, Gains, Horizon, Limit, Patch, Rank, Snapshot, TorqueAnswer, TorqueQp, Yielded,
+    anchored,
 };
 
 const TICK: f64 = 2e-3;
@@ -45,7 +46,13 @@ struct Spec {
 }
 
 fn spec(name: &str) -> Spec {
-    match name {
+    let found = legged(name).or_else(|| arm(name));
+    found.unwrap_or_else(|| panic!("no robot of this name: {name}"))
+}
+
+/// Robots on feet.
+fn legged(name: &str) -> Option<Spec> {
+    Some(match name {
         "talos" => Spec {
             feet: &["left_sole_link", "right_sole_link"],
             sole: ([0.0; 3], Some([0.1, 0.06])),
@@ -90,6 +97,13 @@ fn spec(name: &str) -> Spec {
             hand: ("", 0.0),
             body: ("", [0.0; 3], [0.0; 3], 0.0),
         },
+        _ => return None,
+    })
+}
+
+/// Arms on a base that is fixed.
+fn arm(name: &str) -> Option<Spec> {
+    Some(match name {
         "panda" => Spec {
             feet: &[],
             sole: ([0.0; 3], None),
@@ -130,8 +144,8 @@ fn spec(name: &str) -> Spec {
             hand: ("tool0", 0.05),
             body: ("base_link", [0.0, 0.0, 0.0], [0.0, 0.0, 0.25], 0.1),
         },
-        other => panic!("no robot of this name: {other}"),
-    }
+        _ => return None,
+    })
 }
 
 /// What is asked for.
@@ -277,18 +291,137 @@ const STIFF: Gains<f64> = Gains {
     damping: 15.0,
 };
 
+/// Contacts and their wrenches as lines of JSON.
+fn contact_lines<const N: usize>(
+    machine: &Machine<N>,
+    contacts: &[Contact<f64>],
+    s: &Snapshot<f64, N>,
+    forces_c: &[f64],
+    normal: Vector3<f64>,
+) -> Vec<Value> {
+    let mut first = 0;
+    contacts
+        .iter()
+        .zip(machine.spec.feet)
+        .map(|(c, link)| {
+            let mut f = [0.0; 6];
+            let size = c.size();
+            f[..size].copy_from_slice(&forces_c[first..first + size]);
+            first += size;
+            let (place, wrench) = c.wrench_w(s, f);
+            json!({"link": link, "offset": if size == 6 { machine.spec.sole.0 } else { [0.0; 3] },
+                        "radius": if size == 6 { 0.0 } else { machine.spec.sole.0[2] },
+                        "half": machine.spec.sole.1, "normal": normal.as_slice(),
+                        "place": place.as_slice(), "force": wrench.linear.as_slice(),
+                        "moment": wrench.angular.as_slice()})
+        })
+        .collect()
+}
+
+/// Tasks of a robot on its feet: its centre of mass above their middle, its trunk as it was.
+fn stand<const N: usize, const K: usize, const V: usize, const M: usize>(
+    qp: &mut TorqueQp<f64, N, K, V, M>,
+    s: &Snapshot<f64, N>,
+    machine: &Machine<N>,
+    demand: Demand,
+    (t, home): (f64, [f64; 3]),
+    (upright, rotation): (&Rotation3<f64>, &Rotation3<f64>),
+) {
+    let depth = if demand == Demand::Squat { 0.03 } else { 0.0 };
+    let mut wanted = Vector3::from(home);
+    wanted.z -= depth * (1.0 - so3::math::cos(core::f64::consts::TAU * t));
+    let error = position_error(&wanted, &s.com_w());
+    let com = s.com();
+    let target = com.acceleration([0.0; 3], [0.0; 3], error, STIFF);
+    if demand == Demand::Impossible {
+        qp.hold(&com, &[0.0, 0.0, 40.0]).unwrap();
+    }
+    qp.minimise(&com, &target, &[1e3; 3]);
+    let trunk = s.frame_orientation(&*machine.model, &Frame::IDENTITY);
+    let error = orientation_error(upright, rotation);
+    let target = trunk.acceleration([0.0; 3], [0.0; 3], error, STIFF);
+    qp.minimise(&trunk, &target, &[1e2; 3]);
+}
+
+/// The hand's task, and the row that keeps it off the body; returns their distance.
+fn reach<const N: usize, const K: usize, const V: usize, const M: usize>(
+    qp: &mut TorqueQp<f64, N, K, V, M>,
+    s: &Snapshot<f64, N>,
+    machine: &Machine<N>,
+    demand: Demand,
+    [ball, body]: [Shape<f64>; 2],
+    goal: Vector3<f64>,
+) -> f64 {
+    let model = &*machine.model;
+    let frame = Frame {
+        link: ball.link,
+        offset: ball.from,
+        ..Frame::IDENTITY
+    };
+    let mut distance = f64::INFINITY;
+    if demand == Demand::Reach {
+        let task = s.frame_position(model, &frame);
+        let error = position_error(&goal, &s.pose(&frame).translation);
+        let target = task.acceleration([0.0; 3], [0.0; 3], error, STIFF);
+        qp.minimise(&task, &target, &[1e2; 3]);
+    }
+    if demand == Demand::Impossible && machine.spec.feet.is_empty() {
+        let task = s.frame_position(model, &frame);
+        qp.hold(&task, &[0.0, 0.0, 2000.0]).unwrap();
+    } else {
+        distance = s.clearance(&ball, &body).distance;
+        let row = s.distance(model, &ball, &body);
+        let floor = HORIZON.least_acceleration(distance - MARGIN, row.rate[0]);
+        qp.constrain(&row, &[floor], &[f64::INFINITY], Rank::Limit)
+            .unwrap();
+    }
+    distance
+}
+
+impl Demand {
+    /// Attitude of the ground.
+    fn ground(self) -> Rotation3<f64> {
+        let angle = if self == Self::Slope { -10.0_f64 } else { 0.0 };
+        Rotation3::from_axis_angle(&Vector3::y_axis(), angle.to_radians())
+    }
+}
+
+/// Middle of a capsule, in the world.
+fn middle_of<const N: usize>(s: &Snapshot<f64, N>, body: &Shape<f64>) -> Vector3<f64> {
+    let ends = [body.from, body.to].map(|offset| Frame {
+        link: body.link,
+        offset,
+        ..Frame::IDENTITY
+    });
+    let [low, high] = ends.map(|end| s.pose(&end).translation);
+    (low + high) * 0.5
+}
+
+/// State and answer as a line of JSON.
+fn tick_line<const N: usize, const K: usize>(
+    (q, v): (&Configuration<f64, N>, &Tangent<f64, N>),
+    answer: &TorqueAnswer<f64, N, K>,
+) -> Value {
+    json!({
+        "base": q.base.translation.as_slice(),
+        "quaternion": so3::quat::to_xyzw(&so3::quat::from_rotation(&q.base.rotation)),
+        "joints": &q.joints[..],
+        "base_velocity": v.base.to_array(),
+        "joint_velocities": &v.joints[..],
+        "base_acceleration": answer.acceleration.base.to_array(),
+        "joint_accelerations": &answer.acceleration.joints[..],
+        "torques": &answer.torques[..],
+        "yielded": format!("{:?}", answer.yielded),
+    })
+}
+
 /// Runs one demand for a second; returns lines of JSON.
 fn run<const N: usize, const K: usize, const V: usize, const M: usize>(
     machine: &Machine<N>,
     demand: Demand,
     out: &mut impl Write,
 ) {
-    let angle = if demand == Demand::Slope {
-        -10.0_f64.to_radians()
-    } else {
-        0.0
-    };
-    let ground = Rotation3::from_axis_angle(&Vector3::y_axis(), angle);
+    let ground = demand.ground();
     let model = &*machine.model;
     let contacts = machine.contacts(ground * Vector3::z());
     let mut q = machine.start(ground);
@@ -302,20 +435,7 @@ fn run<const N: usize, const K: usize, const V: usize, const M: usize>(
     let (home, upright, joints) = (s.com_w(), q.base.rotation, q.joints);
     let feet = contacts.iter().map(|c| s.pose(&c.frame).translation);
     let middle = feet.sum::<Vector3<f64>>() / contacts.len().max(1) as f64;
-    let hand = shapes.map(|[hand, _]| Frame {
-        link: hand.link,
-        offset: hand.from,
-        ..Frame::IDENTITY
-    });
-    let goal = shapes.map(|[_, body]| {
-        let ends = [body.from, body.to].map(|offset| Frame {
-            link: body.link,
-            offset,
-            ..Frame::IDENTITY
-        });
-        let [low, high] = ends.map(|end| s.pose(&end).translation);
-        (low + high) * 0.5
-    });
+    let goal = shapes.map(|[_, body]| middle_of(&s, &body));
     let mut qp = Box::new(TorqueQp::<f64, N, K, V, M>::new());
     let ranges = core::array::from_fn(|i| [-machine.limits[i].effort, machine.limits[i].effort]);
     let (mut yielded, mut near, mut named) = (0, false, false);
@@ -324,20 +444,14 @@ fn run<const N: usize, const K: usize, const V: usize, const M: usize>(
         s.update(model, &q, &v);
         qp.begin(model, &s, &contacts, &[0.0; N]).unwrap();
         if !contacts.is_empty() {
-            let depth = if demand == Demand::Squat { 0.03 } else { 0.0 };
-            let mut wanted = middle;
-            wanted.z = home.z - depth * (1.0 - so3::math::cos(core::f64::consts::TAU * t));
-            let error = position_error(&wanted, &s.com_w());
-            let com = s.com();
-            let target = com.acceleration([0.0; 3], [0.0; 3], error, STIFF);
-            if demand == Demand::Impossible {
-                qp.hold(&com, &[0.0, 0.0, 40.0]).unwrap();
-            }
-            qp.minimise(&com, &target, &[1e3; 3]);
-            let trunk = s.frame_orientation(model, &Frame::IDENTITY);
-            let error = orientation_error(&upright, &q.base.rotation);
-            let target = trunk.acceleration([0.0; 3], [0.0; 3], error, STIFF);
-            qp.minimise(&trunk, &target, &[1e2; 3]);
+            stand(
+                &mut qp,
+                &s,
+                machine,
+                demand,
+                (t, [middle.x, middle.y, home.z]),
+                (&upright, &q.base.rotation),
+            );
         }
         let posture: [f64; N] =
             core::array::from_fn(|i| 20.0 * (joints[i] - q.joints[i]) - 9.0 * v.joints[i]);
@@ -345,25 +459,10 @@ fn run<const N: usize, const K: usize, const V: usize, const M: usize>(
         qp.minimise_forces(&[0.0; K], &[1e-4; K]);
         qp.limit_joints(&s, &machine.limits, &HORIZON);
         qp.limit_torques(&ranges).unwrap();
-        let mut distance = f64::INFINITY;
-        if let (Some([ball, body]), Some(frame), Some(goal)) = (shapes, hand, goal) {
-            if demand == Demand::Reach {
-                let task = s.frame_position(model, &frame);
-                let error = position_error(&goal, &s.pose(&frame).translation);
-                let target = task.acceleration([0.0; 3], [0.0; 3], error, STIFF);
-                qp.minimise(&task, &target, &[1e2; 3]);
-            }
-            if demand == Demand::Impossible && contacts.is_empty() {
-                let task = s.frame_position(model, &frame);
-                qp.hold(&task, &[0.0, 0.0, 2000.0]).unwrap();
-            } else {
-                distance = s.clearance(&ball, &body).distance;
-                let row = s.distance(model, &ball, &body);
-                let floor = HORIZON.least_acceleration(distance - MARGIN, row.rate[0]);
-                qp.constrain(&row, &[floor], &[f64::INFINITY], Rank::Limit)
-                    .unwrap();
-            }
-        }
+        let distance = match (shapes, goal) {
+            (Some(shapes), Some(goal)) => reach(&mut qp, &s, machine, demand, shapes, goal),
+            _ => f64::INFINITY,
+        };
         let answer = qp.solve().unwrap();
         yielded += u32::from(answer.yielded != Yielded::Nothing);
         let report: Vec<_> = qp.report(&answer, 1e-6).collect();
@@ -374,31 +473,20 @@ fn run<const N: usize, const K: usize, const V: usize, const M: usize>(
             .iter()
             .any(|l| l.limit == Limit::Row(0) && matches!(l.extent, Extent::Held(_)));
         if k % 10 == 0 {
-            let mut first = 0;
-            let forces: Vec<Value> = contacts
-                .iter()
-                .zip(machine.spec.feet)
-                .map(|(c, link)| {
-                    let mut f = [0.0; 6];
-                    let size = c.size();
-                    f[..size].copy_from_slice(&answer.forces[first..first + size]);
-                    first += size;
-                    let (place, wrench) = c.wrench_w(&s, f);
-                    json!({"link": link, "offset": if size == 6 { machine.spec.sole.0 } else { [0.0; 3] },
-                        "radius": if size == 6 { 0.0 } else { machine.spec.sole.0[2] },
-                        "half": machine.spec.sole.1, "normal": (ground * Vector3::z()).as_slice(),
-                        "place": place.as_slice(), "force": wrench.linear.as_slice(),
-                        "moment": wrench.angular.as_slice()})
-                })
-                .collect();
-            let line = json!({"demand": format!("{demand:?}"), "tick": k, "base": q.base.translation.as_slice(),
-                "quaternion": so3::quat::to_xyzw(&so3::quat::from_rotation(&q.base.rotation)), "joints": &q.joints[..],
-                "base_velocity": v.base.to_array(), "joint_velocities": &v.joints[..],
-                "base_acceleration": answer.acceleration.base.to_array(),
-                "joint_accelerations": &answer.acceleration.joints[..], "torques": &answer.torques[..],
-                "contacts": forces, "distance": distance.is_finite().then_some(distance),
-                "com_error": (s.com_w() - middle).as_slice(), "yielded": format!("{:?}", answer.yielded),
-                "damping": qp.contact_damping});
+            let forces = contact_lines(
+                machine,
+                &contacts,
+                &s,
+                &answer.forces,
+                ground * Vector3::z(),
+            );
+            let mut line = tick_line((&q, &v), &answer);
+            line["demand"] = json!(format!("{demand:?}"));
+            line["tick"] = json!(k);
+            line["contacts"] = json!(forces);
+            line["distance"] = json!(distance.is_finite().then_some(distance));
+            line["com_error"] = json!((s.com_w() - middle).as_slice());
+            line["damping"] = json!(qp.contact_damping);
             writeln!(out, "{line}").unwrap();
         }
         // Half a tick's acceleration is not forgotten: positions follow the answer to second order.
