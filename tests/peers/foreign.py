@@ -2,7 +2,7 @@
 
     python tests/peers/foreign.py        # the Python of `setup.sh venv`
 
-Builds and runs `tests/examples/foreign.rs` on talos, g1, go2, panda, tiago and ur5 of pip `example-robot-data` and checks every tick that
+Builds and runs `tests/examples/foreign` on talos, g1, go2, panda, tiago and ur5 of pip `example-robot-data` and checks every tick that
 it writes from Pinocchio's own model of the same file: the equations of motion, where contact forces act, that contacts neither slide nor
 turn, exact friction cones and centres of pressure, torque limits, joint limits, and the distance between hand and body. Exit code 1 where
 one is missed by more than 1e-9 (relative for the equations of motion, torques and cones), or where a demand is not met by name as the
