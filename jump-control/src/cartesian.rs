@@ -49,15 +49,13 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
         }
     }
 
-    /// The command of one 1 kHz tick: torques and joint targets of the `reference` for now, feet compared with the reference `then`,
-    /// for when the measurement was taken. Feedback on late sensors must not answer for the plan's own motion.
+    /// The command of one 1 kHz tick: torques and joint targets of the `reference` for now, feet as measured compared with it.
     #[must_use]
     pub fn command<M: Tree<T, N>>(
         &self,
         model: &M,
         measured: &Measurement<T, N, F>,
         reference: &Reference<T, N>,
-        then: &Reference<T, N>,
     ) -> JointCommand<T, N> {
         let seen = |joints: &[T; N]| {
             let q = Configuration {
@@ -66,12 +64,12 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
             };
             Limbs::new(model, &q, &self.feet)
         };
-        let (now, wanted) = (seen(&measured.joints), seen(&then.joints));
-        self.command_at(&now, &wanted, &measured.joint_velocities, reference, then)
+        let (now, wanted) = (seen(&measured.joints), seen(&reference.joints));
+        self.command_at(&now, &wanted, &measured.joint_velocities, reference)
     }
 
-    /// [`CartesianPd::command`] where the legs are known already: those of [`CartesianPd::feet`] as measured, and as `then` has
-    /// them.
+    /// [`CartesianPd::command`] where the legs are known already: those of [`CartesianPd::feet`] as measured, and as the reference
+    /// has them.
     #[must_use]
     pub fn command_at(
         &self,
@@ -79,7 +77,6 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
         wanted: &Limbs<T, N, F>,
         joint_velocities: &[T; N],
         reference: &Reference<T, N>,
-        then: &Reference<T, N>,
     ) -> JointCommand<T, N> {
         let mut feed_forward = reference.torques;
         let (kp, kd) = (
@@ -88,7 +85,7 @@ impl<T: Scalar, const N: usize, const F: usize> CartesianPd<T, N, F> {
         );
         for (end, wanted) in now.ends.iter().zip(&wanted.ends) {
             let position = wanted.position - end.position;
-            let velocity = wanted.mul(&then.joint_velocities) - end.mul(joint_velocities);
+            let velocity = wanted.mul(&reference.joint_velocities) - end.mul(joint_velocities);
             let pull = kp.component_mul(&position) + kd.component_mul(&velocity);
             end.add_tr_mul(&pull, &mut feed_forward);
         }

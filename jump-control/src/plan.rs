@@ -176,31 +176,6 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         self.following::<{ parts::BASE }, _>(node, |nodes| base_at(nodes, time))
     }
 
-    /// By how much later than planned a body in free fall will be where the plan ends, s: (δz + δż T) over the planned speed
-    /// there, with δ what `measured` at `time` differs by from the plan and T the time left. `None` where the plan does not
-    /// end in a fall, or a number is not finite.
-    #[must_use]
-    pub fn lateness(
-        &self,
-        (node, time): (usize, T),
-        base: &Transform<T>,
-        vel_w: &Vector3<T>,
-    ) -> Option<T> {
-        let last = self.count().checked_sub(1)?;
-        let (end, speed) = self.following::<{ parts::BASE }, _>(last, |nodes| {
-            nodes
-                .first()
-                .map(|node| (node.time, world_velocity(node).z))
-        })?;
-        let planned = self.base((node, time))?;
-        let falling = -speed;
-        let left = end - time;
-        let late =
-            (base.translation.z - planned.pos_w.z + (vel_w.z - planned.vel_w.z) * left) / falling;
-        // Slower than this is no fall: its time is anybody's guess.
-        (falling > T::HALF && left >= T::ZERO && late.is_finite_number()).then_some(late)
-    }
-
     /// Number of nodes.
     #[must_use]
     pub const fn count(&self) -> usize {

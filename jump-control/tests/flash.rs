@@ -56,12 +56,6 @@ fn a_stored_plan_is_followed_from_its_bytes() {
         }
         for node in 0..4 {
             assert_eq!(stored.base((node, time)), read.base((node, time)));
-            let at = (node, time);
-            let base = DOUBLE[0].base;
-            assert_eq!(
-                stored.lateness(at, &base, &base.translation),
-                read.lateness(at, &base, &base.translation)
-            );
         }
     }
     assert_eq!(sample(&stored, f64::NAN, 1), sample(&read, f64::NAN, 1));

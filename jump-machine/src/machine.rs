@@ -3,12 +3,10 @@
 use jump_control::{
     Fault, JointCommand, JointGains, Measurement, PayloadEstimate, Phase, Plan, Reference, sample,
 };
-use landing::{
-    AttitudeCompensation, DetectorState, Landing, Outcome, PreLanding, Target, Turning, Workspace,
-};
+use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning, Workspace};
 use nalgebra::Vector3;
-use rbd_core::{Configuration, GRAVITY, Limbs, Tangent, Tree};
-use so3::{Scalar, math};
+use rbd_core::{Configuration, Limbs, Tangent, Tree};
+use so3::Scalar;
 
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick};
@@ -51,8 +49,6 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     start: T,
     /// Node of the plan's last sample.
     node: usize,
-    /// By how much the plan's clock is behind the caller's in this flight, s.
-    late: T,
     /// Share of their distance from the axis of turning by which the feet are drawn in.
     shaping: T,
 }
@@ -88,7 +84,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             payload: PayloadEstimate::new(),
             start: T::ZERO,
             node: 0,
-            late: T::ZERO,
             shaping: T::ZERO,
             settings,
         }
@@ -106,7 +101,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.legs = jump.landing_joints;
         self.jump = Some(jump);
         (self.start, self.node) = (start, 0);
-        (self.late, self.shaping) = (T::ZERO, T::ZERO);
+        self.shaping = T::ZERO;
         self.payload = PayloadEstimate::new();
         self.supervisor.armed();
         Ok(())
@@ -183,7 +178,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &measured.foot_forces,
             dt,
         );
-        let t = self.plan_time(t, measured);
         if let Some(event) = self.event(t, measured) {
             self.supervisor.happened(event);
         }
@@ -200,27 +194,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         }
     }
 
-    /// What the plan's clock shows: in flight it is shifted, little by little, so that it shows the planned touchdown when the
-    /// ground comes.
-    fn plan_time(&mut self, t: T, measured: &Measurement<T, N, F>) -> T {
-        let (Some(jump), Phase::Flight | Phase::PreLanding) = (&self.jump, self.supervisor.phase)
-        else {
-            return t;
-        };
-        let plan = &jump.plan;
-        let base = &measured.base;
-        let vel_w = base.rotation * measured.base_velocity.linear;
-        let moment = (self.node, t - self.late - measured.age);
-        if let Some(late) = plan.lateness(moment, base, &vel_w) {
-            // Whole from the middle of the way to the landing posture on.
-            let share = T::TWO * (t - plan.takeoff) / (plan.posing - plan.takeoff);
-            let late = (self.late + late) * math::clamp(share, T::ZERO, T::ONE);
-            let most = self.settings.max_late;
-            self.late = math::clamp(late, -most, most);
-        }
-        t - self.late
-    }
-
     /// Push-off and flight: feet along the plan.
     fn follow(
         &mut self,
@@ -230,97 +203,69 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         dt: T,
     ) -> JointCommand<T, N> {
         let s = &self.settings;
-        let mut then = sample(&jump.plan, t - measured.age, self.node);
-        let mut reference = sample(&jump.plan, t, then.node);
-        reference.torques = sample(&jump.plan, t + s.lookahead, then.node).torques;
-        self.node = then.node;
-        let moment = (then.node, t - measured.age);
+        let mut reference = sample(&jump.plan, t, self.node);
+        self.node = reference.node;
+        let moment = (reference.node, t);
         match self.supervisor.phase {
             // Its weight has settled on the feet by then.
             Phase::Hold if t > -s.weighing => self.payload.add(&measured.foot_forces),
-            Phase::Stance => self.push_off(jump, moment, measured, &mut then, &mut reference),
+            Phase::Stance => self.push_off(jump, moment, measured, &mut reference),
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);
                     let moved = s
                         .inertia_shaping
                         .joints(self.shaping, &turning, &self.wanted);
-                    add(&mut then.joints, &moved);
-                    add(&mut reference.joints, &moved);
+                    for (joint, moved) in reference.joints.iter_mut().zip(&moved) {
+                        *joint += *moved;
+                    }
                 }
             }
             Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
-                self.level(jump.plan.touchdown - t, measured);
-                (then.joints, reference.joints) = (self.legs, self.legs);
+                self.level(measured);
+                reference.joints = self.legs;
             }
             _ => {}
         }
         let s = &self.settings;
         let q = Configuration {
-            joints: then.joints,
+            joints: reference.joints,
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
-        s.pd.command_at(
-            &self.limbs,
-            &self.wanted,
-            &measured.joint_velocities,
-            &reference,
-            &then,
-        )
+        let speeds = &measured.joint_velocities;
+        s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference)
     }
 
-    /// Feedback of the push-off at a `moment` of the plan: torques as the weight on the feet was, forces that keep the base on its
-    /// plan, and feet that keep their places in the world while the body leans. `then` is the plan as the legs were measured,
-    /// `reference` as it is now.
+    /// Feedback of the push-off at a `moment` of the plan: torques as the weight on the feet was, and forces that damp the base's wrong
+    /// turning.
     #[inline(always)]
     fn push_off(
         &self,
         jump: &Jump<'a, T, N, F>,
         moment: (usize, T),
         measured: &Measurement<T, N, F>,
-        then: &mut Reference<T, N>,
         reference: &mut Reference<T, N>,
     ) {
         let s = &self.settings;
         let factor = self.payload.factor(jump.weight, s.max_payload);
         reference.torques = reference.torques.map(|torque| torque * factor);
         let feet_b = self.limbs.ends.map(|end| end.position);
-        let mass = jump.weight / T::of(-GRAVITY[2]);
-        let forces = s
-            .base_feedback
-            .forces(&jump.plan, moment, mass, measured, &feet_b);
-        for (end, force) in self.limbs.ends.iter().zip(&forces) {
+        let omega_b = &measured.base_velocity.angular;
+        let forces_b = s.base_feedback.forces(&jump.plan, moment, omega_b, &feet_b);
+        for (end, force) in self.limbs.ends.iter().zip(&forces_b) {
             end.add_tr_mul(&-force, &mut reference.torques);
         }
-        let share = s.base_feedback.compensation(&jump.plan, moment.0);
-        let Some(planned) = jump.plan.base(moment).filter(|_| share > T::ZERO) else {
-            return;
-        };
-        let compensation = AttitudeCompensation {
-            turn: measured.base.rotation.inverse() * planned.rot_wb,
-            rate_b: planned.omega_b - measured.base_velocity.angular,
-            // The same legs are moved likewise in flight.
-            damping: s.inertia_shaping.damping,
-        };
-        let (moved, speeds) = compensation.joints(share, &self.wanted, &then.joint_velocities);
-        add(&mut then.joints, &moved);
-        add(&mut reference.joints, &moved);
-        add(&mut then.joint_velocities, &speeds);
-        add(&mut reference.joint_velocities, &speeds);
     }
 
-    /// The landing posture as the body will be turned at touchdown, `left` seconds from now.
+    /// The landing posture as the body is turned and moves.
     #[inline(always)]
-    fn level(&mut self, left: T, measured: &Measurement<T, N, F>) {
-        let foresight = math::clamp(left, T::ZERO, self.settings.foresight);
-        let turn = so3::exp(&(measured.base_velocity.angular * foresight)).inverse();
-        let up_b = turn * (measured.base.rotation.inverse() * Vector3::z());
-        let velocity_b = turn * measured.base_velocity.linear;
+    fn level(&mut self, measured: &Measurement<T, N, F>) {
+        let up_b = measured.base.rotation.inverse() * Vector3::z();
         self.legs = self.posture.follow(
             self.model,
             &self.level_feet,
-            (&up_b, &velocity_b),
+            (&up_b, &measured.base_velocity.linear),
             &self.legs,
             &mut self.wanted,
         );
@@ -386,12 +331,6 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> JumpMachine<T, N,
 
     fn fault(&self) -> Option<Fault> {
         Machine::fault(self)
-    }
-}
-
-fn add<T: Scalar, const N: usize>(to: &mut [T; N], more: &[T; N]) {
-    for (to, more) in to.iter_mut().zip(more) {
-        *to += *more;
     }
 }
 

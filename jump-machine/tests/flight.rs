@@ -1,4 +1,4 @@
-//! What the robot does about a flight that is not the planned one: later or earlier ground, another turn.
+//! What the robot does about a flight that is not the planned one: another tilt, another turn.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
@@ -116,41 +116,21 @@ fn fly<R>(
     None
 }
 
-/// When a body thrown from `height` with `speed` comes down to where the plan ends.
-fn ground(height: f64, speed: f64) -> f64 {
-    let (end, _) = ballistic(0.35, 2.5, TOUCHDOWN - TAKEOFF);
-    let g = -GRAVITY[2];
-    TAKEOFF + (speed + so3::math::sqrt(speed * speed + 2.0 * g * (height - end))) / g
-}
-
 proptest! {
-    /// The legs take up the landing posture as long before the ground comes as the plan wants it, whatever the take-off was; a
-    /// flight that is too far from the plan is met as far as the clock may be shifted.
+    /// The legs take up the landing posture when the plan says, whatever the take-off was.
     #[test]
-    fn the_landing_posture_is_taken_up_in_time_for_the_ground(
-        height in 0.31..0.39,
-        speed in 2.2..2.8,
-    ) {
+    fn the_landing_posture_is_taken_up_on_the_plans_time(height in 0.31..0.39, speed in 2.2..2.8) {
         let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
-        let posing = |settings: &Settings<f64, 12, 4>| {
-            fly(settings, &nodes(0.0), (height, speed, 0.0), 1.0, |t, machine| {
-                (machine.phase() == Phase::PreLanding).then_some(t)
-            })
-            .unwrap()
-        };
-        let late = ground(height, speed) - TOUCHDOWN;
-        let shift = late.clamp(-settings.max_late, settings.max_late);
-        let expected = TOUCHDOWN - POSED + shift;
-        // A millisecond of the tick, and the second order of a shift.
-        let allowed = 1.5e-3 + 2.0 * shift * shift;
-        prop_assert!((posing(&settings) - expected).abs() < allowed, "{} {expected}", posing(&settings));
-        let fixed = Settings { max_late: 0.0, ..settings };
-        prop_assert!((posing(&fixed) - (TOUCHDOWN - POSED)).abs() < 1.5e-3);
+        let posing = fly(&settings, &nodes(0.0), (height, speed, 0.0), 1.0, |t, machine| {
+            (machine.phase() == Phase::PreLanding).then_some(t)
+        });
+        // A millisecond of the tick.
+        prop_assert!((posing.unwrap() - (TOUCHDOWN - POSED)).abs() < 1.5e-3, "{posing:?}");
     }
 
-    /// Before the ground, feet are where the tilt at the touchdown wants them, not the tilt of now.
+    /// Before the ground, feet are where the body's tilt wants them.
     #[test]
-    fn feet_are_set_for_the_attitude_in_which_they_will_land(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
+    fn feet_follow_the_tilt_before_the_ground(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
         let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
         let nodes = nodes(rate);
         // The plan's rotation is shifted by the tilt with which the body will arrive.

@@ -9,7 +9,7 @@ use rbd_core::{
     Configuration, Frame, GRAVITY, LimbEnd, Limbs, Tangent, Tree, centroidal_state,
     generalized_gravity,
 };
-use so3::{Scalar, math};
+use so3::Scalar;
 
 use crate::forces::Forces;
 use crate::wrench::Wrench;
@@ -232,17 +232,10 @@ impl<T: Scalar, const N: usize, const F: usize> Landing<T, N, F> {
         let s = &self.settings;
         let [x, y] = target.offset_w;
         let error = support_w + Vector3::new(x, y, target.height) - com_w;
-        let speed = math::sqrt(velocity_w.norm_squared());
-        let calm = math::max(T::ONE - speed / s.moving, T::ZERO);
-        let blend = |(a, b): (T, T)| a + (b - a) * calm;
-        let horizontal = (
-            blend((s.horizontal.0, s.resting.0)),
-            blend((s.horizontal.1, s.resting.1)),
-        );
         let pull = |(kp, kd): (T, T), e: T, v: T| kp * e - kd * v;
         let acceleration = Vector3::new(
-            pull(horizontal, error.x, velocity_w.x),
-            pull(horizontal, error.y, velocity_w.y),
+            pull(s.horizontal, error.x, velocity_w.x),
+            pull(s.horizontal, error.y, velocity_w.y),
             pull(s.height, error.z, velocity_w.z),
         );
         let gravity = Vector3::from(GRAVITY.map(T::of));

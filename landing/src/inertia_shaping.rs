@@ -45,7 +45,7 @@ impl<T: Scalar> InertiaShaping<T> {
     /// For a robot of this size, by [dynamic similarity](rbd_core::similarity): at most a fifth of the distance, which legs of any
     /// length can do; turning slower than 3 rad/s on legs of 0.4 m is left alone.
     ///
-    /// Measured on A1's double backflip: `saltus envelope a1/double-backflip --without tuck` shows what it is worth.
+    /// Measured on A1's double backflip: `saltus envelope a1/double-backflip --without inertia-shaping` shows what it is worth.
     #[must_use]
     pub fn new(build: &Build<T>) -> Self {
         Self {

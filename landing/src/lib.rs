@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-mod attitude_compensation;
 mod controller;
 mod detector;
 mod face;
@@ -16,7 +15,6 @@ mod settings;
 mod touchdown;
 mod wrench;
 
-pub use attitude_compensation::AttitudeCompensation;
 pub use controller::{Command, Landing, Outcome, Workspace};
 pub use dense_qp::Status;
 pub use detector::{Detector, DetectorState};

@@ -9,12 +9,8 @@ use so3::Scalar;
 pub struct Settings<T> {
     /// Gains on height: s⁻², s⁻¹.
     pub height: (T, T),
-    /// Gains on the horizontal position over the feet of a body that moves. Stiffer ones tip over after 1.2 m/s.
+    /// Gains on the horizontal position over the feet. Stiffer ones tip over after 1.2 m/s.
     pub horizontal: (T, T),
-    /// The same for a body at rest, whose joints' friction holds it off its target.
-    pub resting: (T, T),
-    /// Speed of the centre of mass, m/s, from which a body counts as moving; below, the gains are blended.
-    pub moving: T,
     /// Gains on the rotation.
     pub rotation: (T, T),
     /// Composite inertia of the landing posture about the centre of mass, diagonal, base axes, kg m².
@@ -50,8 +46,6 @@ impl<T: Scalar> Settings<T> {
         Self {
             height: gains(120.0, 14.0),
             horizontal: gains(20.0, 8.0),
-            resting: gains(80.0, 14.0),
-            moving: build.speed(0.2),
             rotation: gains(250.0, 28.0),
             inertia_b: build.inertia_b,
             force_weight: build.per_force_squared(1.0),

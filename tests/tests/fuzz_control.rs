@@ -164,8 +164,7 @@ proptest! {
         let reference = sample(&plan, time, hint);
         prop_assert!(reference.joints.iter().chain(&reference.torques).all(|x| x.is_finite()));
         let pd = CartesianPd::new(&BUILD, feet());
-        let then = sample(&plan, time - m.age, reference.node);
-        let command = pd.command(&A1Geared, &m, &reference, &then);
+        let command = pd.command(&A1Geared, &m, &reference);
         prop_assert!(inside(&command.torques(&q, &qd, &MOTORS), &qd));
         let damped = JointCommand::damp(2.0).torques(&q, &qd, &MOTORS);
         prop_assert!(inside(&damped, &qd));

@@ -60,7 +60,7 @@ static void land(void) {
     print("joint-pd", tau, 12);
     SaltusA1Reference reference = {.torques = {1, 2, 3}};
     memcpy(reference.joints, a1.joints, sizeof reference.joints);
-    expect("Cartesian PD", saltus_a1_cartesian_pd(&a1, &reference, &reference, &command), SALTUS_STATUS_OK);
+    expect("Cartesian PD", saltus_a1_cartesian_pd(&a1, &reference, &command), SALTUS_STATUS_OK);
     print("cartesian-pd", command.feed_forward, 12);
     expect("mass matrix", saltus_a1_mass_matrix(&a1, mass[0]), SALTUS_STATUS_OK);
     print("mass", mass[0], 18);

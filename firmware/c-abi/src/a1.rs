@@ -121,32 +121,28 @@ pub extern "C" fn saltus_a1_joint_pd(
     })())
 }
 
-/// The Cartesian PD of push-off and flight, for 1 kHz: feet along a reference. `then` is the reference for the time when
-/// the state was measured.
+/// The Cartesian PD of push-off and flight, for 1 kHz: feet along a reference.
 #[unsafe(no_mangle)]
 pub extern "C" fn saltus_a1_cartesian_pd(
     state: *const State<12>,
     reference: *const A1Reference,
-    then: *const A1Reference,
     command: *mut Command<12>,
 ) -> Status {
     status((|| {
         let out = output(command)?;
         *out = SAFE;
         let (q, v) = input(state)?.read()?;
-        let read = |given: &A1Reference| {
-            let mut numbers = given.joints.iter().chain(&given.joint_velocities);
-            let finite =
-                numbers.all(|x| x.is_finite()) && given.torques.iter().all(|x| x.is_finite());
-            let reference = Reference {
-                joints: given.joints,
-                joint_velocities: given.joint_velocities,
-                torques: given.torques,
-                node: 0,
-            };
-            finite.then_some(reference).ok_or(Status::BadData)
+        let given = input(reference)?;
+        let numbers = given.joints.iter().chain(&given.joint_velocities);
+        if !numbers.chain(&given.torques).all(|x| x.is_finite()) {
+            return Err(Status::BadData);
+        }
+        let reference = Reference {
+            joints: given.joints,
+            joint_velocities: given.joint_velocities,
+            torques: given.torques,
+            node: 0,
         };
-        let (reference, then) = (read(input(reference)?)?, read(input(then)?)?);
         let measured = Measurement {
             base: q.base,
             base_velocity: v.base,
@@ -156,7 +152,7 @@ pub extern "C" fn saltus_a1_cartesian_pd(
             age: 0.0,
         };
         let pd = CartesianPd::new(&BUILD, FEET.each_ref().map(|foot| foot.frame));
-        *out = Command::of(&pd.command(&A1Geared, &measured, &reference, &then));
+        *out = Command::of(&pd.command(&A1Geared, &measured, &reference));
         Ok(())
     })())
 }

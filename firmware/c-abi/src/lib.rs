@@ -58,7 +58,7 @@ pub use machine::{Observation, Tick};
 pub use state::State;
 
 /// Version of the interface; a controller is initialised with the version that the caller was compiled with.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 
 /// What came of a call.
 #[repr(C)]

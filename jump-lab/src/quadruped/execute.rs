@@ -226,8 +226,6 @@ struct Keeper<'a, 'p, T, W> {
     plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
     /// Node of the plan's last sample.
     node: usize,
-    /// Whether the machine is told how old its observations are.
-    delayed: bool,
     tamper: T,
     watch: W,
 }
@@ -239,9 +237,6 @@ where
     W: FnMut(&landing::Workspace<f64, 12, 4>),
 {
     fn tell(&mut self, k: u64, told: &mut Observed) {
-        if !self.delayed && told.measured.age.is_finite() {
-            told.measured.age = 0.0;
-        }
         (self.tamper)(k, told);
     }
 
@@ -325,7 +320,6 @@ pub fn run_watched(
         run: Run::new(task, stored.checksum(), closed.world.plant().tick()),
         plan: &jump.plan,
         node: 0,
-        delayed: !trial.without.contains(&Measure::Delay),
         tamper,
         watch,
     };

@@ -19,41 +19,23 @@ pub enum Measure {
     Drives,
     /// Plan forces that keep to a share of friction, torque and speed.
     Margins,
-    /// References as late as the measurements that they are compared with.
-    Delay,
-    /// The plan's torques a millisecond early, for what holding and the slew limit delay them by.
-    Lookahead,
     /// A landing posture that follows tilt and speed before touchdown.
     Posture,
     /// Forces of the feet against a wrong turning rate.
     BaseFeedback,
-    /// Plan forces that keep their direction in the world, however the body leans.
-    Direction,
-    /// Feet pulled to their places in the world, however the body leans, while fewer than all push.
-    AttitudeCompensation,
-    /// A touchdown and an attitude there that are predicted, not taken from the plan and from now.
-    Retiming,
     /// Legs drawn in or stretched in flight, so that the body turns on time.
     InertiaShaping,
-    /// Stiffer gains of a body that rests off its target.
-    Resting,
 }
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 6] = [
         Self::Weighing,
         Self::Drives,
         Self::Margins,
-        Self::Delay,
-        Self::Lookahead,
         Self::Posture,
         Self::BaseFeedback,
-        Self::Direction,
-        Self::AttitudeCompensation,
-        Self::Retiming,
         Self::InertiaShaping,
-        Self::Resting,
     ];
 
     /// Its name on the command line and in results.
@@ -63,15 +45,9 @@ impl Measure {
             Self::Weighing => "weighing",
             Self::Drives => "drives",
             Self::Margins => "margins",
-            Self::Delay => "delay",
-            Self::Lookahead => "lookahead",
             Self::Posture => "posture",
-            Self::BaseFeedback => "steady",
-            Self::Direction => "direction",
-            Self::AttitudeCompensation => "grip",
-            Self::Retiming => "retiming",
-            Self::InertiaShaping => "tuck",
-            Self::Resting => "resting",
+            Self::BaseFeedback => "base-feedback",
+            Self::InertiaShaping => "inertia-shaping",
         }
     }
 
@@ -84,25 +60,11 @@ impl Measure {
             }
             Self::Drives => "Rotor inertia and joint friction in the plan's torques",
             Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
-            Self::Delay => "References as late as the measurements that they are compared with",
-            Self::Lookahead => {
-                "The plan's torques a millisecond early, for what holding and the slew limit delay them by"
-            }
             Self::Posture => "A landing posture that follows tilt and speed before touchdown",
             Self::BaseFeedback => "Forces of the feet against a wrong turning rate",
-            Self::Direction => {
-                "Plan forces that keep their direction in the world, however the body leans"
-            }
-            Self::AttitudeCompensation => {
-                "Feet pulled to their places in the world, however the body leans, while fewer than all push"
-            }
-            Self::Retiming => {
-                "A touchdown and an attitude there that are predicted, not taken from the plan and from now"
-            }
             Self::InertiaShaping => {
                 "Legs drawn in or stretched in flight, so that the body turns on time"
             }
-            Self::Resting => "Stiffer gains of a body that rests off its target",
         }
     }
 
@@ -140,19 +102,11 @@ impl Measure {
     pub fn leave(self, settings: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
         match self {
             Self::Weighing => settings.max_payload = 0.0,
-            Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => settings.levelling = -f64::INFINITY,
-            Self::BaseFeedback => {
-                let feedback = &mut settings.base_feedback;
-                (feedback.stiffness, feedback.damping, feedback.turning) = (0.0, 0.0, 0.0);
-            }
-            Self::Direction => settings.base_feedback.direction = 0.0,
-            Self::AttitudeCompensation => settings.base_feedback.compensation = 0.0,
-            Self::Retiming => (settings.max_late, settings.foresight) = (0.0, 0.0),
+            Self::BaseFeedback => settings.base_feedback.turning = 0.0,
             Self::InertiaShaping => settings.inertia_shaping.gain = 0.0,
-            Self::Resting => settings.landing.resting = settings.landing.horizontal,
-            Self::Drives | Self::Margins | Self::Delay => {}
+            Self::Drives | Self::Margins => {}
         }
     }
 }

@@ -68,7 +68,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     let pd = CartesianPd::new(&robot.build, robot.feet);
     let input = (&pd, &robot.model, &measured, &reference);
     let command = on.call("CartesianPd::command", input, |(pd, m, x, r)| {
-        pd.command(m, x, r, r)
+        pd.command(m, x, r)
     });
     let input = (&command, &robot.q.joints, &robot.v.joints, &robot.motors);
     let torques = on.call("JointCommand::torques", input, |(c, q, v, m)| {
