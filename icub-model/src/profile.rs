@@ -300,6 +300,8 @@ pub const SETTINGS: Settings = Settings {
     max_silence: 0.005,
     // rad: as of A1's machine.
     start_tolerance: 0.15,
+    // m: soles reach at least 5 cm back from their frames, so the centre of mass stays over them.
+    start_distance: 0.03,
     // s: five flights.
     patience: 1.0,
     // m/s and rad/s: as of A1's machine on its legs of 0.4 m.

@@ -46,6 +46,8 @@ pub enum Refusal {
     TooLate,
     /// At the start this joint was not where the plan begins.
     Posture(usize),
+    /// The feet are not where the jump begins.
+    Place,
     /// A number of the jump is not finite.
     NotFinite,
 }
@@ -60,6 +62,9 @@ impl fmt::Display for Refusal {
             Self::Posture(joint) => write!(
                 f,
                 "joint {joint} is not where the plan begins: plan from where the robot stands"
+            ),
+            Self::Place => f.write_str(
+                "the feet are not where the jump begins: give it the place where the robot stands",
             ),
             Self::NotFinite => f.write_str("a number of the jump is not finite"),
         }

@@ -78,11 +78,14 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         let mut pairs = joints.iter().zip(first);
         match pairs.position(|(q, first)| math::abs(*q - *first) > tolerance) {
             None => Event::Start,
-            Some(joint) => {
-                self.refusal = Some(Refusal::Posture(joint));
-                Event::Misplaced
-            }
+            Some(joint) => self.refuse(Refusal::Posture(joint)),
         }
+    }
+
+    /// The jump is not begun, for this reason.
+    pub(crate) const fn refuse(&mut self, why: Refusal) -> Event {
+        self.refusal = Some(why);
+        Event::Misplaced
     }
 
     /// The latest observation with its age now, and the time since the last tick.

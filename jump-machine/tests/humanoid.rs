@@ -186,6 +186,25 @@ fn a_jump_that_cannot_begin_is_refused_with_its_reason_and_the_robot_stands_on()
     });
 }
 
+/// The push-off would run after it with all its torque.
+#[test]
+fn a_jump_that_begins_elsewhere_is_refused_at_once() {
+    with(settings(), |m| {
+        run(m, 0, 20, &landed());
+        let mut elsewhere = jump();
+        elsewhere.start.base.translation.x += 0.04;
+        m.arm(&elsewhere, 0.5).unwrap();
+        let tick = run(m, 20, 21, &ground());
+        assert_eq!(
+            (tick.phase, tick.refusal),
+            (Phase::Stand, Some(Refusal::Place))
+        );
+        elsewhere.start.base.translation.x -= 0.02;
+        m.arm(&elsewhere, 0.5).unwrap();
+        assert_eq!(run(m, 21, 60, &ground()).phase, Phase::Hold);
+    });
+}
+
 #[test]
 fn missing_measurements_are_bridged_for_ten_milliseconds_and_ticks_for_five_and_then_named() {
     let (good, still) = (landed(), [0.0; N]);

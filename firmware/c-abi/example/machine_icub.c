@@ -154,6 +154,13 @@ static void refusals(void) {
         expect("hold", saltus_icub_machine_tick(machine, clock_now, &seen, &tick), SALTUS_STATUS_OK);
     }
     hold("a joint that is not where the jump begins", tick.phase == SALTUS_PHASE_STAND && tick.refusal == SALTUS_REFUSAL_POSTURE && tick.refusal_joint == 7);
+
+    begin();
+    SaltusIcubJump elsewhere = jump;
+    elsewhere.position_w[0] += 0.1;
+    expect("arm for another place", saltus_icub_machine_arm(machine, &elsewhere, clock_now + 0.02), SALTUS_STATUS_OK);
+    expect("hold elsewhere", saltus_icub_machine_tick(machine, clock_now + 1e-3, &seen, &tick), SALTUS_STATUS_OK);
+    hold("feet that are not where the jump begins", tick.phase == SALTUS_PHASE_STAND && tick.refusal == SALTUS_REFUSAL_PLACE);
 }
 
 /* With one step of the solver no program comes to its optimum: what it has is a command all the same. */

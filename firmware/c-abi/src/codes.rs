@@ -101,8 +101,10 @@ pub enum Refusal {
     TooLate = 2,
     /// At the start a joint was not where the plan begins; the index says which.
     Posture = 3,
+    /// The feet were not where the jump begins.
+    Place = 4,
     /// Another reason of a newer machine.
-    Other = 4,
+    Other = 5,
 }
 
 /// Whether an estimate may be acted on.
@@ -326,6 +328,7 @@ pub(crate) fn refusal(refusal: Option<jump_machine::Refusal>) -> (Refusal, u32) 
         Some(jump_machine::Refusal::NotStanding) => (Refusal::NotStanding, 0),
         Some(jump_machine::Refusal::TooLate) => (Refusal::TooLate, 0),
         Some(jump_machine::Refusal::Posture(joint)) => (Refusal::Posture, joint as u32),
+        Some(jump_machine::Refusal::Place) => (Refusal::Place, 0),
         Some(_) => (Refusal::Other, 0),
     }
 }

@@ -5,6 +5,9 @@ use rbd_core::{GRAVITY, Tree};
 use so3::Scalar;
 
 use super::Machine;
+use super::jump::Armed;
+use super::stance::first_foot;
+use crate::Refusal;
 
 impl<
     T: Scalar,
@@ -29,6 +32,10 @@ impl<
             self.calm + dt
         };
         match (phase, &self.armed) {
+            // The push-off holds the centre of mass where the jump begins in the world: elsewhere, it would push with all its might.
+            (Phase::Hold, Some(armed)) if self.away(armed, measured) => {
+                Some(self.supervisor.refuse(Refusal::Place))
+            }
             (Phase::Hold, Some(_)) if t < T::ZERO => None,
             (Phase::Hold, Some(armed)) => {
                 let first = &armed.jump.start.joints;
@@ -53,6 +60,13 @@ impl<
             (Phase::Stand, _) => (self.calm == T::ZERO).then_some(Event::Disturbed),
             _ => None,
         }
+    }
+
+    /// Whether the robot stands elsewhere than where the jump begins.
+    fn away(&self, armed: &Armed<T, N>, measured: &Measurement<T, N, F>) -> bool {
+        let foot = first_foot(self.model, &self.settings.feet, &measured.configuration());
+        let distance = (foot.translation - armed.anchor.translation).norm();
+        distance > self.settings.start_distance
     }
 }
 

@@ -35,6 +35,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_silence: T,
     /// Farthest that a joint may be from the jump's start, rad.
     pub start_tolerance: T,
+    /// Farthest that the first foot may be, in the estimator's world, from where the jump begins, m.
+    pub start_distance: T,
     /// Time after the take-off at which the robot gives up waiting for the ground, s.
     pub patience: T,
     /// Base speeds below which the robot is at rest, m/s and rad/s.
