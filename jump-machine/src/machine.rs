@@ -205,6 +205,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let s = &self.settings;
         let mut reference = sample(&jump.plan, t, self.node);
         self.node = reference.node;
+        reference.torques = sample(&jump.plan, t + s.lookahead, self.node).torques;
         let moment = (reference.node, t);
         match self.supervisor.phase {
             // Its weight has settled on the feet by then.

@@ -14,6 +14,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_age: T,
     /// Longest silence of either loop, s.
     pub max_silence: T,
+    /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
+    pub lookahead: T,
     /// Time before the start during which the weight on the feet is measured, s.
     pub weighing: T,
     /// Largest share of the planned weight that counts as payload.
@@ -54,8 +56,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
     /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
     /// 0.4 m, with which `saltus run` executes; `saltus verdicts` measures them.
     ///
-    /// Period, age and silence are the computers' and links', the same for all robots: 1 kHz, 10 ms, 5 ms. The drives' 10 kN m/s
-    /// build up a torque in a time that is theirs as well, so the rate scales as a torque. All other times are the
+    /// Period, age, silence and lookahead are the computers' and links', the same for all robots: 1 kHz, 10 ms, 5 ms, 1 ms. The
+    /// drives' 10 kN m/s build up a torque in a time that is theirs as well, so the rate scales as a torque. All other times are the
     /// body's.
     ///
     /// `standing` are joint positions for legs without ground while no jump is armed.
@@ -71,6 +73,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             period: of(1e-3),
             max_age: of(0.010),
             max_silence: of(0.005),
+            lookahead: of(0.001),
             weighing: build.time(0.15),
             max_payload: of(0.15),
             start_tolerance: of(0.15),

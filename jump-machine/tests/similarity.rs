@@ -97,6 +97,7 @@ impl Size {
             &mut s.period,
             &mut s.max_age,
             &mut s.max_silence,
+            &mut s.lookahead,
             &mut s.detector.confirm,
             &mut s.detector.patience,
             &mut s.detector.observer.time_constant,

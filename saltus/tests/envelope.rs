@@ -70,6 +70,7 @@ fn the_study_without_each_measure_is_one_table() {
             "weighing",
             "drives",
             "margins",
+            "lookahead",
             "posture",
             "base-feedback",
             "inertia-shaping"

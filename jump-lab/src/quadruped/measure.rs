@@ -19,6 +19,8 @@ pub enum Measure {
     Drives,
     /// Plan forces that keep to a share of friction, torque and speed.
     Margins,
+    /// The plan's torques a millisecond early, for what holding and the slew limit delay them by.
+    Lookahead,
     /// A landing posture that follows tilt and speed before touchdown.
     Posture,
     /// Forces of the feet against a wrong turning rate.
@@ -29,10 +31,11 @@ pub enum Measure {
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Weighing,
         Self::Drives,
         Self::Margins,
+        Self::Lookahead,
         Self::Posture,
         Self::BaseFeedback,
         Self::InertiaShaping,
@@ -45,6 +48,7 @@ impl Measure {
             Self::Weighing => "weighing",
             Self::Drives => "drives",
             Self::Margins => "margins",
+            Self::Lookahead => "lookahead",
             Self::Posture => "posture",
             Self::BaseFeedback => "base-feedback",
             Self::InertiaShaping => "inertia-shaping",
@@ -60,6 +64,9 @@ impl Measure {
             }
             Self::Drives => "Rotor inertia and joint friction in the plan's torques",
             Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
+            Self::Lookahead => {
+                "The plan's torques a millisecond early, for what holding and the slew limit delay them by"
+            }
             Self::Posture => "A landing posture that follows tilt and speed before touchdown",
             Self::BaseFeedback => "Forces of the feet against a wrong turning rate",
             Self::InertiaShaping => {
@@ -102,6 +109,7 @@ impl Measure {
     pub fn leave(self, settings: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
         match self {
             Self::Weighing => settings.max_payload = 0.0,
+            Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => settings.levelling = -f64::INFINITY,
             Self::BaseFeedback => settings.base_feedback.turning = 0.0,
