@@ -126,6 +126,16 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
         }
     }
 
+    /// The same, under way instead of at rest: the IMU's point moves at `vel_w`, world axes, m/s. An IMU feels how a velocity changes and
+    /// never the velocity, so that a robot which is let go in motion has to be told.
+    #[must_use]
+    pub fn moving(mut self, vel_w: Vector3<T>) -> Self {
+        if let Some(v) = self.filter.mean.get_mut(VELOCITY) {
+            *v = vel_w;
+        }
+        self
+    }
+
     fn is_finite(&self) -> bool {
         let vectors = [&self.bias_b, &self.force_b, &self.rate_b];
         self.filter.is_finite()
