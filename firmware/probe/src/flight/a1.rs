@@ -10,6 +10,7 @@ use rbd_core::{
     Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
 };
 
+use super::closed_loop::{Flown, RATIO, Simulated};
 use super::digested;
 use super::plan::{self, Planned};
 use crate::inputs::Stream;
@@ -20,8 +21,6 @@ const SUBJECT: &str = "a1-jump";
 pub const HOLD: f64 = 0.3;
 /// Time after the planned touchdown at which the run ends, s.
 const SETTLE: f64 = 0.8;
-/// Joint ticks per tick of the machine.
-const RATIO: usize = 10;
 /// Balls that touch the ground: feet and knees.
 const BALLS: usize = 8;
 /// States that no jump visits, on which the landing is tried.
@@ -115,6 +114,27 @@ where
     }
 }
 
+impl<T: Planned> Simulated<T, 12, 4> for Flight<T>
+where
+    A1Geared: Model<T, 12>,
+{
+    fn state(&self) -> (&Configuration<T, 12>, &Tangent<T, 12>) {
+        (self.plant.configuration(), self.plant.velocity())
+    }
+
+    fn hear(&mut self) -> Observation<T, 12, 4> {
+        Self::hear(self)
+    }
+
+    fn step(&mut self, torques: &[T; 12]) {
+        Self::step(self, torques);
+    }
+
+    fn is_over(&self) -> bool {
+        Self::is_over(self)
+    }
+}
+
 impl<T: Planned> Default for Flight<T>
 where
     A1Geared: Model<T, 12>,
@@ -195,7 +215,18 @@ pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     })
 }
 
-/// Flies the double backflip and lands it, then tries the landing where no jump comes.
+/// What a tick of the machine is called in a jump, and in states that no jump visits.
+const fn name(work: &Work, wild: bool) -> &'static str {
+    match (work, wild) {
+        (Work::Cartesian, _) => "Cartesian PD tick",
+        (Work::Landing(Outcome::Failed(_)), true) => "capped machine tick",
+        (Work::Landing(_), true) => "wild machine tick",
+        (Work::Landing(_), false) => "landing tick",
+        (Work::Damping, _) => "damping tick",
+    }
+}
+
+/// Flies the double backflip and lands it, then tries machine and landing where no jump comes.
 pub fn a1<T: Planned, R: Recorder>(recorder: &mut R)
 where
     A1Geared: Model<T, 12>,
@@ -206,52 +237,16 @@ where
     if machine.arm(jump, T::of(HOLD)).is_err() {
         return;
     }
-    let mut flight = Flight::new();
-    let mut k = 0_u32;
-    while !flight.is_over() {
-        let inputs = flight.hear();
-        let now = T::of(f64::from(k)) * T::of(1e-3);
-        let input = (&mut machine, now, &inputs);
-        digested::<T, _, _, _>(
-            recorder,
-            SUBJECT,
-            input,
-            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
-            |tick| match tick.work {
-                Work::Cartesian => "Cartesian PD tick",
-                Work::Landing(_) => "landing tick",
-                Work::Damping => "damping tick",
-            },
-        );
-        for i in 0..RATIO {
-            let (q, v) = flight.joints();
-            let torques = if i == 0 {
-                digested::<T, _, _, _>(
-                    recorder,
-                    SUBJECT,
-                    (&mut machine, &q, &v),
-                    |(machine, q, v)| machine.joint_tick(q, v, T::of(1e-4)),
-                    |_| "joint PD tick",
-                )
-            } else {
-                machine.joint_tick(&q, &v, T::of(1e-4))
-            };
-            flight.step(&torques);
-        }
-        k += 1;
-    }
-    let end = (*flight.plant.configuration(), *flight.plant.velocity());
-    end.visit(&mut |x| recorder.value(crate::canonical_bits(x)));
-    recorder.value(machine.phase() as u64);
-    wild_machine(recorder, &mut machine, k);
+    let mut flown = Flown::new(machine, SUBJECT, name, false);
+    flown.fly(recorder, &mut Flight::new());
+    wild_machine(recorder, &mut flown);
     wild(recorder, &A1Geared, &feet());
 }
 
 /// The machine after its landing, told of states where no jump comes, a millisecond after the other.
 fn wild_machine<T: Planned, R: Recorder>(
     recorder: &mut R,
-    machine: &mut Machine<'_, T, A1Geared, 12, 4>,
-    first: u32,
+    flown: &mut Flown<Machine<'_, T, A1Geared, 12, 4>, Work>,
 ) where
     A1Geared: Model<T, 12>,
 {
@@ -259,23 +254,11 @@ fn wild_machine<T: Planned, R: Recorder>(
     for k in 0..WILD {
         let (q, v) = wild_state(stream);
         let on = wild_feet(k);
-        let inputs = Observation {
+        let heard = Observation {
             measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
             joint_torques: stream.array(20.0),
         };
-        let now = T::of(f64::from(first + k as u32)) * T::of(1e-3);
-        let input = (&mut *machine, now, &inputs);
-        digested::<T, _, _, _>(
-            recorder,
-            SUBJECT,
-            input,
-            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
-            |tick| match tick.work {
-                Work::Landing(Outcome::Failed(_)) => "capped machine tick",
-                Work::Landing(_) => "wild machine tick",
-                _ => "damping tick",
-            },
-        );
+        flown.tick(recorder, &heard, true);
     }
 }
 

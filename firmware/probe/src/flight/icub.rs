@@ -12,6 +12,7 @@ use rbd_core::{Configuration, Motion, Tangent, Transform};
 use wbc_qp::jump::{ComReference, LandingSettings, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Snapshot, Yielded};
 
+use super::closed_loop::{Flown, RATIO, Simulated};
 use super::digested;
 use crate::inputs::Stream;
 use crate::{Numbers, Recorder};
@@ -21,8 +22,6 @@ const SUBJECT: &str = "icub-jump";
 const ICUB_HOLD: f64 = 0.1;
 /// Time of push-off, flight, landing and standing, ms: it stands after 1.9 s.
 const JUMP: usize = 2100;
-/// Joint ticks per tick of the machine.
-const RATIO: usize = 10;
 /// Most steps of a program's solver in a tick: with them a tick takes less than 720,000 instructions on a Cortex-M7. The push-off needs 7.
 const STEPS: u32 = 10;
 /// States that no jump visits.
@@ -145,6 +144,24 @@ impl IcubFlight {
     }
 }
 
+impl Simulated<f64, JOINTS, 2> for IcubFlight {
+    fn state(&self) -> (&Configuration<f64, JOINTS>, &Tangent<f64, JOINTS>) {
+        (self.plant.configuration(), self.plant.velocity())
+    }
+
+    fn hear(&mut self) -> Observed {
+        Self::hear(self)
+    }
+
+    fn step(&mut self, torques: &[f64; JOINTS]) {
+        Self::step(self, torques);
+    }
+
+    fn is_over(&self) -> bool {
+        Self::is_over(self)
+    }
+}
+
 impl Default for IcubFlight {
     fn default() -> Self {
         Self::new()
@@ -198,55 +215,13 @@ const fn name(work: &Work<f64>, wild: bool) -> &'static str {
 /// Jumps and lands in closed loop with the simulator, then tries machine and program where no jump comes.
 pub fn icub<R: Recorder>(recorder: &mut R) {
     let mut workspace = Workspace::new(&icub_settings());
-    let Some(mut machine) = icub_machine(&mut workspace) else {
+    let Some(machine) = icub_machine(&mut workspace) else {
         return;
     };
-    let mut flight = IcubFlight::new();
-    let mut k = 0_u32;
-    while !flight.is_over() {
-        tick(recorder, &mut machine, &mut k, &flight.hear(), false);
-        for i in 0..RATIO {
-            let (q, v) = flight.joints();
-            let torques = if i == 0 {
-                digested::<f64, _, _, _>(
-                    recorder,
-                    SUBJECT,
-                    (&mut machine, &q, &v),
-                    |(machine, q, v)| machine.joint_tick(q, v, 1e-4),
-                    |_| "joint PD tick",
-                )
-            } else {
-                machine.joint_tick(&q, &v, 1e-4)
-            };
-            flight.step(&torques);
-        }
-    }
-    let end = (*flight.plant.configuration(), *flight.plant.velocity());
-    end.visit(&mut |x| recorder.value(x.to_bits()));
-    recorder.value(machine.phase() as u64);
-    wild_machine(recorder, &mut machine, &mut k);
+    let mut flown = Flown::new(machine, SUBJECT, name, true);
+    flown.fly(recorder, &mut IcubFlight::new());
+    wild_machine(recorder, &mut flown);
     wild(recorder);
-}
-
-/// The `k`-th millisecond.
-fn tick<R: Recorder>(
-    recorder: &mut R,
-    machine: &mut Machine<'_, Icub23GazeboGeared>,
-    k: &mut u32,
-    heard: &Observed,
-    wild: bool,
-) {
-    let now = f64::from(*k) * 1e-3;
-    *k = k.wrapping_add(1);
-    digested::<f64, _, _, _>(
-        recorder,
-        SUBJECT,
-        (&mut *machine, now, heard),
-        |(machine, now, heard)| machine.tick(now, Some(heard)),
-        |tick| name(&tick.work, wild),
-    );
-    let command = super::digest(machine.command());
-    recorder.value(command);
 }
 
 /// A state far from any jump, of number `k`: tilted, fast, at the ends of the joints, on both soles, one or none.
@@ -273,14 +248,13 @@ fn wild_state(
 /// The machine after its landing, told of states where no jump comes, a millisecond after the other.
 fn wild_machine<R: Recorder>(
     recorder: &mut R,
-    machine: &mut Machine<'_, Icub23GazeboGeared>,
-    k: &mut u32,
+    flown: &mut Flown<Machine<'_, Icub23GazeboGeared>, Work<f64>>,
 ) {
     let stream = &mut Stream::new(2027);
     for i in 0..WILD {
         let (q, v, soles) = wild_state(stream, i);
         let forces = soles.map(|on| if on { 200.0 } else { 0.0 });
-        tick(recorder, machine, k, &observed(&q, &v, forces), true);
+        flown.tick(recorder, &observed(&q, &v, forces), true);
     }
 }
 

@@ -5,6 +5,7 @@
 //! of numbers.
 
 mod a1;
+mod closed_loop;
 mod icub;
 mod plan;
 
