@@ -1,16 +1,14 @@
 //! A1 jumps: joint PD at 10 kHz, Cartesian PD and landing at 1 kHz, from a plan in flash.
 
 use a1_model::{A1Geared, BUILD};
-use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
+use contact_sim::{Block, NativeSimulator, Settings, Shape, Terrain};
 use jump_control::{Measurement, Plan};
 use jump_machine::{Jump, Machine, Observation, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
 use nalgebra::Vector3;
-use rbd_core::{
-    Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
-};
+use rbd_core::{Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform};
 
-use super::closed_loop::{Flown, RATIO, Simulated};
+use super::closed_loop::{Flown, Simulated, told};
 use super::digested;
 use super::plan::{self, Planned};
 use crate::inputs::Stream;
@@ -34,16 +32,7 @@ impl Numbers for Tick {
 }
 
 /// A simulated A1 in the place of the robot: on its box, at rest.
-#[derive(Clone, Debug)]
-pub struct Flight<T: Planned>
-where
-    A1Geared: Model<T, 12>,
-{
-    plant: NativeSimulator<T, A1Geared, 12, BALLS, BALLS>,
-    joint_torques: [T; 12],
-    steps: usize,
-    broken: bool,
-}
+pub type Flight<T> = Simulated<T, A1Geared, 12, 4, BALLS>;
 
 impl<T: Planned> Flight<T>
 where
@@ -53,85 +42,19 @@ where
     #[must_use]
     pub fn new() -> Self {
         let motors = crate::control::motors(&A1Geared);
-        let mut plant = NativeSimulator::new(
+        let plant = NativeSimulator::new(
             A1Geared,
             balls(&feet()),
             behind_the_box(),
             Settings::new(A1Geared.limits(), &motors),
         );
-        if let Some(first) = T::nodes().first() {
-            let start = Configuration {
-                base: first.base,
-                joints: first.joints,
-            };
-            plant.reset(&start, &Tangent::ZERO);
-        }
-        Self {
-            plant,
-            joint_torques: [T::ZERO; 12],
-            steps: 0,
-            broken: false,
-        }
-    }
-
-    /// Joint positions and velocities of now.
-    pub fn joints(&self) -> ([T; 12], [T; 12]) {
-        let (q, v) = (self.plant.configuration(), self.plant.velocity());
-        (q.joints, v.joints)
-    }
-
-    /// What a controller is told, the truth, and the mean torques since it was told last.
-    pub fn hear(&mut self) -> Observation<T, 12, 4> {
-        let forces = self.plant.contact_forces_w();
-        let measured = told(
-            self.plant.configuration(),
-            self.plant.velocity(),
-            core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
-        );
-        let joint_torques = core::mem::replace(&mut self.joint_torques, [T::ZERO; 12]);
-        Observation {
-            measured,
-            joint_torques,
-        }
-    }
-
-    /// 100 µs under these torques.
-    pub fn step(&mut self, torques: &[T; 12]) {
-        let speeds = self.plant.velocity().joints;
-        self.broken |= self.plant.step(torques).is_err();
-        self.steps += 1;
-        let losses = joint_friction(A1Geared.limits(), &speeds, T::of(0.1));
-        let given = self.plant.delivered().iter().zip(losses);
-        for (joint_torques, (tau, loss)) in self.joint_torques.iter_mut().zip(given) {
-            *joint_torques += (*tau + loss) / T::of(RATIO as f64);
-        }
-    }
-
-    /// Whether enough time has passed to land and to come to rest.
-    pub fn is_over(&self) -> bool {
-        let end = ((HOLD + plan::TIMES[2] + SETTLE) * 1e3) as usize * RATIO;
-        self.broken || self.steps >= end
-    }
-}
-
-impl<T: Planned> Simulated<T, 12, 4> for Flight<T>
-where
-    A1Geared: Model<T, 12>,
-{
-    fn state(&self) -> (&Configuration<T, 12>, &Tangent<T, 12>) {
-        (self.plant.configuration(), self.plant.velocity())
-    }
-
-    fn hear(&mut self) -> Observation<T, 12, 4> {
-        Self::hear(self)
-    }
-
-    fn step(&mut self, torques: &[T; 12]) {
-        Self::step(self, torques);
-    }
-
-    fn is_over(&self) -> bool {
-        Self::is_over(self)
+        let first = T::nodes().first();
+        let start = first.map_or(Configuration::NEUTRAL, |first| Configuration {
+            base: first.base,
+            joints: first.joints,
+        });
+        let time = ((HOLD + plan::TIMES[2] + SETTLE) * 1e3) as usize;
+        Self::at_rest(plant, &start, (|ball| ball, true), time)
     }
 }
 
@@ -157,22 +80,6 @@ impl<T: Real, const N: usize, const F: usize> Numbers for Observation<T, N, F> {
         (base, base_velocity).visit(take);
         (joints, joint_velocities).visit(take);
         (foot_forces, age, self.joint_torques).visit(take);
-    }
-}
-
-/// A state with forces on the feet, as a fresh measurement.
-fn told<T: Real>(
-    q: &Configuration<T, 12>,
-    v: &Tangent<T, 12>,
-    foot_forces: [T; 4],
-) -> Measurement<T, 12, 4> {
-    Measurement {
-        base: q.base,
-        base_velocity: v.base,
-        joints: q.joints,
-        joint_velocities: v.joints,
-        foot_forces,
-        age: T::ZERO,
     }
 }
 
@@ -238,7 +145,7 @@ where
         return;
     }
     let mut flown = Flown::new(machine, SUBJECT, name, false);
-    flown.fly(recorder, &mut Flight::new());
+    flown.fly(recorder, Flight::new());
     wild_machine(recorder, &mut flown);
     wild(recorder, &A1Geared, &feet());
 }
@@ -255,8 +162,8 @@ fn wild_machine<T: Planned, R: Recorder>(
         let (q, v) = wild_state(stream);
         let on = wild_feet(k);
         let heard = Observation {
-            measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
             joint_torques: stream.array(20.0),
+            ..told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO }))
         };
         flown.tick(recorder, &heard, true);
     }

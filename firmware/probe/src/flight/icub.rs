@@ -1,18 +1,17 @@
 //! iCub jumps: joint loop at 10 kHz, push-off by the torque program (paper B, eqs. (6a) to (6f)), flight, landing and standing at 1 kHz, as
 //! `saltus run icub/torque`.
 
-use contact_sim::{NativeSimulator, Shape, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Shape, Terrain};
 use icub_model::profile::{self, JOINTS, Machine, SETTINGS, SOLE_CONTACTS, Settings, Workspace};
 use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
-use jump_control::Measurement;
+use jump_machine::Tick;
 use jump_machine::humanoid::{Jump, Landing, PushOff, Work, on_the_floor};
-use jump_machine::{Observation, Tick};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Motion, Tangent, Transform};
 use wbc_qp::jump::{ComReference, LandingSettings, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Snapshot, Yielded};
 
-use super::closed_loop::{Flown, RATIO, Simulated};
+use super::closed_loop::{Flown, Simulated, told};
 use super::digested;
 use crate::inputs::Stream;
 use crate::{Numbers, Recorder};
@@ -28,8 +27,6 @@ const STEPS: u32 = 10;
 const WILD: usize = 200;
 /// The robot as `saltus run` simulates it, and as its controllers know it.
 static ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
-
-type Observed = Observation<f64, JOINTS, 2>;
 
 /// iCub's settings with a longest time for each tick.
 #[must_use]
@@ -86,104 +83,22 @@ fn balls() -> [Shape<f64>; 8] {
 }
 
 /// A simulated iCub in the place of the robot: in a squat on both soles, at rest.
-#[derive(Clone, Debug)]
-pub struct IcubFlight {
-    plant: NativeSimulator<f64, Icub23GazeboGeared, JOINTS, 8, 8>,
-    steps: usize,
-    broken: bool,
-}
+pub type IcubFlight = Simulated<f64, Icub23GazeboGeared, JOINTS, 2, 8>;
 
 impl IcubFlight {
     /// Before the push-off.
     #[must_use]
     pub fn new() -> Self {
         let settings = contact_sim::Settings::new(&LIMITS, &MOTORS);
-        let mut plant = NativeSimulator::new(ROBOT, balls(), Terrain::FLAT, settings);
-        plant.reset(&standing(), &Tangent::ZERO);
-        Self {
-            plant,
-            steps: 0,
-            broken: false,
-        }
-    }
-
-    /// Joint positions and velocities of now.
-    #[must_use]
-    pub fn joints(&self) -> ([f64; JOINTS], [f64; JOINTS]) {
-        let (q, v) = (self.plant.configuration(), self.plant.velocity());
-        (q.joints, v.joints)
-    }
-
-    /// What the controller is told: the truth.
-    #[must_use]
-    pub fn hear(&self) -> Observed {
-        let mut soles = [Vector3::zeros(); 2];
-        for (i, force) in self.plant.contact_forces_w().iter().enumerate() {
-            if let Some(sole) = soles.get_mut(i / 4) {
-                *sole += force;
-            }
-        }
-        observed(
-            self.plant.configuration(),
-            self.plant.velocity(),
-            soles.map(|force| force.norm()),
-        )
-    }
-
-    /// 100 µs under these torques.
-    pub fn step(&mut self, torques: &[f64; JOINTS]) {
-        self.broken |= self.plant.step(torques).is_err();
-        self.steps += 1;
-    }
-
-    /// Whether enough time has passed to land and to come to rest.
-    #[must_use]
-    pub const fn is_over(&self) -> bool {
+        let plant = NativeSimulator::new(ROBOT, balls(), Terrain::FLAT, settings);
         let hold = (ICUB_HOLD * 1e3) as usize;
-        self.broken || self.steps >= (hold + JUMP) * RATIO
-    }
-}
-
-impl Simulated<f64, JOINTS, 2> for IcubFlight {
-    fn state(&self) -> (&Configuration<f64, JOINTS>, &Tangent<f64, JOINTS>) {
-        (self.plant.configuration(), self.plant.velocity())
-    }
-
-    fn hear(&mut self) -> Observed {
-        Self::hear(self)
-    }
-
-    fn step(&mut self, torques: &[f64; JOINTS]) {
-        Self::step(self, torques);
-    }
-
-    fn is_over(&self) -> bool {
-        Self::is_over(self)
+        Self::at_rest(plant, &standing(), (|ball| ball / 4, false), hold + JUMP)
     }
 }
 
 impl Default for IcubFlight {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// A state with forces on the soles, as a fresh observation.
-const fn observed(
-    q: &Configuration<f64, JOINTS>,
-    v: &Tangent<f64, JOINTS>,
-    foot_forces: [f64; 2],
-) -> Observed {
-    Observation {
-        measured: Measurement {
-            base: q.base,
-            base_velocity: v.base,
-            joints: q.joints,
-            joint_velocities: v.joints,
-            foot_forces,
-            age: 0.0,
-        },
-        joint_torques: [0.0; JOINTS],
     }
 }
 
@@ -219,7 +134,7 @@ pub fn icub<R: Recorder>(recorder: &mut R) {
         return;
     };
     let mut flown = Flown::new(machine, SUBJECT, name, true);
-    flown.fly(recorder, &mut IcubFlight::new());
+    flown.fly(recorder, IcubFlight::new());
     wild_machine(recorder, &mut flown);
     wild(recorder);
 }
@@ -254,7 +169,7 @@ fn wild_machine<R: Recorder>(
     for i in 0..WILD {
         let (q, v, soles) = wild_state(stream, i);
         let forces = soles.map(|on| if on { 200.0 } else { 0.0 });
-        flown.tick(recorder, &observed(&q, &v, forces), true);
+        flown.tick(recorder, &told(&q, &v, forces), true);
     }
 }
 
