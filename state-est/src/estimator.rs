@@ -448,3 +448,42 @@ fn gravity<T: Scalar>() -> Vector3<T> {
 fn is_finite<T: Scalar>(x: &Vector3<T>) -> bool {
     x.iter().all(|x| x.is_finite_number())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Estimator, Foot, State};
+    use crate::{Sample, Settings};
+    use a1_model::{A1, FEET};
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Transform};
+
+    /// A robot that is let go in motion is followed through its fall, of which the IMU feels nothing.
+    #[test]
+    fn a_thrown_robot_is_followed_from_the_release() {
+        let estimator = Estimator::<f64, 12, 4, 6> {
+            feet: FEET.map(|foot| Foot::of(&foot)),
+            imu: Transform::IDENTITY,
+            settings: Settings::new(),
+        };
+        let mut start = Configuration::<f64, 12>::NEUTRAL;
+        start.base.rotation = so3::exp(&Vector3::new(0.3, -0.2, 0.1));
+        let thrown_w = Vector3::new(0.1, 0.5, -0.2);
+        let mut state = State::new(&estimator, &A1, &start).moving(thrown_w);
+        let falling = Sample {
+            specific_force_i: Vector3::zeros(),
+            angular_velocity_i: Vector3::zeros(),
+            joints: start.joints,
+            joint_velocities: [0.0; 12],
+            evidence: [0.0; 4],
+        };
+        let mut estimate = estimator.step(&A1, &mut state, Some(&falling), 1e-3);
+        for _ in 1..400 {
+            estimate = estimator.step(&A1, &mut state, Some(&falling), 1e-3);
+        }
+        let gravity_w = Vector3::from(rbd_core::GRAVITY);
+        let place_w = thrown_w * 0.4 + gravity_w * (0.5 * 0.4 * 0.4);
+        let vel_w = estimate.base.rotation * estimate.velocity.linear;
+        assert!((estimate.base.translation - place_w).norm() < 1e-9);
+        assert!((vel_w - (thrown_w + gravity_w * 0.4)).norm() < 1e-9);
+    }
+}

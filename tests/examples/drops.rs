@@ -12,7 +12,7 @@ use saltus_tests::drops::{Drop, End, Wrong, drawn, energy_bound, run, with_fault
 
 /// Runs drops 0 to `count` on all cores.
 fn all(
-    sim: Sim,
+    (robot, sim): (&Quadruped, Sim),
     count: u64,
     drop: impl Fn(u64) -> Drop + Sync,
 ) -> Result<Vec<(Drop, End)>, String> {
@@ -20,7 +20,7 @@ fn all(
         .into_par_iter()
         .map(|index| {
             let drop = drop(index);
-            Ok((drop, run(sim, &drop)?))
+            Ok((drop, run(robot, sim, &drop)?))
         })
         .collect()
 }
@@ -58,8 +58,10 @@ fn study(sim: Sim, count: u64, seed: u64) -> Result<(), String> {
     );
     let robot = Quadruped::a1().map_err(|error| error.to_string())?;
     let low = [0.3, 1.0];
-    let right = all(sim, count, |i| drawn(seed, i, low))?;
-    let wrong = all(sim, count, |i| with_fault(&drawn(seed, i, low), i))?;
+    let right = all((&robot, sim), count, |i| drawn(seed, i, low))?;
+    let wrong = all((&robot, sim), count, |i| {
+        with_fault(&drawn(seed, i, low), i)
+    })?;
     let good = row("0.3 to 1.0 m", &right.iter().collect::<Vec<_>>());
     let still = row(
         "the same, one foot sensor wrong",
@@ -79,7 +81,9 @@ fn study(sim: Sim, count: u64, seed: u64) -> Result<(), String> {
         energy_bound(&robot)
     );
     for height in [1.0, 1.25, 1.5, 1.75, 2.0] {
-        let ends = all(sim, count.div_ceil(5), |i| drawn(seed, i, [height, height]))?;
+        let ends = all((&robot, sim), count.div_ceil(5), |i| {
+            drawn(seed, i, [height, height])
+        })?;
         row(&format!("{height} m"), &ends.iter().collect::<Vec<_>>());
     }
     Ok(())

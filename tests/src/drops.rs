@@ -223,35 +223,34 @@ impl Recorder<Lander<'_>, JOINTS, FOOT_COUNT, OWNERS> for Watcher {
 ///
 /// # Errors
 /// This build lacks the simulator, or that fails.
-pub fn run(sim: Sim, drop: &Drop) -> Result<End, String> {
-    let robot = Quadruped::a1().map_err(|error| error.to_string())?;
-    let start = release(&robot, drop);
+pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
+    let start = release(robot, drop);
     let nodes = fall(&start, drop.height);
     let touchdown = nodes.last().map_or(0.0, |node| node.time);
     let plan = Plan::new(&nodes, 0.0, POSING, touchdown, Torques::Hold);
     let jump = Jump {
         plan: plan.map_err(|error| error.to_string())?,
-        weight: weight(&robot),
+        weight: weight(robot),
         rot_goal: Rotation3::identity(),
         landing_joints: POSTURE,
     };
     let build = robot.build(&start.0);
     let settings = Settings::new(&build, robot.feet, robot.drives(), POSTURE);
     let mut workspace = Workspace::new();
-    let mut machine = Machine::new(&robot, settings, &mut workspace);
+    let mut machine = Machine::new(robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
 
     let trial = Trial::nominal(sim);
     let over = (&Terrain::FLAT, &start.0);
-    let mut plant = simulator(sim, &robot, over, &trial.disturbance)?;
+    let mut plant = simulator(sim, robot, over, &trial.disturbance)?;
     plant.reset(&start.0, &start.1);
     // Nothing has stood still before the release, so no samples of that have settled the estimator.
     let feet = Feet {
         settling: 0,
-        ..feet(&robot)
+        ..feet(robot)
     };
-    let mut closed = closed((robot, feet), machine, Ground::new(plant, 0.0), &trial);
+    let mut closed = closed((*robot, feet), machine, Ground::new(plant, 0.0), &trial);
     let mut watcher = Watcher {
         fault: drop.fault,
         // Another chattering for every drop.

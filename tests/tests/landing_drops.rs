@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use jump_lab::Sim;
+use jump_planner::robot::Quadruped;
 use saltus_tests::drops::{Drop, Wrong, eighteen, run};
 
 /// Most ticks of a drop whose force program may end at its cap of 20 factorisations: the next tick goes on from there, so that a few in a
@@ -9,9 +10,10 @@ use saltus_tests::drops::{Drop, Wrong, eighteen, run};
 const MOST_CAPPED: u32 = 3;
 
 fn good(sim: Sim, drops: impl Iterator<Item = Drop>) -> usize {
+    let robot = Quadruped::a1().unwrap();
     let mut good = 0;
     for drop in drops {
-        let end = run(sim, &drop).unwrap();
+        let end = run(&robot, sim, &drop).unwrap();
         assert_eq!(end.failures, 0, "a QP failed: {drop:?}");
         assert!(end.capped <= MOST_CAPPED, "{drop:?}: {end:?}");
         if end.good() {
@@ -38,6 +40,7 @@ fn eighteen_of_eighteen_drops_from_one_metre_are_landed() {
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
+    let robot = Quadruped::a1().unwrap();
     for wrong in [Wrong::Dead, Wrong::Stuck, Wrong::Chattering] {
         for foot in 0..4 {
             let drop = Drop {
@@ -47,7 +50,7 @@ fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
                 sideways: 0.0,
                 fault: Some((foot, wrong)),
             };
-            let end = run(Sim::Native, &drop).unwrap();
+            let end = run(&robot, Sim::Native, &drop).unwrap();
             assert!(end.good(), "{drop:?}: {end:?}");
             let named = core::array::from_fn(|i| i == foot);
             assert_eq!(end.faulty, named, "{drop:?}");
