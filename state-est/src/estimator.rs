@@ -126,6 +126,16 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
         }
     }
 
+    /// The same, under way instead of at rest: the IMU's point moves at `vel_w`, world axes, m/s. An IMU feels how a velocity changes and
+    /// never the velocity, so that a robot which is let go in motion has to be told.
+    #[must_use]
+    pub fn moving(mut self, vel_w: Vector3<T>) -> Self {
+        if let Some(v) = self.filter.mean.get_mut(VELOCITY) {
+            *v = vel_w;
+        }
+        self
+    }
+
     fn is_finite(&self) -> bool {
         let vectors = [&self.bias_b, &self.force_b, &self.rate_b];
         self.filter.is_finite()
@@ -437,4 +447,43 @@ fn gravity<T: Scalar>() -> Vector3<T> {
 
 fn is_finite<T: Scalar>(x: &Vector3<T>) -> bool {
     x.iter().all(|x| x.is_finite_number())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Estimator, Foot, State};
+    use crate::{Sample, Settings};
+    use a1_model::{A1, FEET};
+    use nalgebra::Vector3;
+    use rbd_core::{Configuration, Transform};
+
+    /// A robot that is let go in motion is followed through its fall, of which the IMU feels nothing.
+    #[test]
+    fn a_thrown_robot_is_followed_from_the_release() {
+        let estimator = Estimator::<f64, 12, 4, 6> {
+            feet: FEET.map(|foot| Foot::of(&foot)),
+            imu: Transform::IDENTITY,
+            settings: Settings::new(),
+        };
+        let mut start = Configuration::<f64, 12>::NEUTRAL;
+        start.base.rotation = so3::exp(&Vector3::new(0.3, -0.2, 0.1));
+        let thrown_w = Vector3::new(0.1, 0.5, -0.2);
+        let mut state = State::new(&estimator, &A1, &start).moving(thrown_w);
+        let falling = Sample {
+            specific_force_i: Vector3::zeros(),
+            angular_velocity_i: Vector3::zeros(),
+            joints: start.joints,
+            joint_velocities: [0.0; 12],
+            evidence: [0.0; 4],
+        };
+        let mut estimate = estimator.step(&A1, &mut state, Some(&falling), 1e-3);
+        for _ in 1..400 {
+            estimate = estimator.step(&A1, &mut state, Some(&falling), 1e-3);
+        }
+        let gravity_w = Vector3::from(rbd_core::GRAVITY);
+        let place_w = thrown_w * 0.4 + gravity_w * (0.5 * 0.4 * 0.4);
+        let vel_w = estimate.base.rotation * estimate.velocity.linear;
+        assert!((estimate.base.translation - place_w).norm() < 1e-9);
+        assert!((vel_w - (thrown_w + gravity_w * 0.4)).norm() < 1e-9);
+    }
 }

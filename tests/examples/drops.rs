@@ -5,24 +5,22 @@
 //! the height that the joints' energy allows.
 #![allow(missing_docs, reason = "a program")]
 
+use jump_lab::Sim;
+use jump_planner::robot::Quadruped;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-use saltus_tests::drops::{Drop, End, Plant, Wrong, drawn, energy_bound, native, run, with_fault};
-
-type Make = fn() -> Result<Plant, String>;
+use saltus_tests::drops::{Drop, End, Wrong, drawn, energy_bound, run, with_fault};
 
 /// Runs drops 0 to `count` on all cores.
 fn all(
-    make: Make,
+    (robot, sim): (&Quadruped, Sim),
     count: u64,
     drop: impl Fn(u64) -> Drop + Sync,
 ) -> Result<Vec<(Drop, End)>, String> {
     (0..count)
         .into_par_iter()
-        .map_init(make, |plant, index| {
-            let plant = plant.as_mut().map_err(|error| error.clone())?;
+        .map(|index| {
             let drop = drop(index);
-            let end = run(plant, &drop).map_err(|error| error.to_string())?;
-            Ok((drop, end))
+            Ok((drop, run(robot, sim, &drop)?))
         })
         .collect()
 }
@@ -38,7 +36,7 @@ fn row(what: &str, ends: &[&(Drop, End)]) -> usize {
     );
     for (drop, end) in ends.iter().filter(|(_, end)| !end.good()).take(20) {
         println!(
-            "    {:.2} m, roll {:.0}, pitch {:.0}, {:.2} m/s, {:?}: upright {}, trunk touched {}, at rest {}",
+            "    {:.2} m, roll {:.0}, pitch {:.0}, {:.2} m/s, {:?}: upright {}, trunk touched {}, at rest {}, {:?}",
             drop.height,
             drop.roll.to_degrees(),
             drop.pitch.to_degrees(),
@@ -46,17 +44,24 @@ fn row(what: &str, ends: &[&(Drop, End)]) -> usize {
             drop.fault,
             end.upright,
             end.trunk_touched,
-            end.at_rest
+            end.at_rest,
+            end.phase
         );
     }
     good
 }
 
-fn study(name: &str, make: Make, count: u64, seed: u64) -> Result<(), String> {
-    println!("{name}, seed {seed}: tilted by up to 20 degrees, up to 0.5 m/s sideways");
+fn study(sim: Sim, count: u64, seed: u64) -> Result<(), String> {
+    println!(
+        "{}, seed {seed}: tilted by up to 20 degrees, up to 0.5 m/s sideways",
+        sim.name()
+    );
+    let robot = Quadruped::a1().map_err(|error| error.to_string())?;
     let low = [0.3, 1.0];
-    let right = all(make, count, |i| drawn(seed, i, low))?;
-    let wrong = all(make, count, |i| with_fault(&drawn(seed, i, low), i))?;
+    let right = all((&robot, sim), count, |i| drawn(seed, i, low))?;
+    let wrong = all((&robot, sim), count, |i| {
+        with_fault(&drawn(seed, i, low), i)
+    })?;
     let good = row("0.3 to 1.0 m", &right.iter().collect::<Vec<_>>());
     let still = row(
         "the same, one foot sensor wrong",
@@ -73,10 +78,10 @@ fn study(name: &str, make: Make, count: u64, seed: u64) -> Result<(), String> {
     }
     println!(
         "the knees alone can take up a level fall of {:.2} m",
-        energy_bound()
+        energy_bound(&robot)
     );
     for height in [1.0, 1.25, 1.5, 1.75, 2.0] {
-        let ends = all(make, count.div_ceil(5), |i| {
+        let ends = all((&robot, sim), count.div_ceil(5), |i| {
             drawn(seed, i, [height, height])
         })?;
         row(&format!("{height} m"), &ends.iter().collect::<Vec<_>>());
@@ -93,15 +98,10 @@ fn main() -> Result<(), String> {
             .map_err(|error| format!("{text}: {error}: give DROPS and SEED as numbers")),
     };
     let (count, seed) = (number(100)?, number(1)?);
-    if cfg!(not(feature = "mujoco")) {
-        return study("native", || Ok(native()), count, seed);
-    }
-    #[cfg(feature = "mujoco")]
-    study(
-        "mujoco",
-        || saltus_tests::drops::mujoco().map_err(|error| error.to_string()),
-        count,
-        seed,
-    )?;
-    Ok(())
+    let sim = if cfg!(feature = "mujoco") {
+        Sim::Mujoco
+    } else {
+        Sim::Native
+    };
+    study(sim, count, seed)
 }

@@ -1,26 +1,37 @@
-//! A1 dropped on its feet: the landing controller in closed loop with any simulator.
+//! A1 dropped on its feet: a jump whose push-off is over, flown by the machine in the closed loop of every jump.
+//!
+//! The plan is the fall: it takes off where the robot is let go, and ends where its lowest foot meets the ground. The machine goes through
+//! its phases as in any jump, and knows of the drop what it knows of a jump: where it begins, from sensors, and an estimate of its base.
 
-use a1_model::{A1Geared, BUILD, FEET, FOOT_RADIUS, MOTORS, a1};
-use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
-use jump_control::{JointCommand, JointGains};
-use landing::{
-    Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Status, Target, Workspace,
-};
+use a1_model::{MOTORS, a1};
+use contact_sim::Terrain;
+use jump_control::{Node, Phase, Plan, Torques};
+use jump_lab::Sim;
+use jump_lab::closed_loop::{Feet, Recorder, Step};
+use jump_lab::lab::Ground;
+use jump_lab::noise::Noise;
+use jump_lab::quadruped::execute::{Trial, closed, feet};
+use jump_lab::quadruped::plant::simulator;
+use jump_lab::quadruped::{FOOT_COUNT, JOINTS, OWNERS, Observed, State, World};
+use jump_machine::{Jump, Machine, Settings, Tick, Work};
+use jump_planner::robot::Quadruped;
+use landing::{Outcome, Status, Workspace};
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::{
-    Configuration, Kinematics, Link, Motion, Posture, Tangent, forward_kinematics, joint_friction,
-};
+use rbd_core::{Configuration, GRAVITY, Motion, Tangent};
 
-/// Contacts: four feet, then the trunk.
-pub const CONTACTS: usize = 12;
-/// A plant for drops.
-pub type Plant = Box<dyn Simulator<f64, 12, CONTACTS, Error = Error>>;
+/// Time between two nodes of the plan, s.
+const INTERVAL: f64 = 0.01;
+/// Time after the release from which contact counts, s: the feet fold to the pre-landing posture until then in a jump.
+const POSING: f64 = 0.06;
+/// Time of a drop, s.
+const END: f64 = 3.0;
+/// What a sensor says that is stuck, N.
+const STUCK: f64 = 100.0;
 
-/// Mass of the robot, kg; gravity, m/s².
-const MASS: f64 = 13.741;
-const GRAVITY: f64 = 9.81;
-/// Thigh and shank, m.
-const LINK: f64 = 0.2;
+/// The fall of a robot from its release.
+type Fall = Node<f64, JOINTS, FOOT_COUNT>;
+/// Who lands.
+type Lander<'m> = Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>;
 
 /// Legs under and 4 cm outside the hips, 0.29 m long.
 pub const POSTURE: [f64; 12] = [
@@ -67,7 +78,9 @@ pub struct End {
     /// Ticks at which it was stopped at its cap of factorisations.
     pub capped: u32,
     /// Sensors that the detector did not believe at some time.
-    pub faulty: [bool; 4],
+    pub faulty: [bool; FOOT_COUNT],
+    /// Where the machine was after three seconds.
+    pub phase: Phase,
 }
 
 impl End {
@@ -78,72 +91,12 @@ impl End {
     }
 }
 
-/// The native simulator: feet and trunk corners as balls.
-#[must_use]
-pub fn native() -> Plant {
-    let spheres: [Shape<f64>; CONTACTS] = core::array::from_fn(|i| match FEET.get(i) {
-        Some(foot) => Shape::ball(foot.frame.link, foot.frame.offset, FOOT_RADIUS, i),
-        None => {
-            let side = |bit: usize| if (i >> bit) & 1 == 0 { 1.0 } else { -1.0 };
-            let corner = [0.1235 * side(0), 0.087 * side(1), 0.047 * side(2)];
-            Shape::ball(Link::Base, corner, 0.01, i)
-        }
-    });
-    let settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
-    Box::new(NativeSimulator::new(
-        A1Geared,
-        spheres,
-        Terrain::FLAT,
-        settings,
-    ))
-}
-
-/// MuJoCo: feet as balls, the trunk as the published box.
-///
-/// # Errors
-/// What MuJoCo says of the model.
-#[cfg(feature = "mujoco")]
-pub fn mujoco() -> Result<Plant, contact_sim::ModelRefused> {
-    use contact_sim::{Geom, MujocoSimulator};
-    let mut geoms: Vec<Geom> = FEET
-        .iter()
-        .enumerate()
-        .map(|(i, foot)| Geom::of(foot, i))
-        .collect();
-    geoms.push(Geom::Box {
-        frame: rbd_core::Frame::IDENTITY,
-        half: [0.1335, 0.097, 0.057],
-        owner: 4,
-    });
-    let mut settings = contact_sim::Settings::new(&a1::LIMITS, &MOTORS);
-    settings.substeps = 1;
-    let sim = MujocoSimulator::new(&A1Geared, (&geoms, &[]), &Terrain::FLAT, settings)?;
-    Ok(Box::new(sim))
-}
-
-/// Numbers for a chattering sensor.
-fn coin(seed: &mut u64) -> bool {
-    *seed = seed
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    *seed >> 63 == 1
-}
-
-/// Numbers in [0, 1) from a seed (SplitMix64).
-fn uniform(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// Drop number `index` of a study, all sensors right: a height between two, tilted by up to 20° about any horizontal axis,
 /// at up to 0.5 m/s sideways.
 #[must_use]
 pub fn drawn(seed: u64, index: u64, [low, high]: [f64; 2]) -> Drop {
-    let mut state = seed ^ index.wrapping_mul(0xd134_2543_de82_ef95);
-    let mut between = |a: f64, b: f64| a + (b - a) * uniform(&mut state);
+    let mut noise = Noise::new(seed ^ index.wrapping_mul(0xd134_2543_de82_ef95), 0.0);
+    let mut between = |a: f64, b: f64| a + (b - a) * noise.uniform();
     let tilt = between(0.0, 20.0).to_radians();
     let about = between(0.0, core::f64::consts::TAU);
     Drop {
@@ -169,120 +122,157 @@ pub fn with_fault(drop: &Drop, index: u64) -> Drop {
 /// Height from which the knees alone can take up a level fall, m: at full torque from the landing posture to their stops,
 /// feet under the hips. Beyond it a landing lives on what impacts and friction take.
 ///
-/// 4 τ (q_stop − q) = m g (h + ΔL), with legs of length L = 2 l cos(q/2).
+/// 4 τ (q_stop − q) = m g (h + ΔL), with legs of length L = l cos(q/2), l when they are stretched.
 #[must_use]
-pub fn energy_bound() -> f64 {
+pub fn energy_bound(robot: &Quadruped) -> f64 {
     let (start, stop) = (-POSTURE[2], -a1::LIMITS[2].lower);
     let work = 4.0 * MOTORS[2].torque * (stop - start);
-    let leg = |knee: f64| 2.0 * LINK * so3::math::cos(0.5 * knee);
-    work / (MASS * GRAVITY) - (leg(start) - leg(stop))
+    let leg = |knee: f64| robot.leg_length * so3::math::cos(0.5 * knee);
+    work / weight(robot) - (leg(start) - leg(stop))
 }
 
-fn place(plant: &mut Plant, drop: &Drop) {
+/// Its weight, N.
+fn weight(robot: &Quadruped) -> f64 {
+    -robot.mass() * GRAVITY[2]
+}
+
+/// Where a drop begins, and how it moves there.
+fn release(robot: &Quadruped, drop: &Drop) -> (State, Tangent<f64, JOINTS>) {
     let mut q = Configuration {
         joints: POSTURE,
         ..Configuration::NEUTRAL
     };
     q.base.rotation = Rotation3::from_euler_angles(drop.roll, drop.pitch, 0.0);
-    let mut kinematics = Kinematics::IDENTITY;
-    forward_kinematics(&A1Geared, &Posture::new(&A1Geared, &q), &mut kinematics);
-    let low = FEET
-        .iter()
-        .map(|foot| kinematics.frame(&foot.frame).translation.z)
-        .fold(f64::INFINITY, f64::min);
-    q.base.translation.z = drop.height + FOOT_RADIUS - low;
+    let poses = robot.poses(&q);
+    let feet = robot
+        .feet
+        .map(|foot| poses.frame(&foot).translation.z - robot.foot_radius);
+    let low = feet.into_iter().fold(f64::INFINITY, f64::min);
+    q.base.translation.z = drop.height - low;
     let along = q.base.rotation.inverse() * Vector3::new(0.0, drop.sideways, 0.0);
-    let start = Tangent {
+    let moving = Tangent {
         base: Motion::new(along, Vector3::zeros()),
-        joints: [0.0; 12],
+        joints: [0.0; JOINTS],
     };
-    plant.reset(&q, &start);
+    (q, moving)
 }
 
-/// Drops the robot and lets it settle for three seconds. Contact counts from 60 ms after the release, as it counts from the
-/// pre-landing posture on in a jump.
-///
-/// # Errors
-/// What the simulator says.
-pub fn run(plant: &mut Plant, drop: &Drop) -> Result<End, Error> {
-    place(plant, drop);
-    let feet = FEET.map(|foot| foot.frame);
-    let landing = Landing::<f64, 12, 4>::new(feet, Settings::new(&BUILD), [33.5; 12]);
-    let mut workspace = Workspace::new();
-    let detector = Detector::new(&BUILD, feet);
-    let posture = PreLanding::new(&BUILD, feet, POSTURE);
-    let mut contact = DetectorState::<f64, 12, 4>::new();
-    let target = Target {
-        height: 0.25,
-        ..Target::LEVEL
+/// The fall from this release until its lowest foot has fallen so deep: nobody turns, and the legs are still.
+fn fall((q, moving): &(State, Tangent<f64, JOINTS>), depth: f64) -> Vec<Fall> {
+    let gravity_w = Vector3::from(GRAVITY);
+    let duration = so3::math::sqrt(-2.0 * depth / gravity_w.z);
+    let count = (duration / INTERVAL).ceil();
+    let node = |i: u32| {
+        let time = duration * f64::from(i) / count;
+        let mut node = Node {
+            time,
+            base: q.base,
+            base_velocity: moving.base,
+            joints: q.joints,
+            ..Node::ZERO
+        };
+        let start_w = q.base.rotation * moving.base.linear;
+        node.base.translation += (start_w + gravity_w * (0.5 * time)) * time;
+        node.base_velocity.linear += q.base.rotation.inverse() * gravity_w * time;
+        node
     };
-    let mut end = End {
-        upright: false,
-        trunk_touched: false,
-        at_rest: false,
-        failures: 0,
-        capped: 0,
-        faulty: [false; 4],
-    };
-    // Another chattering for every drop.
-    let mut seed = drop.height.to_bits() ^ 7;
-    let mut felt = [0.0; 12];
-    for k in 0..3000 {
-        let (q, v) = (*plant.configuration(), *plant.velocity());
-        let mut forces: [f64; 4] = core::array::from_fn(|i| plant.contact_forces_w()[i].norm());
-        if let Some((foot, wrong)) = drop.fault {
-            forces[foot] = match wrong {
+    (0..=count as u32).map(node).collect()
+}
+
+/// Watches a drop, with what is wrong with its sensors.
+struct Watcher {
+    fault: Option<(usize, Wrong)>,
+    noise: Noise,
+    end: End,
+}
+
+impl Recorder<Lander<'_>, JOINTS, FOOT_COUNT, OWNERS> for Watcher {
+    fn tell(&mut self, _: u64, told: &mut Observed) {
+        if let Some((foot, wrong)) = self.fault {
+            told.measured.foot_forces[foot] = match wrong {
                 Wrong::Dead => 0.0,
-                Wrong::Stuck => 100.0,
-                Wrong::Chattering if coin(&mut seed) => 100.0,
+                Wrong::Stuck => STUCK,
+                Wrong::Chattering if self.noise.uniform() < 0.5 => STUCK,
                 Wrong::Chattering => 0.0,
             };
         }
-        detector.update(&A1Geared, &mut contact, &q, &v, &felt, &forces, 1e-3);
-        for (ever, now) in end.faulty.iter_mut().zip(contact.faulty) {
+    }
+
+    fn ticked(&mut self, _: f64, tick: &Tick, machine: &Lander<'_>, _: &World) {
+        let end = &mut self.end;
+        for (ever, now) in end.faulty.iter_mut().zip(machine.contacts().1) {
             *ever |= now;
         }
-        let contacts = if k < 60 { [false; 4] } else { contact.contacts };
-        let up_b = q.base.rotation.inverse() * Vector3::z();
-        let waiting = posture.joints(&A1Geared, &up_b, &v.base.linear);
-        let c = landing.step(
-            &A1Geared,
-            &q,
-            &v,
-            &contacts,
-            &target,
-            &waiting,
-            &mut workspace,
-        );
-        match c.outcome {
-            Outcome::Solved(_) | Outcome::Airborne => {}
-            Outcome::Failed(Status::Limit) => end.capped += 1,
-            Outcome::Failed(_) | Outcome::BadData => end.failures += 1,
+        match tick.work {
+            Work::Landing(Outcome::Failed(Status::Limit)) => end.capped += 1,
+            Work::Landing(Outcome::Failed(_) | Outcome::BadData) => end.failures += 1,
+            _ => {}
         }
-        let command = JointCommand {
-            position: c.position,
-            velocity: [0.0; 12],
-            feed_forward: c.feed_forward,
-            gains: core::array::from_fn(|i| JointGains {
-                stiffness: c.stiffness[i],
-                damping: c.damping[i],
-            }),
-        };
-        felt = [0.0; 12];
-        for _ in 0..10 {
-            let (q, v) = (plant.configuration().joints, plant.velocity().joints);
-            plant.step(&command.torques(&q, &v, &MOTORS))?;
-            let friction = joint_friction(&a1::LIMITS, &v, 0.1);
-            for ((felt, tau), loss) in felt.iter_mut().zip(plant.delivered()).zip(friction) {
-                *felt += 0.1 * (tau + loss);
-            }
-            end.trunk_touched |= plant.contact_forces_w()[4..].iter().any(|f| f.norm() > 0.0);
-        }
+        end.phase = tick.phase;
     }
-    let up = plant.configuration().base.rotation * Vector3::z();
-    end.upright = up.z > so3::math::cos(10_f64.to_radians());
-    end.at_rest = plant.velocity().base.linear.norm() < 0.05;
-    Ok(end)
+
+    fn stepped(&mut self, _: &Step<JOINTS>, _: &Lander<'_>, world: &World) {
+        let [.., trunk] = world.plant().contact_forces_w();
+        self.end.trunk_touched |= *trunk != Vector3::zeros();
+    }
+}
+
+/// Drops the robot in a simulator and lets it settle for three seconds. Motors, sensors and estimator are those of a nominal run: without
+/// error, and never the truth about the base. Contact counts from 60 ms after the release, as it counts from the pre-landing posture on in a
+/// jump.
+///
+/// # Errors
+/// This build lacks the simulator, or that fails.
+pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
+    let start = release(robot, drop);
+    let nodes = fall(&start, drop.height);
+    let touchdown = nodes.last().map_or(0.0, |node| node.time);
+    let plan = Plan::new(&nodes, 0.0, POSING, touchdown, Torques::Hold);
+    let jump = Jump {
+        plan: plan.map_err(|error| error.to_string())?,
+        weight: weight(robot),
+        rot_goal: Rotation3::identity(),
+        landing_joints: POSTURE,
+    };
+    let build = robot.build(&start.0);
+    let settings = Settings::new(&build, robot.feet, robot.drives(), POSTURE);
+    let mut workspace = Workspace::new();
+    let mut machine = Machine::new(robot, settings, &mut workspace);
+    let armed = machine.arm(jump, 0.0);
+    armed.map_err(|refusal| refusal.to_string())?;
+
+    let trial = Trial::nominal(sim);
+    let over = (&Terrain::FLAT, &start.0);
+    let mut plant = simulator(sim, robot, over, &trial.disturbance)?;
+    plant.reset(&start.0, &start.1);
+    // Nothing has stood still before the release, so no samples of that have settled the estimator.
+    let feet = Feet {
+        settling: 0,
+        ..feet(robot)
+    };
+    let mut closed = closed((*robot, feet), machine, Ground::new(plant, 0.0), &trial);
+    let mut watcher = Watcher {
+        fault: drop.fault,
+        // Another chattering for every drop.
+        noise: Noise::new(drop.height.to_bits() ^ 7, 0.0),
+        end: End {
+            upright: false,
+            trunk_touched: false,
+            at_rest: false,
+            failures: 0,
+            capped: 0,
+            faulty: [false; FOOT_COUNT],
+            phase: Phase::Stand,
+        },
+    };
+    closed.run((0.0, END), &mut watcher, |_, _| {})?;
+    let (q, v) = (closed.world.configuration(), closed.world.velocity());
+    let up = q.base.rotation * Vector3::z();
+    Ok(End {
+        upright: up.z > so3::math::cos(10_f64.to_radians()),
+        at_rest: v.base.linear.norm() < 0.05,
+        ..watcher.end
+    })
 }
 
 /// The eighteen drops of one height: roll or pitch by 0, ±10 and ±20 degrees, at rest or at 0.5 m/s sideways.

@@ -1,16 +1,19 @@
 //! Closed loop: A1 dropped on its feet, landing controller against the simulators.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use saltus_tests::drops::{Drop, Plant, Wrong, eighteen, native, run};
+use jump_lab::Sim;
+use jump_planner::robot::Quadruped;
+use saltus_tests::drops::{Drop, Wrong, eighteen, run};
 
 /// Most ticks of a drop whose force program may end at its cap of 20 factorisations: the next tick goes on from there, so that a few in a
 /// row say that the program lags behind the robot. Nothing else may end it.
 const MOST_CAPPED: u32 = 3;
 
-fn good(plant: &mut Plant, drops: impl Iterator<Item = Drop>) -> usize {
+fn good(sim: Sim, drops: impl Iterator<Item = Drop>) -> usize {
+    let robot = Quadruped::a1().unwrap();
     let mut good = 0;
     for drop in drops {
-        let end = run(plant, &drop).unwrap();
+        let end = run(&robot, sim, &drop).unwrap();
         assert_eq!(end.failures, 0, "a QP failed: {drop:?}");
         assert!(end.capped <= MOST_CAPPED, "{drop:?}: {end:?}");
         if end.good() {
@@ -24,20 +27,20 @@ fn good(plant: &mut Plant, drops: impl Iterator<Item = Drop>) -> usize {
 
 #[test]
 fn eighteen_of_eighteen_drops_from_30_cm_are_landed() {
-    assert_eq!(good(&mut native(), eighteen(0.3)), 18);
+    assert_eq!(good(Sim::Native, eighteen(0.3)), 18);
 }
 
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn eighteen_of_eighteen_drops_from_one_metre_are_landed() {
-    assert_eq!(good(&mut native(), eighteen(1.0)), 18);
+    assert_eq!(good(Sim::Native, eighteen(1.0)), 18);
 }
 
 /// Each kind of fault on each foot: landed all the same, and the detector names the foot.
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
-    let mut plant = native();
+    let robot = Quadruped::a1().unwrap();
     for wrong in [Wrong::Dead, Wrong::Stuck, Wrong::Chattering] {
         for foot in 0..4 {
             let drop = Drop {
@@ -47,7 +50,7 @@ fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
                 sideways: 0.0,
                 fault: Some((foot, wrong)),
             };
-            let end = run(&mut plant, &drop).unwrap();
+            let end = run(&robot, Sim::Native, &drop).unwrap();
             assert!(end.good(), "{drop:?}: {end:?}");
             let named = core::array::from_fn(|i| i == foot);
             assert_eq!(end.faulty, named, "{drop:?}");
@@ -59,11 +62,10 @@ fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
 #[cfg(feature = "mujoco")]
 #[test]
 fn mujoco_says_the_same() {
-    let mut plant = saltus_tests::drops::mujoco().unwrap();
-    assert_eq!(good(&mut plant, eighteen(1.0)), 18);
+    assert_eq!(good(Sim::Mujoco, eighteen(1.0)), 18);
     let stuck = eighteen(0.5).enumerate().map(|(i, drop)| Drop {
         fault: Some((i % 4, Wrong::Stuck)),
         ..drop
     });
-    assert!(good(&mut plant, stuck) >= 17);
+    assert!(good(Sim::Mujoco, stuck) >= 17);
 }

@@ -1,9 +1,8 @@
 //! The hardware behind one trait, and simulated robots behind it.
 
-use a1_model::A1Geared;
 use jump_machine::Observation;
-use rbd_core::Model;
-use saltus_probe::flight::{Flight, IcubFlight, Planned};
+use rbd_core::Tree;
+use saltus_probe::flight::Simulated;
 use saltus_probe::{Numbers, Real};
 
 use crate::recorder::Recorder;
@@ -29,33 +28,12 @@ pub trait Robot<T: Real, const N: usize> {
     fn is_over(&self) -> bool;
 }
 
-impl<T: Planned> Robot<T, 12> for Flight<T>
-where
-    A1Geared: Model<T, 12>,
+impl<T: Real, M: Tree<T, N>, const N: usize, const F: usize, const B: usize> Robot<T, N>
+    for Simulated<T, M, N, F, B>
 {
-    type Heard = Observation<T, 12, 4>;
+    type Heard = Observation<T, N, F>;
 
-    fn encoders(&mut self) -> ([T; 12], [T; 12]) {
-        self.joints()
-    }
-
-    fn sensors(&mut self) -> Observation<T, 12, 4> {
-        self.hear()
-    }
-
-    fn drive(&mut self, torques: &[T; 12]) {
-        self.step(torques);
-    }
-
-    fn is_over(&self) -> bool {
-        Flight::is_over(self)
-    }
-}
-
-impl Robot<f64, 23> for IcubFlight {
-    type Heard = Observation<f64, 23, 2>;
-
-    fn encoders(&mut self) -> ([f64; 23], [f64; 23]) {
+    fn encoders(&mut self) -> ([T; N], [T; N]) {
         self.joints()
     }
 
@@ -63,7 +41,7 @@ impl Robot<f64, 23> for IcubFlight {
         self.hear()
     }
 
-    fn drive(&mut self, torques: &[f64; 23]) {
+    fn drive(&mut self, torques: &[T; N]) {
         self.step(torques);
     }
 

@@ -33,12 +33,12 @@ pub(super) struct Legs<const N: usize, const F: usize> {
 }
 
 impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
-    /// At rest in a known place; draws the biases.
+    /// In a known place, moving as is known; draws the biases.
     pub(super) fn new<M: Tree<f64, N>>(
         model: &M,
         feet: [Foot<f64>; F],
         disturbance: &Disturbance,
-        start: &Configuration<f64, N>,
+        (start, moving): (&Configuration<f64, N>, &Tangent<f64, N>),
         noise: &mut Noise,
     ) -> Self {
         let estimator = Estimator {
@@ -46,11 +46,12 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
             imu: Transform::IDENTITY,
             settings: Settings::new(),
         };
+        let last_w = start.base.rotation * moving.base.linear;
         Self {
-            state: State::new(&estimator, model, start),
+            state: State::new(&estimator, model, start).moving(last_w),
             estimator,
             deviations: [Key::GyroNoise, Key::AccelerometerNoise].map(|key| disturbance.get(key)),
-            last_w: Vector3::zeros(),
+            last_w,
             gyroscope_bias: vector(noise, GYROSCOPE_BIAS * disturbance.get(Key::ImuBias)),
             accelerometer_bias: vector(noise, disturbance.get(Key::ImuBias)),
         }

@@ -6,7 +6,7 @@ use crate::lab::{Disturbance, Encoders, FootSensors, Ground, Interface, Link};
 use crate::noise::Noise;
 use jump_control::Measurement;
 use jump_machine::Observation;
-use rbd_core::{Configuration, Tree};
+use rbd_core::{Configuration, Tangent, Tree};
 use state_est::{Foot, Status};
 
 /// The feet of a robot in a world of `C` contacts.
@@ -30,8 +30,10 @@ pub struct Setting<'a, const N: usize> {
     pub interface: Interface,
     /// Of all noise.
     pub seed: u64,
-    /// Where the robot stands at first.
+    /// Where the robot is at first.
     pub start: &'a Configuration<f64, N>,
+    /// How it moves there: not at all, unless it is thrown.
+    pub moving: &'a Tangent<f64, N>,
 }
 
 /// The sensors of one run.
@@ -54,7 +56,8 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
     pub fn new(robot: R, feet: Feet<N, F, C>, setting: &Setting<'_, N>) -> Self {
         let disturbance = setting.disturbance;
         let mut noise = Noise::new(setting.seed.wrapping_add(0x5eed), 1.0);
-        let observer = Observer::new(&robot, feet.feet, disturbance, setting.start, &mut noise);
+        let start = (setting.start, setting.moving);
+        let observer = Observer::new(&robot, feet.feet, disturbance, start, &mut noise);
         let (share, least) = setting.interface.measuring();
         Self {
             encoders: Encoders::new(disturbance, &mut noise),

@@ -13,7 +13,7 @@ use icub_model::{BUDGETS, LIMITS, SOLES, shapes};
 use jump_control::{JointCommand, Phase};
 use jump_machine::humanoid::Work;
 use nalgebra::Vector3;
-use rbd_core::{CentroidalMap, Motor, Posture, centroidal_map, centroidal_state};
+use rbd_core::{CentroidalMap, Motor, Posture, Tangent, centroidal_map, centroidal_state};
 use state_est::Foot;
 
 /// Time of standing in the squat before the push-off, s.
@@ -197,6 +197,7 @@ pub fn run(
         interface,
         seed,
         start: &start,
+        moving: &Tangent::ZERO,
     };
     let mut closed = ClosedLoop {
         machine,

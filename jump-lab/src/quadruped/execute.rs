@@ -201,14 +201,52 @@ pub fn run(
     run_watched(task, reference, trial, |_, _| {}, progress, |_| {})
 }
 
+/// A quadruped's machine as a trial closes its loop.
+pub type Closed<'m> = ClosedLoop<
+    Quadruped,
+    Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+    JOINTS,
+    FOOT_COUNT,
+    OWNERS,
+    { FOOT_COUNT + 2 },
+>;
+
+/// Closes the loop of a trial: the machine hears and moves the robot that is in this world, and knows where and how it begins.
+#[must_use]
+pub fn closed<'m>(
+    (robot, feet): (Quadruped, Feet<JOINTS, FOOT_COUNT, OWNERS>),
+    machine: Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>,
+    world: World,
+    trial: &Trial<'_>,
+) -> Closed<'m> {
+    let disturbance = &trial.disturbance;
+    let (start, moving) = (world.configuration(), *world.velocity());
+    let setting = Setting {
+        disturbance,
+        interface: trial.interface,
+        seed: trial.seed,
+        start: &start,
+        moving: &moving,
+    };
+    let limits = (Model::limits(&robot), robot.drives());
+    let commanded = (trial.interface, trial.seed);
+    ClosedLoop {
+        machine,
+        sensors: Sensors::new(robot, feet, &setting),
+        drive: Drive::new(disturbance, commanded, limits, &robot.budgets),
+        world,
+    }
+}
+
 /// Force of the ground on each foot, N.
 fn foot_forces(world: &World) -> [f64; FOOT_COUNT] {
     let forces = world.plant().contact_forces_w();
     core::array::from_fn(|i| forces[i].norm())
 }
 
-/// The feet of a robot.
-fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
+/// The feet of a robot that stands before it jumps.
+#[must_use]
+pub fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
     Feet {
         feet: robot.feet.map(|frame| Foot {
             frame,
@@ -298,24 +336,12 @@ pub fn run_watched(
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
-    let limits = (Model::limits(&robot), drives);
-    let setting = Setting {
-        disturbance: &trial.disturbance,
-        interface: trial.interface,
-        seed: trial.seed,
-        start: &task.start,
-    };
-    let mut closed = ClosedLoop {
+    let mut closed = closed(
+        (robot, feet(&robot)),
         machine,
-        sensors: Sensors::<_, _, _, _, { FOOT_COUNT + 2 }>::new(robot, feet(&robot), &setting),
-        drive: Drive::new(
-            &trial.disturbance,
-            (trial.interface, trial.seed),
-            limits,
-            &robot.budgets,
-        ),
-        world: plant(trial.sim, task, &trial.disturbance)?,
-    };
+        plant(trial.sim, task, &trial.disturbance)?,
+        &trial,
+    );
     let mut keeper = Keeper {
         run: Run::new(task, stored.checksum(), closed.world.plant().tick()),
         plan: &jump.plan,

@@ -1,16 +1,16 @@
 //! The simulated robot: which simulator, in which world.
 
-use super::{JOINTS, OWNERS, World};
+use super::{JOINTS, OWNERS, State, World};
 use crate::Sim;
 use crate::lab::{self, Disturbance, Key};
-use contact_sim::{NativeSimulator, Settings};
-use jump_planner::robot::{Quadruped, SHAPE_COUNT};
+use contact_sim::{NativeSimulator, Settings, Terrain};
+use jump_planner::robot::{Quadruped, SHAPE_COUNT, Shapes};
 use jump_planner::task::Task;
 use jump_planner::terrain::terrain;
-use rbd_core::{Model, Tangent};
+use rbd_core::{Model, TableModel, Tangent};
 
 /// A simulator of a quadruped.
-type Plant = lab::Plant<JOINTS, OWNERS>;
+pub type Plant = lab::Plant<JOINTS, OWNERS>;
 
 /// Ground, motors and joint losses of the plant.
 fn settings(robot: &Quadruped, disturbance: &Disturbance) -> Settings<f64, JOINTS> {
@@ -31,20 +31,8 @@ fn settings(robot: &Quadruped, disturbance: &Disturbance) -> Settings<f64, JOINT
 /// # Errors
 /// What stands against the disturbed robot or the simulator.
 pub fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
-    let mut plant: Plant = match sim {
-        Sim::Native => {
-            let terrain = terrain(task, height_error(disturbance));
-            let robot = lab::robot(disturbance, &task.robot)?;
-            let native = NativeSimulator::new(
-                robot,
-                task.robot.shapes,
-                terrain,
-                settings(&task.robot, disturbance),
-            );
-            Box::new(native.colliding(pairs(task)))
-        }
-        Sim::Mujoco => mujoco(task, disturbance)?,
-    };
+    let terrain = terrain(task, height_error(disturbance));
+    let mut plant = simulator(sim, &task.robot, (&terrain, &task.start), disturbance)?;
     plant.reset(&task.start, &Tangent::ZERO);
     // A box has its own height; a floor that is start and landing has to move.
     let boxed = task.edge.is_some_and(|edge| edge.drop != 0.0);
@@ -56,27 +44,52 @@ pub fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, 
     Ok(World::new(plant, moves))
 }
 
-/// Shapes that touch each other: those that do not where the robot stands.
-fn pairs(task: &Task) -> [u64; SHAPE_COUNT] {
-    contact_sim::self_contacts(&task.robot, &task.robot.shapes, &task.start)
+/// A robot over a ground, all of whose links collide: with the ground, and with each other but for those that touch in the posture
+/// `free`, in which the robot is known to stand free.
+///
+/// # Errors
+/// What stands against the disturbed robot or the simulator.
+pub fn simulator(
+    sim: Sim,
+    robot: &Quadruped,
+    (terrain, free): (&Terrain<f64>, &State),
+    disturbance: &Disturbance,
+) -> Result<Plant, String> {
+    let settings = settings(robot, disturbance);
+    let pairs = contact_sim::self_contacts(robot, &robot.shapes, free);
+    let disturbed = lab::robot(disturbance, robot)?;
+    match sim {
+        Sim::Native => {
+            let native = NativeSimulator::new(disturbed, robot.shapes, *terrain, settings);
+            Ok(Box::new(native.colliding(pairs)))
+        }
+        Sim::Mujoco => mujoco(&disturbed, (&robot.shapes, &pairs), terrain, settings),
+    }
 }
 
 /// MuJoCo, with the same shapes.
 #[cfg(feature = "mujoco")]
-fn mujoco(task: &Task, disturbance: &Disturbance) -> Result<Plant, String> {
+fn mujoco(
+    robot: &TableModel<f64, JOINTS>,
+    (shapes, pairs): (&Shapes, &[u64; SHAPE_COUNT]),
+    terrain: &Terrain<f64>,
+    mut settings: Settings<f64, JOINTS>,
+) -> Result<Plant, String> {
     use contact_sim::{Geom, MujocoSimulator};
 
-    let geoms = task.robot.shapes.map(Geom::Swept);
-    let mut settings = settings(&task.robot, disturbance);
     settings.substeps = 1;
-    let robot = lab::robot(disturbance, &task.robot)?;
-    let terrain = terrain(task, height_error(disturbance));
-    let sim = MujocoSimulator::new(&robot, (&geoms, &pairs(task)), &terrain, settings);
+    let geoms = shapes.map(Geom::Swept);
+    let sim = MujocoSimulator::new(robot, (&geoms, pairs), terrain, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
 }
 
 #[cfg(not(feature = "mujoco"))]
-fn mujoco(_: &Task, _: &Disturbance) -> Result<Plant, String> {
+fn mujoco(
+    _: &TableModel<f64, JOINTS>,
+    _: (&Shapes, &[u64; SHAPE_COUNT]),
+    _: &Terrain<f64>,
+    _: Settings<f64, JOINTS>,
+) -> Result<Plant, String> {
     Err(crate::sim::NO_MUJOCO.into())
 }
 

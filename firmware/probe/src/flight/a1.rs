@@ -1,15 +1,14 @@
 //! A1 jumps: joint PD at 10 kHz, Cartesian PD and landing at 1 kHz, from a plan in flash.
 
 use a1_model::{A1Geared, BUILD};
-use contact_sim::{Block, NativeSimulator, Settings, Shape, Simulator, Terrain};
+use contact_sim::{Block, NativeSimulator, Settings, Shape, Terrain};
 use jump_control::{Measurement, Plan};
 use jump_machine::{Jump, Machine, Observation, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
 use nalgebra::Vector3;
-use rbd_core::{
-    Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform, joint_friction,
-};
+use rbd_core::{Configuration, Frame, Limbs, Link, Model, Motion, Tangent, Transform};
 
+use super::closed_loop::{Flown, Simulated, told};
 use super::digested;
 use super::plan::{self, Planned};
 use crate::inputs::Stream;
@@ -20,8 +19,6 @@ const SUBJECT: &str = "a1-jump";
 pub const HOLD: f64 = 0.3;
 /// Time after the planned touchdown at which the run ends, s.
 const SETTLE: f64 = 0.8;
-/// Joint ticks per tick of the machine.
-const RATIO: usize = 10;
 /// Balls that touch the ground: feet and knees.
 const BALLS: usize = 8;
 /// States that no jump visits, on which the landing is tried.
@@ -35,16 +32,7 @@ impl Numbers for Tick {
 }
 
 /// A simulated A1 in the place of the robot: on its box, at rest.
-#[derive(Clone, Debug)]
-pub struct Flight<T: Planned>
-where
-    A1Geared: Model<T, 12>,
-{
-    plant: NativeSimulator<T, A1Geared, 12, BALLS, BALLS>,
-    joint_torques: [T; 12],
-    steps: usize,
-    broken: bool,
-}
+pub type Flight<T> = Simulated<T, A1Geared, 12, 4, BALLS>;
 
 impl<T: Planned> Flight<T>
 where
@@ -54,64 +42,19 @@ where
     #[must_use]
     pub fn new() -> Self {
         let motors = crate::control::motors(&A1Geared);
-        let mut plant = NativeSimulator::new(
+        let plant = NativeSimulator::new(
             A1Geared,
             balls(&feet()),
             behind_the_box(),
             Settings::new(A1Geared.limits(), &motors),
         );
-        if let Some(first) = T::nodes().first() {
-            let start = Configuration {
-                base: first.base,
-                joints: first.joints,
-            };
-            plant.reset(&start, &Tangent::ZERO);
-        }
-        Self {
-            plant,
-            joint_torques: [T::ZERO; 12],
-            steps: 0,
-            broken: false,
-        }
-    }
-
-    /// Joint positions and velocities of now.
-    pub fn joints(&self) -> ([T; 12], [T; 12]) {
-        let (q, v) = (self.plant.configuration(), self.plant.velocity());
-        (q.joints, v.joints)
-    }
-
-    /// What a controller is told, the truth, and the mean torques since it was told last.
-    pub fn hear(&mut self) -> Observation<T, 12, 4> {
-        let forces = self.plant.contact_forces_w();
-        let measured = told(
-            self.plant.configuration(),
-            self.plant.velocity(),
-            core::array::from_fn(|i| forces.get(i).map_or(T::ZERO, |f| f.norm())),
-        );
-        let joint_torques = core::mem::replace(&mut self.joint_torques, [T::ZERO; 12]);
-        Observation {
-            measured,
-            joint_torques,
-        }
-    }
-
-    /// 100 µs under these torques.
-    pub fn step(&mut self, torques: &[T; 12]) {
-        let speeds = self.plant.velocity().joints;
-        self.broken |= self.plant.step(torques).is_err();
-        self.steps += 1;
-        let losses = joint_friction(A1Geared.limits(), &speeds, T::of(0.1));
-        let given = self.plant.delivered().iter().zip(losses);
-        for (joint_torques, (tau, loss)) in self.joint_torques.iter_mut().zip(given) {
-            *joint_torques += (*tau + loss) / T::of(RATIO as f64);
-        }
-    }
-
-    /// Whether enough time has passed to land and to come to rest.
-    pub fn is_over(&self) -> bool {
-        let end = ((HOLD + plan::TIMES[2] + SETTLE) * 1e3) as usize * RATIO;
-        self.broken || self.steps >= end
+        let first = T::nodes().first();
+        let start = first.map_or(Configuration::NEUTRAL, |first| Configuration {
+            base: first.base,
+            joints: first.joints,
+        });
+        let time = ((HOLD + plan::TIMES[2] + SETTLE) * 1e3) as usize;
+        Self::at_rest(plant, &start, (|ball| ball, true), time)
     }
 }
 
@@ -137,22 +80,6 @@ impl<T: Real, const N: usize, const F: usize> Numbers for Observation<T, N, F> {
         (base, base_velocity).visit(take);
         (joints, joint_velocities).visit(take);
         (foot_forces, age, self.joint_torques).visit(take);
-    }
-}
-
-/// A state with forces on the feet, as a fresh measurement.
-fn told<T: Real>(
-    q: &Configuration<T, 12>,
-    v: &Tangent<T, 12>,
-    foot_forces: [T; 4],
-) -> Measurement<T, 12, 4> {
-    Measurement {
-        base: q.base,
-        base_velocity: v.base,
-        joints: q.joints,
-        joint_velocities: v.joints,
-        foot_forces,
-        age: T::ZERO,
     }
 }
 
@@ -195,7 +122,18 @@ pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     })
 }
 
-/// Flies the double backflip and lands it, then tries the landing where no jump comes.
+/// What a tick of the machine is called in a jump, and in states that no jump visits.
+const fn name(work: &Work, wild: bool) -> &'static str {
+    match (work, wild) {
+        (Work::Cartesian, _) => "Cartesian PD tick",
+        (Work::Landing(Outcome::Failed(_)), true) => "capped machine tick",
+        (Work::Landing(_), true) => "wild machine tick",
+        (Work::Landing(_), false) => "landing tick",
+        (Work::Damping, _) => "damping tick",
+    }
+}
+
+/// Flies the double backflip and lands it, then tries machine and landing where no jump comes.
 pub fn a1<T: Planned, R: Recorder>(recorder: &mut R)
 where
     A1Geared: Model<T, 12>,
@@ -206,52 +144,16 @@ where
     if machine.arm(jump, T::of(HOLD)).is_err() {
         return;
     }
-    let mut flight = Flight::new();
-    let mut k = 0_u32;
-    while !flight.is_over() {
-        let inputs = flight.hear();
-        let now = T::of(f64::from(k)) * T::of(1e-3);
-        let input = (&mut machine, now, &inputs);
-        digested::<T, _, _, _>(
-            recorder,
-            SUBJECT,
-            input,
-            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
-            |tick| match tick.work {
-                Work::Cartesian => "Cartesian PD tick",
-                Work::Landing(_) => "landing tick",
-                Work::Damping => "damping tick",
-            },
-        );
-        for i in 0..RATIO {
-            let (q, v) = flight.joints();
-            let torques = if i == 0 {
-                digested::<T, _, _, _>(
-                    recorder,
-                    SUBJECT,
-                    (&mut machine, &q, &v),
-                    |(machine, q, v)| machine.joint_tick(q, v, T::of(1e-4)),
-                    |_| "joint PD tick",
-                )
-            } else {
-                machine.joint_tick(&q, &v, T::of(1e-4))
-            };
-            flight.step(&torques);
-        }
-        k += 1;
-    }
-    let end = (*flight.plant.configuration(), *flight.plant.velocity());
-    end.visit(&mut |x| recorder.value(crate::canonical_bits(x)));
-    recorder.value(machine.phase() as u64);
-    wild_machine(recorder, &mut machine, k);
+    let mut flown = Flown::new(machine, SUBJECT, name, false);
+    flown.fly(recorder, Flight::new());
+    wild_machine(recorder, &mut flown);
     wild(recorder, &A1Geared, &feet());
 }
 
 /// The machine after its landing, told of states where no jump comes, a millisecond after the other.
 fn wild_machine<T: Planned, R: Recorder>(
     recorder: &mut R,
-    machine: &mut Machine<'_, T, A1Geared, 12, 4>,
-    first: u32,
+    flown: &mut Flown<Machine<'_, T, A1Geared, 12, 4>, Work>,
 ) where
     A1Geared: Model<T, 12>,
 {
@@ -259,23 +161,11 @@ fn wild_machine<T: Planned, R: Recorder>(
     for k in 0..WILD {
         let (q, v) = wild_state(stream);
         let on = wild_feet(k);
-        let inputs = Observation {
-            measured: told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO })),
+        let heard = Observation {
             joint_torques: stream.array(20.0),
+            ..told(&q, &v, on.map(|on| if on { T::of(100.0) } else { T::ZERO }))
         };
-        let now = T::of(f64::from(first + k as u32)) * T::of(1e-3);
-        let input = (&mut *machine, now, &inputs);
-        digested::<T, _, _, _>(
-            recorder,
-            SUBJECT,
-            input,
-            |(machine, now, inputs)| machine.tick(now, Some(inputs)),
-            |tick| match tick.work {
-                Work::Landing(Outcome::Failed(_)) => "capped machine tick",
-                Work::Landing(_) => "wild machine tick",
-                _ => "damping tick",
-            },
-        );
+        flown.tick(recorder, &heard, true);
     }
 }
 

@@ -1,17 +1,17 @@
 //! iCub jumps: joint loop at 10 kHz, push-off by the torque program (paper B, eqs. (6a) to (6f)), flight, landing and standing at 1 kHz, as
 //! `saltus run icub/torque`.
 
-use contact_sim::{NativeSimulator, Shape, Simulator, Terrain};
+use contact_sim::{NativeSimulator, Shape, Terrain};
 use icub_model::profile::{self, JOINTS, Machine, SETTINGS, SOLE_CONTACTS, Settings, Workspace};
 use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES};
-use jump_control::Measurement;
+use jump_machine::Tick;
 use jump_machine::humanoid::{Jump, Landing, PushOff, Work, on_the_floor};
-use jump_machine::{Observation, Tick};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Motion, Tangent, Transform};
 use wbc_qp::jump::{ComReference, LandingSettings, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{Snapshot, Yielded};
 
+use super::closed_loop::{Flown, Simulated, told};
 use super::digested;
 use crate::inputs::Stream;
 use crate::{Numbers, Recorder};
@@ -21,16 +21,12 @@ const SUBJECT: &str = "icub-jump";
 const ICUB_HOLD: f64 = 0.1;
 /// Time of push-off, flight, landing and standing, ms: it stands after 1.9 s.
 const JUMP: usize = 2100;
-/// Joint ticks per tick of the machine.
-const RATIO: usize = 10;
 /// Most steps of a program's solver in a tick: with them a tick takes less than 720,000 instructions on a Cortex-M7. The push-off needs 7.
 const STEPS: u32 = 10;
 /// States that no jump visits.
 const WILD: usize = 200;
 /// The robot as `saltus run` simulates it, and as its controllers know it.
 static ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
-
-type Observed = Observation<f64, JOINTS, 2>;
 
 /// iCub's settings with a longest time for each tick.
 #[must_use]
@@ -87,86 +83,22 @@ fn balls() -> [Shape<f64>; 8] {
 }
 
 /// A simulated iCub in the place of the robot: in a squat on both soles, at rest.
-#[derive(Clone, Debug)]
-pub struct IcubFlight {
-    plant: NativeSimulator<f64, Icub23GazeboGeared, JOINTS, 8, 8>,
-    steps: usize,
-    broken: bool,
-}
+pub type IcubFlight = Simulated<f64, Icub23GazeboGeared, JOINTS, 2, 8>;
 
 impl IcubFlight {
     /// Before the push-off.
     #[must_use]
     pub fn new() -> Self {
         let settings = contact_sim::Settings::new(&LIMITS, &MOTORS);
-        let mut plant = NativeSimulator::new(ROBOT, balls(), Terrain::FLAT, settings);
-        plant.reset(&standing(), &Tangent::ZERO);
-        Self {
-            plant,
-            steps: 0,
-            broken: false,
-        }
-    }
-
-    /// Joint positions and velocities of now.
-    #[must_use]
-    pub fn joints(&self) -> ([f64; JOINTS], [f64; JOINTS]) {
-        let (q, v) = (self.plant.configuration(), self.plant.velocity());
-        (q.joints, v.joints)
-    }
-
-    /// What the controller is told: the truth.
-    #[must_use]
-    pub fn hear(&self) -> Observed {
-        let mut soles = [Vector3::zeros(); 2];
-        for (i, force) in self.plant.contact_forces_w().iter().enumerate() {
-            if let Some(sole) = soles.get_mut(i / 4) {
-                *sole += force;
-            }
-        }
-        observed(
-            self.plant.configuration(),
-            self.plant.velocity(),
-            soles.map(|force| force.norm()),
-        )
-    }
-
-    /// 100 µs under these torques.
-    pub fn step(&mut self, torques: &[f64; JOINTS]) {
-        self.broken |= self.plant.step(torques).is_err();
-        self.steps += 1;
-    }
-
-    /// Whether enough time has passed to land and to come to rest.
-    #[must_use]
-    pub const fn is_over(&self) -> bool {
+        let plant = NativeSimulator::new(ROBOT, balls(), Terrain::FLAT, settings);
         let hold = (ICUB_HOLD * 1e3) as usize;
-        self.broken || self.steps >= (hold + JUMP) * RATIO
+        Self::at_rest(plant, &standing(), (|ball| ball / 4, false), hold + JUMP)
     }
 }
 
 impl Default for IcubFlight {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// A state with forces on the soles, as a fresh observation.
-const fn observed(
-    q: &Configuration<f64, JOINTS>,
-    v: &Tangent<f64, JOINTS>,
-    foot_forces: [f64; 2],
-) -> Observed {
-    Observation {
-        measured: Measurement {
-            base: q.base,
-            base_velocity: v.base,
-            joints: q.joints,
-            joint_velocities: v.joints,
-            foot_forces,
-            age: 0.0,
-        },
-        joint_torques: [0.0; JOINTS],
     }
 }
 
@@ -198,55 +130,13 @@ const fn name(work: &Work<f64>, wild: bool) -> &'static str {
 /// Jumps and lands in closed loop with the simulator, then tries machine and program where no jump comes.
 pub fn icub<R: Recorder>(recorder: &mut R) {
     let mut workspace = Workspace::new(&icub_settings());
-    let Some(mut machine) = icub_machine(&mut workspace) else {
+    let Some(machine) = icub_machine(&mut workspace) else {
         return;
     };
-    let mut flight = IcubFlight::new();
-    let mut k = 0_u32;
-    while !flight.is_over() {
-        tick(recorder, &mut machine, &mut k, &flight.hear(), false);
-        for i in 0..RATIO {
-            let (q, v) = flight.joints();
-            let torques = if i == 0 {
-                digested::<f64, _, _, _>(
-                    recorder,
-                    SUBJECT,
-                    (&mut machine, &q, &v),
-                    |(machine, q, v)| machine.joint_tick(q, v, 1e-4),
-                    |_| "joint PD tick",
-                )
-            } else {
-                machine.joint_tick(&q, &v, 1e-4)
-            };
-            flight.step(&torques);
-        }
-    }
-    let end = (*flight.plant.configuration(), *flight.plant.velocity());
-    end.visit(&mut |x| recorder.value(x.to_bits()));
-    recorder.value(machine.phase() as u64);
-    wild_machine(recorder, &mut machine, &mut k);
+    let mut flown = Flown::new(machine, SUBJECT, name, true);
+    flown.fly(recorder, IcubFlight::new());
+    wild_machine(recorder, &mut flown);
     wild(recorder);
-}
-
-/// The `k`-th millisecond.
-fn tick<R: Recorder>(
-    recorder: &mut R,
-    machine: &mut Machine<'_, Icub23GazeboGeared>,
-    k: &mut u32,
-    heard: &Observed,
-    wild: bool,
-) {
-    let now = f64::from(*k) * 1e-3;
-    *k = k.wrapping_add(1);
-    digested::<f64, _, _, _>(
-        recorder,
-        SUBJECT,
-        (&mut *machine, now, heard),
-        |(machine, now, heard)| machine.tick(now, Some(heard)),
-        |tick| name(&tick.work, wild),
-    );
-    let command = super::digest(machine.command());
-    recorder.value(command);
 }
 
 /// A state far from any jump, of number `k`: tilted, fast, at the ends of the joints, on both soles, one or none.
@@ -273,14 +163,13 @@ fn wild_state(
 /// The machine after its landing, told of states where no jump comes, a millisecond after the other.
 fn wild_machine<R: Recorder>(
     recorder: &mut R,
-    machine: &mut Machine<'_, Icub23GazeboGeared>,
-    k: &mut u32,
+    flown: &mut Flown<Machine<'_, Icub23GazeboGeared>, Work<f64>>,
 ) {
     let stream = &mut Stream::new(2027);
     for i in 0..WILD {
         let (q, v, soles) = wild_state(stream, i);
         let forces = soles.map(|on| if on { 200.0 } else { 0.0 });
-        tick(recorder, machine, k, &observed(&q, &v, forces), true);
+        flown.tick(recorder, &told(&q, &v, forces), true);
     }
 }
 

@@ -5,10 +5,12 @@
 //! of numbers.
 
 mod a1;
+mod closed_loop;
 mod icub;
 mod plan;
 
 pub use a1::{Flight, HOLD, a1, feet, jump, settings};
+pub use closed_loop::Simulated;
 pub use icub::{IcubFlight, icub, icub_machine, icub_settings};
 pub use plan::{BYTES, PLAN, Planned};
 
