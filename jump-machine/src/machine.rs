@@ -314,10 +314,12 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> JumpMachine<T, N,
 {
     type Work = Work;
 
+    #[inline(always)]
     fn tick(&mut self, now: T, observed: Option<&Observation<T, N, F>>) -> Tick {
         Machine::tick(self, now, observed)
     }
 
+    #[inline(always)]
     fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
         Machine::joint_tick(self, q, qd, dt)
     }

@@ -62,7 +62,8 @@ impl<
         }
     }
 
-    /// Whether the robot stands elsewhere than where the jump begins.
+    /// Whether the robot stands elsewhere than where the jump begins. Not inlined: poses of all links on the stack are for the hold alone.
+    #[inline(never)]
     fn away(&self, armed: &Armed<T, N>, measured: &Measurement<T, N, F>) -> bool {
         let foot = first_foot(self.model, &self.settings.feet, &measured.configuration());
         let distance = (foot.translation - armed.anchor.translation).norm();

@@ -381,10 +381,12 @@ impl<
 {
     type Work = Work<T>;
 
+    #[inline(always)]
     fn tick(&mut self, now: T, observed: Option<&Observation<T, N, F>>) -> Tick<Work<T>> {
         Machine::tick(self, now, observed)
     }
 
+    #[inline(always)]
     fn joint_tick(&mut self, q: &[T; N], qd: &[T; N], dt: T) -> [T; N] {
         Machine::joint_tick(self, q, qd, dt)
     }
