@@ -94,6 +94,17 @@ fn impossible_problems() -> Vec<(&'static str, Value, &'static [&'static str])> 
             &["I_B", "positive definite"],
         ),
         ("/constants/M", json!(0.0), &["M", "above 0"]),
+        ("/tasks/spin/T0", json!([1e-300, 0.3]), &["T0", "1e-300"]),
+        ("/tasks/spin/ttot", json!(0.1), &["TTOT_LO and ttot", "0.1"]),
+        (
+            "/tasks/spin/euler",
+            json!("xyz"),
+            &["spin", "euler", "zyx or zxy", "xyz"],
+        ),
+        // What is no number of its kind is named with its key too, and so is a file without a task.
+        ("/tasks/spin/N", json!([-1, 30]), &["tasks.spin.N", "-1"]),
+        ("/constants/MU", json!("0.6"), &["constants.MU", "0.6"]),
+        ("/tasks", json!({}), &["tasks", "there must be one"]),
         ("/constants/SIDE/0", json!(3.0), &["SIDE", "1 or -1"]),
     ]
 }
@@ -117,7 +128,8 @@ fn a_problem_file_is_looked_at_before_it_is_solved() {
                 "--solution",
                 "s.json",
             ];
-            refused(&folder, &arguments, words);
+            let said = refused(&folder, &arguments, words);
+            assert!(said.contains("p.json"), "{pointer}: {said}");
             assert!(!folder.join("s.json").exists(), "{pointer}");
         }
     }
@@ -135,6 +147,28 @@ fn a_problem_file_is_looked_at_before_it_is_solved() {
             &["unknown field", key],
         );
     }
+}
+
+/// Of two tasks with one name the last was solved in silence.
+#[test]
+fn a_task_that_is_there_twice_is_refused() {
+    let folder = folder("twice");
+    problem(&folder.join("p.json"), |_| {});
+    let text = fs::read_to_string(folder.join("p.json")).unwrap();
+    let twice = text.replacen("\"tasks\":{", "\"tasks\":{\"spin\":SPIN,", 1);
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let twice = twice.replace("SPIN", &file["tasks"]["spin"].to_string());
+    assert_ne!(text, twice);
+    fs::write(folder.join("p.json"), twice).unwrap();
+    let arguments = ["plan", "--problem", "p.json", "--reference", "spin"];
+    refused(&folder, &arguments, &["p.json", "`spin`", "twice"]);
+    let arguments = ["plan", "--problem", "p.json", "--reference", "spun"];
+    problem(&folder.join("p.json"), |_| {});
+    refused(
+        &folder,
+        &arguments,
+        &["p.json", "`spun`", "there are", "spin"],
+    );
 }
 
 /// A solution that the whole-body stage is told to follow, for a thousand years or in no direction.
