@@ -320,33 +320,71 @@ fn a_task_file_names_key_value_and_what_is_allowed() {
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
 }
 
-#[test]
-fn a_robot_with_limits_of_no_motor_is_refused() {
-    let folder = folder("urdf");
+/// A1's URDF with the first value of an attribute changed, behind the texts `after`.
+fn robot(after: &[&str], attribute: &str, value: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/a1.urdf");
     let urdf = fs::read_to_string(path).unwrap();
-    let line = urdf.lines().find(|line| line.contains("effort=")).unwrap();
-    let value = |key: &str| {
-        let from = line.find(key).unwrap() + key.len();
-        let rest = line.get(from..).unwrap();
-        format!(
-            "{key}{}",
-            rest.split_inclusive('"').take(1).collect::<String>()
-        )
-    };
-    for (key, word) in [("effort=\"", "effort"), ("velocity=\"", "velocity")] {
-        for bad in ["-1", "0"] {
-            fs::write(
-                folder.join("bad.urdf"),
-                urdf.replacen(&value(key), &format!("{key}{bad}\""), 1),
-            )
-            .unwrap();
-            let arguments = ["plan", "a1/lateral", "--robot", "bad.urdf"];
-            refused(
-                &folder,
-                &arguments,
-                &["bad.urdf", "joint ", word, bad, "above 0"],
-            );
+    let key = format!("{attribute}=\"");
+    let behind =
+        |at: usize, text: &str| at + urdf.get(at..).unwrap().find(text).unwrap() + text.len();
+    let from = after
+        .iter()
+        .chain(&[key.as_str()])
+        .fold(0, |at, text| behind(at, text));
+    let (before, rest) = urdf.split_at(from);
+    let (_, rest) = rest.split_once('"').unwrap();
+    format!("{before}{value}\"{rest}")
+}
+
+#[test]
+fn a_robot_that_cannot_be_is_refused() {
+    let folder = folder("urdf");
+    for (after, attribute, value, words) in [
+        (&[][..], "effort", "-1", ["joint ", "effort", "-1"]),
+        (&[][..], "effort", "0", ["joint ", "effort", "above 0"]),
+        (&[][..], "velocity", "-1", ["joint ", "speed", "-1"]),
+        (&[][..], "velocity", "0", ["joint ", "velocity", "above 0"]),
+        (&[][..], "damping", "-1", ["joint ", "damping", "-1"]),
+        (&[][..], "friction", "-1", ["joint ", "friction", "-1"]),
+        (&[][..], "ixx", "-1", ["link `trunk`", "moments", "-1"]),
+        (
+            &["<link name=\"FL_foot\"", "<collision>"],
+            "sphere radius",
+            "-1",
+            ["FL_foot", "radius", "-1"],
+        ),
+        (
+            &["<link name=\"FL_foot\"", "<collision>"],
+            "sphere radius",
+            "nan",
+            ["FL_foot", "radius", "nan"],
+        ),
+        (
+            &["<link name=\"RR_foot\"", "<collision>"],
+            "sphere radius",
+            "9",
+            ["foot's radius", "up to 0.4", "9"],
+        ),
+        (
+            &["<link name=\"trunk\"", "<collision>"],
+            "box size",
+            "1 -1 1",
+            ["trunk", "size", "1 -1 1"],
+        ),
+        (
+            &["<link name=\"trunk\"", "<collision>"],
+            "box size",
+            "1 1",
+            ["trunk", "size", "1 1"],
+        ),
+    ] {
+        fs::write(folder.join("bad.urdf"), robot(after, attribute, value)).unwrap();
+        let plan = ["plan", "a1/lateral", "--robot", "bad.urdf"];
+        let [first, second, third] = words;
+        refused(&folder, &plan, &["bad.urdf", first, second, third]);
+        // What may be a placeholder, and shapes, are for others than planners.
+        if value == "-1" && attribute != "sphere radius" {
+            refused(&folder, &["import", "bad.urdf"], &["bad.urdf", value]);
         }
     }
 }
