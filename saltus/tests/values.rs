@@ -515,6 +515,47 @@ fn options_that_do_not_apply_are_refused_with_what_does() {
             &["--srb", "--stage whole-body"],
         ),
         (
+            &["plan", "--reference", "spin", "--out", "new"],
+            &["--out", "cannot be used with"],
+        ),
+        (
+            &["plan", "--reference", "spin", "--robot", "r.urdf"],
+            &["--robot", "cannot be used with"],
+        ),
+        (
+            &["plan", "--reference", "spin", "--timing", "0.5,0.3"],
+            &["--timing", "cannot be used with"],
+        ),
+        (
+            &["plan", "--problem", "p.json", "--direct"],
+            &["--direct", "cannot be used with"],
+        ),
+        (
+            &["import", "r.urdf", "--package", "r"],
+            &["--package", "--out"],
+        ),
+        (
+            &["import", "r.urdf", "--rbd-core", "0.1"],
+            &["--rbd-core", "--out"],
+        ),
+        (&["import", "r.urdf", "--member"], &["--member", "--out"]),
+        (
+            &["import", "r.urdf", "--licence", "MIT"],
+            &["--licence", "--out"],
+        ),
+        (
+            &["verdicts", "--ranges", "--json"],
+            &["--ranges", "cannot be used with"],
+        ),
+        (
+            &["verdicts", "--ranges", "a1/lateral"],
+            &["--ranges", "cannot be used with"],
+        ),
+        (
+            &["verdicts", "--agreement", "--sim", "native"],
+            &["--agreement", "cannot be used with"],
+        ),
+        (
             &["plan", "--reference", "spin", "--guess-noise", "nan"],
             &["--guess-noise", "0 to 10"],
         ),
