@@ -97,14 +97,7 @@ impl Content<'_> {
             phase_count: self.phases.len() as u8,
             phases,
             ground: ground(task),
-            margins: Margins {
-                friction: task.limits.friction as f32,
-                friction_share: task.limits.friction_share as f32,
-                max_force: task.problem.max_force as f32,
-                torque_share: self.torque_share as f32,
-                speed_share: task.limits.speed_share as f32,
-                weight: (task.problem.mass * task.problem.gravity) as f32,
-            },
+            margins: margins(task, self.torque_share as f32),
             goal_w: goal(task).0,
             heading: goal(task).1,
             landing_joints: robot.landing_joints(&task.start)?.map(|x| x as f32),
@@ -138,24 +131,53 @@ fn ground(task: &Task) -> Option<GroundStep> {
     })
 }
 
+/// Whether a plan's header says what its task does.
+///
+/// # Errors
+/// A sentence: of another box, to another goal, within other margins, or into another landing posture.
+pub fn agree(header: &Header<'_, JOINTS>, task: &Task) -> Result<(), String> {
+    let other = |what: &str| Err(format!("{what} than task {}: plan again", task.name));
+    if header.ground != ground(task) {
+        return other("the plan is for another box");
+    }
+    if (header.goal_w, header.heading) != goal(task) {
+        return other("the plan has another goal");
+    }
+    let shares = task.limits.torque_shares.map(|share| share as f32);
+    let known = shares
+        .into_iter()
+        .any(|share| header.margins == margins(task, share));
+    if !known {
+        return other("the plan keeps to other margins");
+    }
+    let landing = task.robot.landing_joints(&task.start)?;
+    let pairs = header.landing_joints.iter().zip(landing);
+    let gap = pairs.fold(0.0, |m: f64, (a, b)| m.max((f64::from(*a) - b).abs()));
+    if gap > SAME_POSTURE {
+        return other("the plan lands in another posture");
+    }
+    Ok(())
+}
+
+/// What a plan of this task keeps to, with this share of the torque.
+fn margins(task: &Task, torque_share: f32) -> Margins {
+    Margins {
+        friction: task.limits.friction as f32,
+        friction_share: task.limits.friction_share as f32,
+        max_force: task.problem.max_force as f32,
+        torque_share,
+        speed_share: task.limits.speed_share as f32,
+        weight: (task.problem.mass * task.problem.gravity) as f32,
+    }
+}
+
 /// A stored plan as the controller follows it, with the task that it is judged by.
 ///
 /// # Errors
-/// A sentence: of another box, to another goal, or from another posture.
+/// What [`agree`] says, or a plan from another posture.
 pub fn reference(plan: &Stored<'_>, task: &Task) -> Result<Reference, String> {
     let header = plan.header();
-    if header.ground != ground(task) {
-        return Err(format!(
-            "the plan is for another box than task {}: plan again",
-            task.name
-        ));
-    }
-    if (header.goal_w, header.heading) != goal(task) {
-        return Err(format!(
-            "the plan has another goal than task {}: plan again",
-            task.name
-        ));
-    }
+    agree(header, task)?;
     let nodes: Vec<Node> = plan.nodes().map(|node| node.node()).collect();
     let gap = |node: &Node| {
         let pairs = node.joints.iter().zip(&task.start.joints);

@@ -264,7 +264,7 @@ pub enum Warning {
         /// The joint.
         element: String,
     },
-    /// Speed or effort limit of zero or below.
+    /// Speed or effort limit of zero.
     #[error("{element}: {what} limit {value} kept as written; is it a placeholder?")]
     PlaceholderLimit {
         /// The joint.

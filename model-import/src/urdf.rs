@@ -271,8 +271,9 @@ impl Urdf {
     ) -> Result<JointLimits<f64>, ImportError> {
         let mut limits = JointLimits::<f64>::NONE;
         if let Some(dynamics) = child(node, "dynamics") {
-            limits.damping = optional(dynamics, "damping", element, "damping")?.unwrap_or(0.0);
-            limits.friction = optional(dynamics, "friction", element, "friction")?.unwrap_or(0.0);
+            let loss = |name| from_zero(dynamics, name, element, name);
+            limits.damping = loss("damping")?.unwrap_or(0.0);
+            limits.friction = loss("friction")?.unwrap_or(0.0);
         }
         let Some(limit) = child(node, "limit") else {
             if kind != JointType::Continuous {
@@ -293,9 +294,9 @@ impl Urdf {
             });
         }
         let mut positive = |name, what| -> Result<f64, ImportError> {
-            let value = optional(limit, name, element, what)?;
+            let value = from_zero(limit, name, element, what)?;
             if let Some(value) = value
-                && value <= 0.0
+                && value == 0.0
             {
                 self.warnings.push(Warning::PlaceholderLimit {
                     element: element.to_owned(),
@@ -414,6 +415,30 @@ fn optional(
     node.attribute(name)
         .map(|text| finite(text, element, what))
         .transpose()
+}
+
+/// What no joint has less of than nothing.
+fn from_zero(
+    node: Node<'_, '_>,
+    name: &str,
+    element: &str,
+    what: &'static str,
+) -> Result<Option<f64>, ImportError> {
+    let value = optional(node, name, element, what)?;
+    value.map_or(Ok(()), |x| not_negative(x, element, what))?;
+    Ok(value)
+}
+
+pub(crate) fn not_negative(x: f64, element: &str, what: &'static str) -> Result<(), ImportError> {
+    if x >= 0.0 {
+        return Ok(());
+    }
+    Err(ImportError::BadNumber {
+        element: element.to_owned(),
+        what,
+        text: x.to_string(),
+        expected: "at least 0",
+    })
 }
 
 fn finite(text: &str, element: &str, what: &'static str) -> Result<f64, ImportError> {

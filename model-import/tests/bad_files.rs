@@ -153,6 +153,32 @@ fn missing_parts() {
     }
 }
 
+/// A motor of less than nothing, and losses that drive.
+#[test]
+fn joints_of_less_than_nothing() {
+    for (from, to, what) in [
+        (r#"effort="5""#, r#"effort="-5""#, "effort is `-5`"),
+        (r#"velocity="2""#, r#"velocity="-2""#, "speed is `-2`"),
+        (
+            r#"<limit lower="-1""#,
+            r#"<dynamics damping="-0.1"/><limit lower="-1""#,
+            "damping is `-0.1`",
+        ),
+        (
+            r#"<limit lower="-1""#,
+            r#"<dynamics friction="-0.1"/><limit lower="-1""#,
+            "friction is `-0.1`",
+        ),
+    ] {
+        fails!(
+            from,
+            to,
+            ["joint `", what, "at least 0"],
+            ImportError::BadNumber { .. }
+        );
+    }
+}
+
 #[test]
 fn bodies_that_cannot_be() {
     fails!(

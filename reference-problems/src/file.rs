@@ -1,8 +1,10 @@
 //! The file of problems, read into srb-opt's problem.
 
+use crate::json::named;
+use core::fmt;
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::collections::BTreeMap;
 
@@ -17,7 +19,35 @@ pub const SHIPPED: &str = include_str!("../data/a1-jumps.json");
 #[serde(deny_unknown_fields)]
 pub struct File {
     pub(crate) constants: Constants,
+    #[serde(deserialize_with = "each_once")]
     pub(crate) tasks: BTreeMap<String, Task>,
+}
+
+/// The tasks; of two with one name nobody knows which is meant.
+fn each_once<'de, D: Deserializer<'de>>(from: D) -> Result<BTreeMap<String, Task>, D::Error> {
+    struct Tasks;
+
+    impl<'de> Visitor<'de> for Tasks {
+        type Value = BTreeMap<String, Task>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("tasks by their names")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut tasks = BTreeMap::new();
+            while let Some(name) = map.next_key::<String>()? {
+                if tasks.contains_key(&name) {
+                    let what = format!("task `{name}` is there twice: rename one of them");
+                    return Err(A::Error::custom(what));
+                }
+                tasks.insert(name, map.next_value()?);
+            }
+            Ok(tasks)
+        }
+    }
+
+    from.deserialize_map(Tasks)
 }
 
 #[derive(Deserialize)]
@@ -112,11 +142,13 @@ impl File {
     /// # Errors
     /// The key that is unknown, or whose value cannot be, and what it may be.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let file: Self =
-            serde_json::from_str(text).map_err(|error| format!("problem file: {error}"))?;
+        let file: Self = serde_json::from_str(text).map_err(|error| named(text, &error))?;
+        if file.tasks.is_empty() {
+            return Err("tasks: there must be one".to_owned());
+        }
         file.constants.check()?;
         for (name, task) in &file.tasks {
-            task.check()
+            task.check(&file.constants)
                 .map_err(|error| format!("task {name}: {error}"))?;
         }
         Ok(file)

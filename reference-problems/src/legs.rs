@@ -73,7 +73,8 @@ impl SrbMotion {
     /// # Errors
     /// What is missing or no number.
     pub fn parse(text: &str) -> Result<Self, String> {
-        serde_json::from_str(text).map_err(|error| format!("SRB solution: {error}"))
+        serde_json::from_str(text)
+            .map_err(|error| format!("SRB solution: {}", crate::json::named(text, &error)))
     }
 
     /// The motion of the base, for phases of this many intervals.
@@ -172,11 +173,11 @@ fn with_landing_legs(base: [f64; BASE]) -> Pose<f64, N> {
 }
 
 impl Task {
-    fn order(&self) -> Result<EulerOrder, String> {
+    pub(crate) fn order(&self) -> Result<EulerOrder, String> {
         match self.euler.as_deref() {
             None | Some("zyx") => Ok(EulerOrder::Zyx),
             Some("zxy") => Ok(EulerOrder::Zxy),
-            Some(other) => Err(format!("euler must be zyx or zxy, not {other}")),
+            Some(other) => Err(format!("euler: must be zyx or zxy, not `{other}`")),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod answer;
 mod file;
+mod json;
 mod legs;
 mod srb;
 mod values;

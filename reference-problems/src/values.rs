@@ -13,7 +13,7 @@ const LENGTH: Range = From(-100.0, 100.0);
 /// Ten turns, rad.
 const TURN: Range = From(-63.0, 63.0);
 /// Durations, s.
-pub(crate) const DURATION: Range = Above(0.0, 10.0);
+pub(crate) const DURATION: Range = From(1e-6, 10.0);
 /// What must be more than nothing.
 const POSITIVE: Range = Above(0.0, 1e6);
 /// Weights of costs.
@@ -100,7 +100,7 @@ fn ordered(key: &str, [low, high]: [f64; 2]) -> Result<(), String> {
 }
 
 impl Task {
-    pub(crate) fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self, constants: &Constants) -> Result<(), String> {
         let count = self.n.len();
         if !(1..=MOST_PHASES).contains(&count) {
             return Err(format!("N: 1 to {MOST_PHASES} phases, not {count}"));
@@ -127,6 +127,7 @@ impl Task {
         self.phases.iter().try_for_each(|feet| check_feet(feet))?;
         within("T0", DURATION, &self.t0)?;
         within("ttot", DURATION, [&self.ttot])?;
+        ordered("TTOT_LO and ttot", [constants.ttot_lo, self.ttot])?;
         within("goal", LENGTH, &self.goal)?;
         within("angle", TURN, [&self.angle])?;
         within("bp", TURN, self.bp.iter().flatten())?;
@@ -138,6 +139,7 @@ impl Task {
                 "axis: must be a unit vector, its length is {length:?}"
             ));
         }
+        self.order()?;
         self.check_edge()
     }
 

@@ -117,6 +117,7 @@ fn work_is_not_lost_with_its_text() {
 fn targets_are_tried_before_the_work() {
     let folder = folder("targets");
     fs::write(folder.join("file"), "").unwrap();
+    std::os::unix::fs::symlink("nowhere/deep", folder.join("link")).unwrap();
     let clock = Instant::now();
     for arguments in [
         &["run", "a1/lateral", "--out", "/proc/saltus"][..],
@@ -126,6 +127,18 @@ fn targets_are_tried_before_the_work() {
         &["plan", "a1/lateral", "--solution", "/proc/saltus.json"],
         &["plan", "a1/lateral", "--solution", "."],
         &["plan", "--reference", "spin", "--solution", "file/below"],
+        &["plan", "a1/lateral", "--solution", "link"],
+        &["plan", "a1/lateral", "--solution", "new/"],
+        &["plan", "a1/lateral", "--out", "it", "--solution", "it"],
+        &[
+            "plan",
+            "a1/lateral",
+            "--out",
+            "it",
+            "--solution",
+            "it/s.json",
+        ],
+        &["envelope", "a1/lateral", "--out", "/proc/self"],
         &["envelope", "a1/lateral", "--out", "/proc/saltus"],
         &["reproduce", "--quick", "--out", "/proc/saltus"],
     ] {
@@ -137,9 +150,20 @@ fn targets_are_tried_before_the_work() {
             "{arguments:?}: {said}"
         );
     }
-    // Nine plans, runs and studies would take far longer.
+    // So many plans, runs and studies would take far longer.
     assert!(clock.elapsed().as_secs() < 20);
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+}
+
+/// A file's folder is made with it, as a plan's is: it was missed after the work.
+#[test]
+fn a_solution_may_go_into_a_new_folder() {
+    let folder = folder("new");
+    let plan = ["plan", "--reference", "spin", "--solution", "a/b/s.json"];
+    assert!(saltus(&folder, &plan).status().unwrap().success());
+    let text = fs::read_to_string(folder.join("a/b/s.json")).unwrap();
+    assert!(text.starts_with('{'));
+    assert_eq!(fs::read_dir(folder.join("a/b")).unwrap().count(), 1);
 }
 
 #[test]

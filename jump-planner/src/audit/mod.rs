@@ -11,6 +11,7 @@
 mod clearance;
 mod forward;
 mod limits;
+mod motion;
 mod values;
 
 use crate::robot::{JOINTS, LEGS, Quadruped, State};

@@ -83,7 +83,9 @@ pub enum RobotError {
     )]
     Quadrant(&'static str),
     /// A joint without a limit that a plan can keep to.
-    #[error("joint {joint}: its {what} limit {value}: a quadruped's joints have limits above 0")]
+    #[error(
+        "joint {joint}: its {what} limit is {value}: a quadruped's joints have finite limits above 0"
+    )]
     Limit {
         /// The joint.
         joint: String,
@@ -101,6 +103,18 @@ pub enum RobotError {
         lower: f64,
         /// Its upper limit.
         upper: f64,
+    },
+    /// A collision shape that plans are made with, and that no body has.
+    #[error(
+        "link {link}: the {what} of its collision is `{value}`: must be finite numbers above 0, m"
+    )]
+    Shape {
+        /// The link.
+        link: String,
+        /// Which measure.
+        what: &'static str,
+        /// What it is.
+        value: String,
     },
     /// No size of a quadruped.
     #[error("its {what}: {error}")]
@@ -146,8 +160,8 @@ impl Quadruped {
             ..Options::default()
         };
         let imported = match Robot::from_urdf(&text, &options) {
-            // Simplified moments of inertia are common, and a plan needs only those of the whole robot.
-            Err(ImportError::UnphysicalInertia { .. }) => {
+            // Simplified moments of inertia are common, and a plan needs only those of the whole robot; negative ones are a mistake.
+            Err(ImportError::UnphysicalInertia { moments, .. }) if moments[0] >= 0.0 => {
                 options.inertia = InertiaPolicy::AsWritten;
                 Robot::from_urdf(&text, &options)?
             }
@@ -194,7 +208,7 @@ impl Quadruped {
             foot_radius,
             hips,
             leg_length,
-            corners: trunk(&document, robot, leg_length),
+            corners: trunk(&document, robot, leg_length)?,
             shapes: [Shape::ball(Link::Base, [0.0; 3], 0.0, 0); SHAPE_COUNT],
             owners: [""; OWNER_COUNT],
             budgets: hardware::budgets(strongest),
@@ -204,6 +218,8 @@ impl Quadruped {
             seed: [0.0; JOINTS],
         };
         profile.map_or(Ok(()), |profile| profile.apply(&mut data))?;
+        let ball = Range::Above(0.0, leg_length);
+        size("foot's radius, m", ball, data.foot_radius)?;
         data.seed = seed(&data)?;
         data.shapes = hardware::shapes(&data);
         data.owners = hardware::owners(&Self::leak(data.clone()));
@@ -257,7 +273,7 @@ fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f
             .max_by(|a, b| reach(&a.frame).total_cmp(&reach(&b.frame)))
             .ok_or_else(|| RobotError::NotALeg(robot.joints[3 * leg + 2].name.clone()))?;
         *foot = tip.frame;
-        if let Some((radius, centre)) = ball(document, &tip.name) {
+        if let Some((radius, centre)) = ball(document, &tip.name)? {
             foot_radius = radius;
             foot.offset = tip.frame.placement().point(&centre).into();
         }
@@ -371,16 +387,42 @@ fn shapes<'a>(
 }
 
 /// Radius and centre of the ball of a foot, in the frame of its link, m.
-fn ball(document: &Document<'_>, link: &str) -> Option<(f64, Vector3<f64>)> {
-    shapes(document, link).find_map(|(shape, centre)| {
-        let radius: f64 = shape.attribute("radius")?.parse().ok()?;
-        let ok = shape.has_tag_name("sphere") && radius > 0.0 && radius.is_finite();
-        ok.then_some((radius, centre))
-    })
+fn ball(document: &Document<'_>, link: &str) -> Result<Option<(f64, Vector3<f64>)>, RobotError> {
+    let sphere = shapes(document, link).find(|(shape, _)| shape.has_tag_name("sphere"));
+    let Some((shape, centre)) = sphere else {
+        return Ok(None);
+    };
+    let [radius] = measures(shape, link, "radius")?;
+    Ok(Some((radius, centre)))
+}
+
+/// Measures of a collision shape, m.
+fn measures<const K: usize>(
+    shape: Node<'_, '_>,
+    link: &str,
+    what: &'static str,
+) -> Result<[f64; K], RobotError> {
+    let text = shape.attribute(what).unwrap_or_default();
+    let numbers = text
+        .split_whitespace()
+        .map(|x| x.parse().unwrap_or(f64::NAN));
+    let positive = |x: &f64| *x > 0.0 && x.is_finite();
+    let found: Option<[f64; K]> = numbers.collect::<Vec<_>>().try_into().ok();
+    found
+        .filter(|all| all.iter().all(positive))
+        .ok_or_else(|| RobotError::Shape {
+            link: link.to_owned(),
+            what,
+            value: text.to_owned(),
+        })
 }
 
 /// Corners of the trunk, base axes, m.
-fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f64>; 8] {
+fn trunk(
+    document: &Document<'_>,
+    robot: &Robot,
+    leg_length: f64,
+) -> Result<[Vector3<f64>; 8], RobotError> {
     let offsets = robot
         .bodies
         .iter()
@@ -394,8 +436,11 @@ fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f6
     let mut largest = 0.0;
     for frame in robot.frames.iter().filter(|f| f.frame.link == Link::Base) {
         for (shape, centre) in shapes(document, &frame.name) {
-            let size = vector(Some(shape), "size");
-            if shape.has_tag_name("box") && size.product() > largest {
+            if !shape.has_tag_name("box") {
+                continue;
+            }
+            let size = Vector3::from(measures(shape, &frame.name, "size")?);
+            if size.product() > largest {
                 largest = size.product();
                 half = size * 0.5;
                 pose = frame.frame.placement();
@@ -403,5 +448,5 @@ fn trunk(document: &Document<'_>, robot: &Robot, leg_length: f64) -> [Vector3<f6
             }
         }
     }
-    hardware::corners(&half).map(|corner| pose.point(&corner))
+    Ok(hardware::corners(&half).map(|corner| pose.point(&corner)))
 }

@@ -25,7 +25,7 @@ use rbd_core::spatial::{Inertia, Symmetric3, Transform};
 use roxmltree::{Document, Node};
 
 use crate::error::{ImportError, Warning};
-use crate::urdf::{JointType, Urdf, UrdfJoint, UrdfLink};
+use crate::urdf::{JointType, Urdf, UrdfJoint, UrdfLink, not_negative};
 use attributes::{Attributes, Compiler, Defaults, element_of};
 pub use include::read;
 
@@ -320,6 +320,14 @@ impl Reader {
             .copied()
             .unwrap_or(0.0);
         limits.friction = attributes.number("frictionloss")?.unwrap_or(0.0);
+        let rotor_inertia = attributes.number("armature")?.unwrap_or(0.0);
+        for (what, value) in [
+            ("damping", limits.damping),
+            ("frictionloss", limits.friction),
+            ("armature", rotor_inertia),
+        ] {
+            not_negative(value, &element, what)?;
+        }
         let range = attributes.numbers::<2>("range")?;
         if let Some([lower, upper]) = self.compiler.limited(attributes.text("limited"), range) {
             (limits.lower, limits.upper) = (lower * unit, upper * unit);
@@ -361,7 +369,7 @@ impl Reader {
             origin,
             axis: *axis,
             limits,
-            rotor_inertia: attributes.number("armature")?.unwrap_or(0.0),
+            rotor_inertia,
             mimic: None,
         })
     }

@@ -41,8 +41,15 @@ pub(crate) fn check_file(path: &Path) -> Result<(), Failure> {
     if path.exists() && !path.is_file() {
         return Ok(());
     }
+    let shown = path.display();
+    if path.as_os_str().to_string_lossy().ends_with('/') {
+        return Err(format!("{shown}: this names a folder: give the name of a file").into());
+    }
     match path.symlink_metadata() {
         Err(error) if is_unusable(&error) => return Err(describe(path, &error).into()),
+        Ok(_) if !path.exists() => {
+            return Err(format!("{shown}: a link that leads nowhere: remove it").into());
+        }
         _ => {}
     }
     check_parent(path)
@@ -164,12 +171,13 @@ pub(crate) fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Failu
     fs::write(&path, bytes).map_err(|error| Failure::Outside(describe(&path, &error)))
 }
 
-/// Writes a file that appears only when it is complete; a pipe or a device takes the bytes as they come.
+/// Writes a file that appears only when it is complete, and its folder; a pipe or a device takes the bytes as they come.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let outside = |error| Failure::Outside(describe(path, &error));
     if fs::symlink_metadata(path).is_ok_and(|there| !there.is_file()) {
         return fs::write(path, bytes).map_err(outside);
     }
+    fs::create_dir_all(parent(path)).map_err(outside)?;
     let unfinished = unfinished(parent(path));
     let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
     if written.is_err() {

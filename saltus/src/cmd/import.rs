@@ -43,16 +43,16 @@ pub(crate) struct Args {
     #[arg(long)]
     out: Option<PathBuf>,
     /// Package name of the crate; the robot's name with `-model` by default.
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     package: Option<String>,
     /// Where the crate finds rbd-core: a folder, or a version. By default the one this program was built with.
-    #[arg(long, value_name = "FOLDER|VERSION")]
+    #[arg(long, value_name = "FOLDER|VERSION", requires = "out")]
     rbd_core: Option<String>,
     /// The crate is a member of the workspace around the folder, and none of its own.
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     member: bool,
     /// Licence of the URDF (SPDX), which becomes the crate's.
-    #[arg(long, default_value = "LicenseRef-unknown")]
+    #[arg(long, default_value = "LicenseRef-unknown", requires = "out")]
     licence: String,
     #[command(flatten)]
     pub(crate) output: Output,

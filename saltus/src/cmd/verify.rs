@@ -2,12 +2,13 @@
 //!
 //! Exit code 0 for a plan that passes, 2 for one that does not or cannot be read.
 
-use super::failure::Failure;
+use super::failure::{Failure, brief};
 use super::folder::describe;
 use super::output::Output;
 use jump_planner::audit::{Audit, check_values};
 use jump_planner::robot::Quadruped;
-use jump_planner::stored::open;
+use jump_planner::stored::{Stored, agree, open};
+use jump_planner::task::Task;
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -39,6 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
     let show = |error| format!("{}: {error}", args.file.display());
     check_values(&robot, &plan).map_err(show)?;
+    args.compare(&plan)?;
     let audit = Audit::of(&robot, &plan).map_err(show)?;
     let header = plan.header();
     let status = if audit.passes() {
@@ -62,4 +64,24 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         }
     }
     Ok(ExitCode::from(if audit.passes() { 0 } else { 2 }))
+}
+
+impl Args {
+    /// Compares the plan with its task where that is found here: what the plan was to keep to stands nowhere else.
+    fn compare(&self, plan: &Stored<'_>) -> Result<(), Failure> {
+        let name = plan.header().task;
+        match Task::load_for(name, self.robot.as_deref(), &self.lock) {
+            Ok(task) => agree(plan.header(), &task)
+                .map_err(|error| format!("{}: {error}", self.file.display()).into()),
+            Err(error) => {
+                if !self.output.quiet {
+                    let why = brief(&error.to_string());
+                    tell!(
+                        "saltus: warning: goal, box and margins are not compared with the task: {why}"
+                    );
+                }
+                Ok(())
+            }
+        }
+    }
 }

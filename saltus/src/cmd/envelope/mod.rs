@@ -5,7 +5,7 @@ mod picture;
 mod study;
 
 use super::failure::Failure;
-use super::folder::check_new;
+use super::folder::{check_file, check_new};
 use super::interrupt;
 use super::output::{Output, whole};
 use crate::cmd::output::{measures, planners, sims};
@@ -109,7 +109,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         },
         without,
     };
-    if !study.folder.exists() {
+    if study.folder.is_dir() {
+        check_file(&study.folder.join("samples"))?;
+    } else {
         check_new(Some(&study.folder))?;
     }
     interrupt::listen()?;

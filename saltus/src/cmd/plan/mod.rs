@@ -24,22 +24,23 @@ pub(crate) struct Args {
         long,
         value_delimiter = ',',
         requires = "task",
+        conflicts_with_all = ["reference", "problem"],
         allow_hyphen_values = true
     )]
     timing: Option<Vec<f64>>,
     /// Find the durations on the whole body directly, from the guess and without the rigid body's plan: the one-stage way that paper A
     /// rules out (III).
-    #[arg(long, requires = "task", conflicts_with = "timing")]
+    #[arg(long, requires = "task", conflicts_with_all = ["timing", "reference", "problem"])]
     direct: bool,
     /// Plan for the quadruped of this URDF, or of a profile (TOML beside a URDF), instead of the task's robot: twelve joints, four legs of three below a floating base, one per
     /// quadrant, with effort and speed limits.
-    #[arg(long, requires = "task")]
+    #[arg(long, requires = "task", conflicts_with_all = ["reference", "problem"])]
     robot: Option<PathBuf>,
     /// Lock joints of that robot at a position, rad or m.
     #[arg(long, value_name = "JOINT=VALUE", requires = "robot")]
     lock: Vec<String>,
     /// New folder for the plan: plan.bin, the container that controllers read, plan.json, and scene.xml for MuJoCo.
-    #[arg(long, requires = "task")]
+    #[arg(long, requires = "task", conflicts_with_all = ["reference", "problem"])]
     out: Option<PathBuf>,
     /// Reference task, by its name in the reference file (`spin`) or the product's (`a1/spin-90`).
     #[arg(long)]
@@ -84,6 +85,12 @@ fn noise(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.solution.as_deref().map_or(Ok(()), check_file)?;
+    if let (Some(out), Some(solution)) = (&args.out, &args.solution)
+        && (solution.starts_with(out) || out.starts_with(solution))
+    {
+        let what = "--out makes a new folder for the plan alone: choose another --solution";
+        return Err(format!("{}: {what}", solution.display()).into());
+    }
     match &args.task {
         Some(name) => Ok(task::run(args, name)),
         None => reference::run(args),

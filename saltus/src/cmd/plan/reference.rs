@@ -24,23 +24,22 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         None => SHIPPED.to_owned(),
     };
     let shown = |error| match &args.problem {
-        Some(path) => format!(
-            "{}: {error}: it must be like reference-problems/data/a1-jumps.json",
-            path.display()
-        ),
+        Some(path) => format!("{}: {error}", path.display()),
         None => error,
     };
-    let file = File::parse(&text).map_err(shown)?;
-    let name = file.pick(args.reference.as_deref())?;
+    let like = "it must be like reference-problems/data/a1-jumps.json";
+    let file = File::parse(&text).map_err(|error| shown(format!("{error}: {like}")))?;
+    let name = file.pick(args.reference.as_deref()).map_err(shown)?;
     let mut report = json!({ "task": name });
     let answer = if on_legs {
         let motion = motion(args, &file, name, &mut report)?;
         args.timed(|noise, observe| {
             file.solve_whole_body(name, &motion, args.barrier(), noise, observe)
-        })?
+        })
     } else {
-        args.timed(|noise, observe| file.solve_srb(name, args.barrier(), noise, observe))?
+        args.timed(|noise, observe| file.solve_srb(name, args.barrier(), noise, observe))
     };
+    let answer = answer.map_err(shown)?;
     let solved = answer.status == Status::Solved;
     // What is not solved must not lie there like a solution.
     if let Some(path) = args.solution.as_deref().filter(|_| solved) {

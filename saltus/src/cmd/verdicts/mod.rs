@@ -44,13 +44,13 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 0, requires = "conditions", allow_negative_numbers = true, value_parser = whole(0..=100_000))]
     lab: u64,
     /// How far both simulators are apart at take-off, in flight and at touchdown, on hard and firm ground.
-    #[arg(long, conflicts_with_all = ["plant", "seed", "interface", "conditions"])]
+    #[arg(long, conflicts_with_all = ["sim", "plant", "seed", "interface", "conditions", "expect"])]
     agreement: bool,
     /// A file of expected verdicts, which replaces the tasks: exit code 2 where one differs, and its name.
     #[arg(long, conflicts_with_all = ["tasks", "conditions"])]
     expect: Option<PathBuf>,
     /// Print what may differ from the plan and the lab's ranges, and nothing else.
-    #[arg(long)]
+    #[arg(long, exclusive = true)]
     ranges: bool,
     #[command(flatten)]
     pub(crate) output: Output,
@@ -81,6 +81,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     args.sim.iter().try_for_each(|sim| sim.check())?;
+    if args.agreement {
+        Sim::Mujoco.check()?;
+    }
     interrupt::listen()?;
     let expected = args.expect.as_deref().map(Expected::read).transpose()?;
     let names = match &expected {
