@@ -3,34 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, Warning, parse_lock};
+mod arm;
+
+use arm::{BOX, arm};
+use model_import::{ImportError, InertiaPolicy, Options, Robot, Warning, parse_lock};
 use proptest::prelude::*;
 use rbd_core::BaseKind;
-
-const BOX: &str = r#"<inertial><mass value="1"/>
-    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
-
-/// A trunk and an arm of two joints; each test spoils one thing.
-fn arm() -> String {
-    format!(
-        r#"<?xml version="1.0"?>
-<robot name="arm">
-  <link name="trunk">{BOX}</link>
-  <joint name="shoulder" type="revolute">
-    <parent link="trunk"/><child link="upper"/>
-    <origin xyz="0 0 0.1" rpy="0 0 0"/>
-    <axis xyz="0 1 0"/>
-    <limit lower="-1" upper="1" effort="5" velocity="2"/>
-  </joint>
-  <link name="upper">{BOX}</link>
-  <joint name="elbow" type="continuous">
-    <parent link="upper"/><child link="fore"/>
-    <axis xyz="0 0 1"/>
-  </joint>
-  <link name="fore">{BOX}</link>
-</robot>"#
-    )
-}
 
 fn import(text: &str) -> Result<Robot, ImportError> {
     Robot::from_urdf(text, &Options::default())
@@ -391,68 +369,6 @@ fn locks_that_cannot_be() {
         parse_lock("elbow=-0.5").unwrap(),
         ("elbow".to_owned(), -0.5)
     );
-}
-
-#[test]
-fn mimic_joints_are_refused_locked_or_freed() {
-    let text = arm().replacen(
-        r#"<axis xyz="0 0 1"/>"#,
-        r#"<axis xyz="0 0 1"/><mimic joint="shoulder" multiplier="2" offset="0.25"/>"#,
-        1,
-    );
-    let with = |mimic, locks: &[(&str, f64)]| {
-        let locks = locks.iter().map(|(j, x)| ((*j).to_owned(), *x)).collect();
-        Robot::from_urdf(
-            &text,
-            &Options {
-                mimic,
-                locks,
-                ..Options::default()
-            },
-        )
-    };
-    let refused = with(MimicPolicy::Refuse, &[]).unwrap_err();
-    assert!(
-        refused.to_string().contains("--lock elbow=value"),
-        "{refused}"
-    );
-    assert_eq!(
-        with(MimicPolicy::Refuse, &[("elbow", 0.1)])
-            .unwrap()
-            .joints
-            .len(),
-        1
-    );
-    let free = with(MimicPolicy::Free, &[]).unwrap();
-    assert_eq!(MimicPolicy::default(), MimicPolicy::Free, "as Pinocchio");
-    assert_eq!(free.joints.len(), 2);
-    assert!(matches!(
-        &free.warnings[..],
-        [Warning::MimicFreed { joint, leader }] if joint == "elbow" && leader == "shoulder"
-    ));
-    let lost = with(MimicPolicy::Free, &[("shoulder", 0.5)]).unwrap();
-    assert!(matches!(&lost.warnings[..], [Warning::MimicLost { .. }]));
-    assert!(lost.warnings[0].to_string().contains("is locked"));
-    assert_eq!(
-        with(MimicPolicy::Lock, &[]).unwrap().locked,
-        [("elbow".to_owned(), 0.25)]
-    );
-    let both = with(MimicPolicy::Lock, &[("shoulder", 0.5)])
-        .unwrap()
-        .locked;
-    assert_eq!(
-        both,
-        [("shoulder".to_owned(), 0.5), ("elbow".to_owned(), 1.25)]
-    );
-    let text = text.replace(r#"mimic joint="shoulder""#, r#"mimic joint="hip""#);
-    let options = Options {
-        mimic: MimicPolicy::Lock,
-        ..Options::default()
-    };
-    assert!(matches!(
-        Robot::from_urdf(&text, &options).unwrap_err(),
-        ImportError::UnknownLeader { .. }
-    ));
 }
 
 #[test]

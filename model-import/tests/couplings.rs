@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod arm;
+
+use arm::arm;
 use model_import::emit::{Provenance, module};
-use model_import::{Options, Robot, Warning};
+use model_import::{ImportError, MimicPolicy, Options, Robot, Warning};
 use rbd_core::reduction::ReductionError;
 use rbd_core::{BaseKind, Configuration};
 
@@ -82,4 +85,66 @@ fn couplings_that_cannot_hold_are_named() {
     let lost = gripper([r#"<mimic joint="thumb"/>"#, ""]);
     assert!(lost.warnings[0].to_string().contains("not in the file"));
     assert!(!module(&lost, "Gripper", &Provenance::new("g.urdf", "", "MIT")).contains("REDUCTION"));
+}
+
+#[test]
+fn mimic_joints_are_refused_locked_or_freed() {
+    let text = arm().replacen(
+        r#"<axis xyz="0 0 1"/>"#,
+        r#"<axis xyz="0 0 1"/><mimic joint="shoulder" multiplier="2" offset="0.25"/>"#,
+        1,
+    );
+    let with = |mimic, locks: &[(&str, f64)]| {
+        let locks = locks.iter().map(|(j, x)| ((*j).to_owned(), *x)).collect();
+        Robot::from_urdf(
+            &text,
+            &Options {
+                mimic,
+                locks,
+                ..Options::default()
+            },
+        )
+    };
+    let refused = with(MimicPolicy::Refuse, &[]).unwrap_err();
+    assert!(
+        refused.to_string().contains("--lock elbow=value"),
+        "{refused}"
+    );
+    assert_eq!(
+        with(MimicPolicy::Refuse, &[("elbow", 0.1)])
+            .unwrap()
+            .joints
+            .len(),
+        1
+    );
+    let free = with(MimicPolicy::Free, &[]).unwrap();
+    assert_eq!(MimicPolicy::default(), MimicPolicy::Free, "as Pinocchio");
+    assert_eq!(free.joints.len(), 2);
+    assert!(matches!(
+        &free.warnings[..],
+        [Warning::MimicFreed { joint, leader }] if joint == "elbow" && leader == "shoulder"
+    ));
+    let lost = with(MimicPolicy::Free, &[("shoulder", 0.5)]).unwrap();
+    assert!(matches!(&lost.warnings[..], [Warning::MimicLost { .. }]));
+    assert!(lost.warnings[0].to_string().contains("is locked"));
+    assert_eq!(
+        with(MimicPolicy::Lock, &[]).unwrap().locked,
+        [("elbow".to_owned(), 0.25)]
+    );
+    let both = with(MimicPolicy::Lock, &[("shoulder", 0.5)])
+        .unwrap()
+        .locked;
+    assert_eq!(
+        both,
+        [("shoulder".to_owned(), 0.5), ("elbow".to_owned(), 1.25)]
+    );
+    let text = text.replace(r#"mimic joint="shoulder""#, r#"mimic joint="hip""#);
+    let options = Options {
+        mimic: MimicPolicy::Lock,
+        ..Options::default()
+    };
+    assert!(matches!(
+        Robot::from_urdf(&text, &options).unwrap_err(),
+        ImportError::UnknownLeader { .. }
+    ));
 }
