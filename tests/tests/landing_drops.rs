@@ -25,7 +25,16 @@ fn good(sim: Sim, drops: impl Iterator<Item = Drop>) -> usize {
     good
 }
 
+/// Level and tilted by 20°, at rest and at half a metre per second: what `cargo test` has time for.
 #[test]
+fn drops_from_30_cm_are_landed() {
+    let some = eighteen(0.3).enumerate();
+    let some = some.filter(|(i, _)| [0, 7, 15].contains(i));
+    assert_eq!(good(Sim::Native, some.map(|(_, drop)| drop)), 3);
+}
+
+#[test]
+#[ignore = "long: cargo xtask suites"]
 fn eighteen_of_eighteen_drops_from_30_cm_are_landed() {
     assert_eq!(good(Sim::Native, eighteen(0.3)), 18);
 }

@@ -10,10 +10,11 @@ use crate::{mujoco, run};
 /// A part of the suites, so that CI's lanes can share them.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Part {
-    /// iCub and noise at length in closed loop, and what `saltus` does as a program, in both simulators and the release build.
+    /// iCub and noise at length in closed loop, A1 dropped on its feet, and what `saltus` does as a program, in both simulators and the
+    /// release build.
     Program,
-    /// Every algorithm beside Pinocchio, a counting allocator under every call of the control crates, A1 dropped from a metre, and the
-    /// bounds beside the solver, in the build of `cargo test --workspace`.
+    /// Every algorithm beside Pinocchio, a counting allocator under every call of the control crates, and the bounds beside the solver, in
+    /// the build of `cargo test --workspace`.
     Algorithms,
 }
 
@@ -46,7 +47,6 @@ fn algorithms() -> Result<()> {
     let mut long = test();
     long.args(["--features", "saltus-tests/long"]);
     long.args(["--test", "golden", "--test", "no_alloc"]);
-    long.args(["--test", "landing_drops", "--", "--include-ignored"]);
     run::succeed(&mut long)
 }
 
@@ -56,5 +56,9 @@ fn program() -> Result<()> {
     units.args(["humanoid::tests", "quadruped::fuzz"]);
     run::succeed(&mut units)?;
     let mut whole = mujoco::tests()?;
-    run::succeed(whole.args(["--test", "*", "--", "--ignored"]))
+    run::succeed(whole.args(["--test", "*", "--", "--ignored"]))?;
+    let mut drops = mujoco::tests()?;
+    drops.args(["--package", "saltus-tests"]);
+    drops.args(["--features", "saltus-tests/mujoco"]);
+    run::succeed(drops.args(["--test", "landing_drops", "--", "--include-ignored"]))
 }

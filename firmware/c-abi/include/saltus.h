@@ -22,7 +22,7 @@
 /*
  Version of the interface; a controller is initialised with the version that the caller was compiled with.
  */
-#define SALTUS_VERSION 4
+#define SALTUS_VERSION 5
 
 /*
  What came of a call.
@@ -327,9 +327,13 @@ typedef enum SaltusRefusal {
    */
   SALTUS_REFUSAL_POSTURE = 3,
   /*
+   The feet were not where the jump begins.
+   */
+  SALTUS_REFUSAL_PLACE = 4,
+  /*
    Another reason of a newer machine.
    */
-  SALTUS_REFUSAL_OTHER = 4,
+  SALTUS_REFUSAL_OTHER = 5,
 } SaltusRefusal;
 
 /*
@@ -996,12 +1000,10 @@ enum SaltusStatus saltus_a1_joint_pd(const struct SaltusA1Command *command,
                                      double *torques);
 
 /*
- The Cartesian PD of push-off and flight, for 1 kHz: feet along a reference. `then` is the reference for the time when
- the state was measured.
+ The Cartesian PD of push-off and flight, for 1 kHz: feet along a reference.
  */
 enum SaltusStatus saltus_a1_cartesian_pd(const struct SaltusA1State *state,
                                          const struct SaltusA1Reference *reference,
-                                         const struct SaltusA1Reference *then,
                                          struct SaltusA1Command *command);
 
 /*
