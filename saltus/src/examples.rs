@@ -56,7 +56,7 @@ pub(crate) const ENVELOPE: &str = "\
 Examples:
   saltus envelope a1/lateral --samples 20
   saltus envelope a1/lateral --shard 2/4 --out study   a quarter of a study; shards in one folder make one table
-  saltus envelope a1/diagonal --without weighing,delay what two of the measures against disturbances are worth together
+  saltus envelope a1/diagonal --without weighing,posture what two of the measures against disturbances are worth together
   saltus envelope a1/diagonal --ablate                 the study beside the same study without each measure
 
 Exit codes: 0 the study or its shard is complete; 130 stopped by Ctrl-C, with the table of the samples so far: the same command goes on;

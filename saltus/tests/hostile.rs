@@ -127,7 +127,7 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
         &["luck", "weighing"],
     ),
     (
-        &["envelope", "a1/lateral", "--ablate", "--without", "delay"],
+        &["envelope", "a1/lateral", "--ablate", "--without", "posture"],
         &["--ablate"],
     ),
     (

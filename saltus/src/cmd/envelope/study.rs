@@ -204,7 +204,7 @@ impl Study<'_> {
     }
 }
 
-/// Measures as a list: `weighing,delay`.
+/// Measures as a list: `weighing,posture`.
 pub(super) fn names(measures: &[Measure]) -> String {
     let names: Vec<&str> = measures.iter().map(|measure| measure.name()).collect();
     names.join(",")
