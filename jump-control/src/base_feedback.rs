@@ -83,10 +83,11 @@ impl<T: Scalar> BaseFeedback<T> {
             return forces;
         }
         middle /= sum;
-        let turn = lambda(weights, &feet_b.map(|foot| foot - middle), moment);
+        let arms = feet_b.map(|foot| foot - middle);
+        let turn = lambda(weights, &arms, moment);
         let mut scale = T::ONE;
-        for (force, (&w, foot)) in forces.iter_mut().zip(weights.iter().zip(feet_b)) {
-            *force = turn.cross(&(foot - middle)) * w;
+        for (force, (&w, arm)) in forces.iter_mut().zip(weights.iter().zip(&arms)) {
+            *force = turn.cross(arm) * w;
             let size = math::sqrt(force.norm_squared());
             if size * scale > w * self.share {
                 scale = w * self.share / size;

@@ -50,13 +50,9 @@ impl<T: Scalar, const N: usize, const F: usize> Node<T, N, F> {
     }
 }
 
-/// The base of a plan at one time.
+/// How the base of a plan is turned, and turns, at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedBase<T: Scalar> {
-    /// Position of the base's origin, world, m.
-    pub pos_w: Vector3<T>,
-    /// Its velocity, world axes, m/s.
-    pub vel_w: Vector3<T>,
     /// Rotation.
     pub rot_wb: Rotation3<T>,
     /// Angular velocity, base axes, rad/s.
@@ -169,8 +165,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         })
     }
 
-    /// The base at `time`, between `node` and the next: positions and velocities linear, the rotation turned on from the node by the
-    /// mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
+    /// The base at `time`, between `node` and the next: its rate linear, the rotation turned on from the node by the mean rate since. `None` where there are no two such nodes, or before the first of them; after the second it stays there.
     #[must_use]
     pub fn base(&self, (node, time): (usize, T)) -> Option<PlannedBase<T>> {
         self.following::<{ parts::BASE }, _>(node, |nodes| base_at(nodes, time))
@@ -242,11 +237,6 @@ fn following_stored<const PARTS: u8, T: Scalar, const N: usize, const F: usize, 
     }
 }
 
-/// Velocity of a node's base, world axes, m/s.
-fn world_velocity<T: Scalar, const N: usize, const F: usize>(node: &Node<T, N, F>) -> Vector3<T> {
-    node.base.rotation * node.base_velocity.linear
-}
-
 /// The base at `time` between the first two of these nodes; none before the first of them.
 fn base_at<T: Scalar, const N: usize, const F: usize>(
     nodes: &[Node<T, N, F>],
@@ -261,13 +251,38 @@ fn base_at<T: Scalar, const N: usize, const F: usize>(
     }
     let dt = to.time - from.time;
     let s = math::min((time - from.time) / dt, T::ONE);
-    let blend = |a: Vector3<T>, b: Vector3<T>| a + (b - a) * s;
     let rate = from.base_velocity.angular;
-    let omega_b = blend(rate, to.base_velocity.angular);
+    let omega_b = rate + (to.base_velocity.angular - rate) * s;
     Some(PlannedBase {
-        pos_w: blend(from.base.translation, to.base.translation),
-        vel_w: blend(world_velocity(from), world_velocity(to)),
         rot_wb: from.base.rotation * so3::exp(&((rate + omega_b) * (T::HALF * s * dt))),
         omega_b,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::{Node, Plan};
+    use crate::Torques;
+
+    /// Halfway to the next node the base has turned by the mean of its rates there and at the node.
+    #[test]
+    fn the_base_turns_on_from_its_node() {
+        let mut nodes = [Node::<f64, 1, 1>::ZERO; 2];
+        nodes[0].base.rotation = Rotation3::from_euler_angles(0.1, 0.2, -0.3);
+        nodes[0].base_velocity.angular = Vector3::new(0.0, 0.5, 0.1);
+        nodes[1].base_velocity.angular = Vector3::new(0.4, 0.5, 0.1);
+        nodes[1].time = 0.01;
+        let plan = Plan::new(&nodes, 0.01, 0.01, 0.01, Torques::Hold).unwrap();
+        let halfway = plan.base((0, 0.005)).unwrap();
+        assert!((halfway.omega_b - Vector3::new(0.2, 0.5, 0.1)).norm() < 1e-12);
+        let turned = nodes[0].base.rotation.inverse() * halfway.rot_wb;
+        let expected = Vector3::new(0.1, 0.5, 0.1) * 0.005;
+        assert!((so3::log(&turned) - expected).norm() < 1e-12);
+        for outside in [(0, -0.1), (1, 0.005), (0, f64::NAN)] {
+            assert_eq!(plan.base(outside), None, "{outside:?}");
+        }
+    }
 }
