@@ -128,12 +128,7 @@ pub fn energy_bound(robot: &Quadruped) -> f64 {
     let (start, stop) = (-POSTURE[2], -a1::LIMITS[2].lower);
     let work = 4.0 * MOTORS[2].torque * (stop - start);
     let leg = |knee: f64| robot.leg_length * so3::math::cos(0.5 * knee);
-    work / weight(robot) - (leg(start) - leg(stop))
-}
-
-/// Its weight, N.
-fn weight(robot: &Quadruped) -> f64 {
-    -robot.mass() * GRAVITY[2]
+    work / robot.weight() - (leg(start) - leg(stop))
 }
 
 /// Where a drop begins, and how it moves there.
@@ -230,7 +225,7 @@ pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
     let plan = Plan::new(&nodes, 0.0, POSING, touchdown, Torques::Hold);
     let jump = Jump {
         plan: plan.map_err(|error| error.to_string())?,
-        weight: weight(robot),
+        weight: robot.weight(),
         rot_goal: Rotation3::identity(),
         landing_joints: POSTURE,
     };

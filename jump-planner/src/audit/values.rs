@@ -7,7 +7,7 @@ use crate::whole_body::POSED;
 use jump_control::Torques;
 use jump_control::container::{Header, PlanNode, PlanPhase, write};
 use nalgebra::Vector3;
-use rbd_core::{GRAVITY, JointLimits, Model, Tangent};
+use rbd_core::{JointLimits, Model, Tangent};
 
 /// How far a joint may be beyond a limit, as a share of it or rad: solvers stop within their tolerance, and plans are in single precision.
 const BEYOND: f64 = 0.01;
@@ -28,7 +28,7 @@ pub fn check(robot: &Quadruped, plan: &Stored<'_>) -> Result<(), String> {
         format!("damaged, though its checksum fits: {at}{what}; plan again")
     };
     let nodes: Vec<_> = plan.nodes().collect();
-    let weight = robot.mass() * Vector3::from(GRAVITY).norm();
+    let weight = robot.weight();
     header(robot, plan.header(), weight).map_err(|what| damaged(String::new(), what))?;
     let share = f64::from(plan.header().margins.torque_share);
     for (i, node) in nodes.iter().enumerate() {

@@ -61,7 +61,7 @@ impl Quadruped {
     /// Limits that no motor has: placeholders of the URDF, with which a plan may promise what the robot cannot do.
     #[must_use]
     pub fn placeholders(&self) -> Vec<String> {
-        let scale = self.mass() * 9.81 * self.leg_length;
+        let scale = self.weight() * self.leg_length;
         let limits: &[_; JOINTS] = Model::limits(self);
         let named = |what: &str, unit: &str, of: &dyn Fn(usize) -> f64, most: f64| {
             let beyond: Vec<usize> = (0..JOINTS).filter(|i| of(*i) > most).collect();

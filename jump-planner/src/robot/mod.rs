@@ -11,8 +11,8 @@ use core::ops::Deref;
 use nalgebra::Vector3;
 use rbd_core::tree::Fold;
 use rbd_core::{
-    BaseBody, BaseKind, Body, Budgets, Frame, Inertia, JointLimits, MassMatrix, Model, Motor,
-    Posture, Shape, TableModel, Tree, crba,
+    BaseBody, BaseKind, Body, Budgets, Frame, GRAVITY, Inertia, JointLimits, MassMatrix, Model,
+    Motor, Posture, Shape, TableModel, Tree, crba,
 };
 
 pub use posture::State;
@@ -178,6 +178,12 @@ impl Quadruped {
     pub fn mass(&self) -> f64 {
         let bodies = self.table.bodies().iter().map(|body| body.mass);
         self.table.base().mass + bodies.sum::<f64>()
+    }
+
+    /// Weight, N.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        -self.mass() * GRAVITY[2]
     }
 
     /// Whether a task's standing height is that of the centre of mass, as in paper A, and not that of the hips.
