@@ -15,6 +15,7 @@ mod setup;
 pub mod stored;
 pub mod task;
 pub mod terrain;
+mod tightening;
 pub mod track;
 pub mod whole_body;
 

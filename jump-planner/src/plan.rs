@@ -4,7 +4,7 @@ use crate::answer::Answer;
 use crate::audit::Audit;
 use crate::bounds::impossible;
 use crate::task::{SrbPlan, Task};
-use crate::whole_body::{Timing, WholeBodyPlan, audited};
+use crate::whole_body::{Attempt, Timing, WholeBodyPlan, audited};
 use core::ops::ControlFlow;
 use ocp_solver::{Progress, Settings, Status};
 
@@ -15,6 +15,8 @@ pub enum Step {
     Body,
     /// The motion of all joints.
     WholeBody,
+    /// The motion of all joints and the durations of its phases, because there is none with the rigid body's.
+    Durations,
     /// There is no plan: tasks that ask for less.
     Relaxations,
 }
@@ -26,8 +28,10 @@ pub struct Outcome {
     pub srb: Option<SrbPlan>,
     /// The whole body's plan, solved or not.
     pub whole_body: Option<WholeBodyPlan>,
-    /// Time that the whole body took, ms.
+    /// Time that the whole body took, audits included, ms.
     pub wall_ms: f64,
+    /// Every solve of the whole body, in order.
+    pub path: Vec<Attempt>,
     /// The plan as it is stored, audited and executed; empty if the whole body was not solved.
     pub bytes: Vec<u8>,
     /// What the audit of the bytes found.
@@ -72,7 +76,14 @@ pub fn plan(
             srb
         }
     };
-    let whole = audited(task, srb, timing, |p| observe(Step::WholeBody, Some(p)))?;
+    let mut whole = audited(task, srb, timing, |p| observe(Step::WholeBody, Some(p)))?;
+    // What a rigid body can do in a time, legs with motors may not.
+    let may_differ = timing == Timing::Given && !task.has_given_durations();
+    if may_differ && whole.is_missing() && observe(Step::Durations, None).is_continue() {
+        whole.replace_with(audited(task, srb, Timing::Free, |p| {
+            observe(Step::Durations, Some(p))
+        })?);
+    }
     out.answer = match &whole.audit {
         Some(audit) if audit.passes() => None,
         Some(audit) => Some(Answer::failed(audit)),
@@ -84,6 +95,6 @@ pub fn plan(
         None => Some(Answer::no_whole_body_plan(task, srb, &whole.plan)),
     };
     (out.wall_ms, out.bytes, out.audit) = (whole.wall_ms, whole.bytes, whole.audit);
-    out.whole_body = Some(whole.plan);
+    (out.whole_body, out.path) = (Some(whole.plan), whole.path);
     Ok(out)
 }

@@ -3,6 +3,7 @@
 use super::reference::heading_matrix;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
+use crate::tightening::Tightening;
 use crate::track::Track;
 use nalgebra::Vector3;
 use rbd_core::Transform;
@@ -139,8 +140,8 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// The problem, with all the torque there is.
-    pub(crate) fn problem(&self) -> Problem<'_, f64, N, FOOT_COUNT> {
+    /// The problem, with all the torque there is, within limits drawn in.
+    pub(crate) fn problem(&self, drawn: &Tightening) -> Problem<'_, f64, N, FOOT_COUNT> {
         let task = self.task;
         let rigid = &task.problem;
         let cone = CONE_SHARE * rigid.friction / task.limits.friction_share;
@@ -168,7 +169,10 @@ impl<'a> Setup<'a> {
             least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
             landing_intervals: self.landing_intervals,
             friction_smoothing: FRICTION_SMOOTHING,
-            friction: Friction::within_cone(rigid.friction, cone),
+            friction: Friction {
+                apex: drawn.friction * rigid.max_force,
+                ..Friction::within_cone(rigid.friction, cone)
+            },
             drift: ROLL,
             weights: Weights {
                 position: task.weights.position,
@@ -177,13 +181,24 @@ impl<'a> Setup<'a> {
             },
         };
         let robot = &mut problem.robot;
+        let speed_share = task.limits.speed_share * (1.0 - drawn.speed);
         for (motor, limit) in robot.motors.iter_mut().zip(&mut robot.limits) {
             match motor {
                 Some(motor) => {
-                    motor.corner_speed *= task.limits.speed_share;
-                    motor.no_load_speed *= task.limits.speed_share;
+                    motor.corner_speed *= speed_share;
+                    motor.no_load_speed *= speed_share;
+                    limit.speed *= 1.0 - drawn.speed;
                 }
-                None => limit.speed *= task.limits.speed_share,
+                None => limit.speed *= speed_share,
+            }
+        }
+        for limit in robot.limits.iter_mut().skip(BASE) {
+            limit.effort *= 1.0 - drawn.torque;
+            let inset = drawn.position * (limit.upper - limit.lower);
+            // An inset of nothing leaves infinite ranges alone.
+            if inset > 0.0 && inset.is_finite() {
+                limit.lower += inset;
+                limit.upper -= inset;
             }
         }
         problem

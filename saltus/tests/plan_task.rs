@@ -48,7 +48,15 @@ fn plans_keep_margins_pass_the_audit_and_are_stored() {
         let keys: Vec<_> = report.as_object().unwrap().keys().cloned().collect();
         assert_eq!(
             keys,
-            ["audit", "phases", "srb", "status", "task", "whole_body"]
+            [
+                "audit",
+                "path",
+                "phases",
+                "srb",
+                "status",
+                "task",
+                "whole_body"
+            ]
         );
         for stage in ["srb", "whole_body"] {
             let keys: Vec<_> = report[stage].as_object().unwrap().keys().cloned().collect();
@@ -95,6 +103,41 @@ fn turns_about_mixed_axes_are_planned() {
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(report["status"], "Solved", "{report}");
         assert!(report["whole_body"]["max_violation"].as_f64().unwrap() <= 1e-6);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Two jumps that a solve alone does not find. Where the audit finds friction exceeded between nodes, it is drawn in; where no motion of
+/// the legs has the rigid body's durations, they are found on the whole body.
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn plans_are_made_again_where_the_first_way_ends() {
+    let folder = folder("again");
+    let spin = built_in("a1/spin-90");
+    let longer = spin.replace("max_s = 0.9", "max_s = 1.2");
+    let down = built_in("a1/lateral-down").replace("-0.3]", "-0.6]");
+    let down = down.replace("[0.0, 0.5,", "[0.0, 0.6,");
+    let down = down.replace("drop_m = 0.3", "drop_m = 0.6");
+    let down = down.replace("max_s = 0.9", "max_s = 1.2");
+    let half_turn = "\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = 180.0\n";
+    let cases = [
+        ("spin-270", longer.replace("90.0", "270.0"), "whole body"),
+        ("down-turned", format!("{down}{half_turn}"), "rigid body"),
+    ];
+    for (name, text, durations) in cases {
+        let path = folder.join(name).with_extension("toml");
+        std::fs::write(&path, text).unwrap();
+        let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["status"], "Solved", "{name}: {report}");
+        let path = report["path"].as_array().unwrap();
+        assert!(path.len() > 1, "{name}: {report}");
+        let last = path.last().unwrap();
+        assert_eq!(last["durations"], durations, "{name}: {report}");
+        assert!(
+            last["drawn_in"]["friction"].as_f64().unwrap() > 0.0,
+            "{report}"
+        );
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -13,6 +13,9 @@ pub struct Friction<T> {
     pub axes: T,
     /// Across the diagonals, if there are eight sides: |f_x| + |f_y| ≤ √2 diagonals f_z.
     pub diagonals: Option<T>,
+    /// Normal force at which the sides meet, N: with more than zero f_z above is f_z less this, a margin in newtons, which
+    /// is what forces differ by between the middle of an interval and its ends.
+    pub apex: T,
 }
 
 impl<T: Scalar> Friction<T> {
@@ -22,6 +25,7 @@ impl<T: Scalar> Friction<T> {
         Self {
             axes,
             diagonals: None,
+            apex: T::ZERO,
         }
     }
 
@@ -39,6 +43,7 @@ impl<T: Scalar> Friction<T> {
         Self {
             axes,
             diagonals: Some((axes + across) * T::of(core::f64::consts::FRAC_1_SQRT_2)),
+            apex: T::ZERO,
         }
     }
 
@@ -100,7 +105,9 @@ mod tests {
             assert!(reach(&friction, 0.0) <= axes + 1e-12);
         }
         // What is steeper than the regular octagon becomes the regular octagon.
-        let Friction { axes, diagonals } = Friction::within_cone(0.9f64, 0.5);
+        let Friction {
+            axes, diagonals, ..
+        } = Friction::within_cone(0.9f64, 0.5);
         assert!((axes - diagonals.unwrap_or(0.0)).abs() < 1e-12);
     }
 

@@ -225,6 +225,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 natural(self.least_force),
                 "least_force: must not be negative",
             ),
+            (
+                natural(self.friction.apex),
+                "friction.apex: must not be negative",
+            ),
             (natural(self.swing_rise), "swing_rise: must not be negative"),
             (positive(self.drift), "drift: must be positive"),
             (

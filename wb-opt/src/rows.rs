@@ -150,8 +150,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             }
         }
         for _ in 0..groups.feet {
-            for _ in 0..self.friction.sides() {
-                push(T::ZERO, T::INFINITY, T::ONE);
+            for [_, _, mu] in self.friction.gradients().take(self.friction.sides()) {
+                push(mu * self.friction.apex, T::INFINITY, units.force);
             }
             push(self.least_force, T::INFINITY, units.force);
         }

@@ -80,8 +80,3 @@ impl Clearance {
         found.into_iter().flatten()
     }
 }
-
-/// Whether a margin is one of these.
-pub(crate) fn is_clearance(name: &str) -> bool {
-    KINDS.iter().any(|kind| name.ends_with(kind))
-}

@@ -1,7 +1,7 @@
 //! Every limit, in every step.
 
 use super::clearance::Clearance;
-use super::{Held, Margin};
+use super::{Held, Limit, Margin};
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use crate::stored::joint_name;
 use jump_control::container::{GroundStep, Header};
@@ -23,7 +23,8 @@ pub(crate) struct Limits<'a> {
     clearance: Clearance,
     friction: f64,
     force_range: f64,
-    names: Vec<String>,
+    /// Kinds and names.
+    limits: Vec<(Limit, String)>,
     pub(crate) saturation: [f64; JOINTS],
     pub(crate) any_saturation: f64,
     /// The smallest of each limit so far, by its name's index.
@@ -35,11 +36,21 @@ impl<'a> Limits<'a> {
         let clearance = Clearance::new(robot, header.ground, start);
         let names = (0..JOINTS).map(|i| joint_name(robot, i));
         let names = names.flat_map(|joint| {
-            ["position", "speed", "torque"].map(|limit| format!("{joint} {limit}"))
+            let of_joint = [
+                (Limit::Position, "position"),
+                (Limit::Speed, "speed"),
+                (Limit::Torque, "torque"),
+            ];
+            of_joint.map(|(limit, name)| (limit, format!("{joint} {name}")))
         });
         let feet = (0..LEGS).flat_map(|leg| {
-            ["friction", "normal force", "foot height", "knee height"]
-                .map(|limit| format!("{} {limit}", robot.place(leg)))
+            let of_leg = [
+                (Limit::Friction, "friction"),
+                (Limit::NormalForce, "normal force"),
+                (Limit::Height, "foot height"),
+                (Limit::Height, "knee height"),
+            ];
+            of_leg.map(|(limit, name)| (limit, format!("{} {name}", robot.place(leg))))
         });
         Self {
             robot,
@@ -47,10 +58,10 @@ impl<'a> Limits<'a> {
             ground: header.ground,
             friction: f64::from(header.margins.friction),
             force_range: f64::from(header.margins.max_force),
-            names: names
+            limits: names
                 .chain(feet)
-                .chain(["trunk height".to_owned()])
-                .chain(clearance.names())
+                .chain([(Limit::Height, "trunk height".to_owned())])
+                .chain(clearance.names().map(|name| (Limit::Clearance, name)))
                 .collect(),
             clearance,
             saturation: [0.0; JOINTS],
@@ -69,7 +80,7 @@ impl<'a> Limits<'a> {
         held: &Held,
         forces_w: &[Vector3<f64>; LEGS],
     ) {
-        let mut values = Vec::with_capacity(self.names.len());
+        let mut values = Vec::with_capacity(self.limits.len());
         let mut saturated = false;
         for (i, limit) in Model::limits(self.robot).iter().enumerate() {
             let inside = f64::min(q.joints[i] - limit.lower, limit.upper - q.joints[i]);
@@ -132,12 +143,13 @@ impl<'a> Limits<'a> {
     /// Keeps the smallest value of each limit; limits that do not hold now are NaN, those without bounds infinite.
     fn remember(&mut self, time: f64, values: &[f64]) {
         if self.margins.is_empty() {
-            let empty = |name: &String| Margin {
+            let empty = |(limit, name): &(Limit, String)| Margin {
+                limit: *limit,
                 name: name.clone(),
                 value: f64::INFINITY,
                 time,
             };
-            self.margins = self.names.iter().map(empty).collect();
+            self.margins = self.limits.iter().map(empty).collect();
         }
         for (margin, value) in self.margins.iter_mut().zip(values) {
             if *value < margin.value {

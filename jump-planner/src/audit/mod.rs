@@ -16,7 +16,6 @@ mod values;
 
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use crate::stored::Stored;
-use clearance::is_clearance;
 use forward::{Forward, Velocity};
 use jump_control::container::PlanNode;
 use limits::Limits;
@@ -38,9 +37,30 @@ const FORCE: f64 = 0.02;
 /// How far a limit may be exceeded between nodes, as a share of its range.
 const BEYOND: f64 = 0.01;
 
+/// What a margin is one of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Range of a joint.
+    Position,
+    /// Speed of a joint.
+    Speed,
+    /// Torque of a joint at its speed.
+    Torque,
+    /// Friction cone of a foot.
+    Friction,
+    /// A foot that stands pushes.
+    NormalForce,
+    /// Height over the ground of a foot, a knee or the trunk.
+    Height,
+    /// Gap of a link to the ground or to the rest of the robot.
+    Clearance,
+}
+
 /// The smallest distance from one limit over the whole plan.
 #[derive(Clone, Debug)]
 pub struct Margin {
+    /// Its kind.
+    pub limit: Limit,
     /// Which limit, of which joint or foot.
     pub name: String,
     /// Distance as a share of the limit's range; negative beyond it.
@@ -143,6 +163,22 @@ impl Audit {
         })
     }
 
+    /// Of a true motion with these margins.
+    #[cfg(test)]
+    pub(crate) fn with_margins(margins: Vec<Margin>) -> Self {
+        Self {
+            checksum: 0,
+            flight_orientation_error: 0.0,
+            flight_position_error: 0.0,
+            saturation: [0.0; JOINTS],
+            any_saturation: 0.0,
+            defect: [0.0; 2],
+            force_error: 0.0,
+            margins,
+            leg_length: 1.0,
+        }
+    }
+
     /// Whether the plan may be called solved.
     #[must_use]
     pub fn passes(&self) -> bool {
@@ -153,11 +189,17 @@ impl Audit {
     /// simulation, which shows what comes of it.
     #[must_use]
     pub fn is_a_motion(&self) -> bool {
-        let mut inner = self.margins.iter().filter(|m| !is_clearance(&m.name));
-        self.flight_orientation_error <= ORIENTATION
+        self.exceeded()
+            .is_some_and(|mut beyond| beyond.all(|margin| margin.limit == Limit::Clearance))
+    }
+
+    /// The limits that are exceeded; none is told of a plan that is not true to the dynamics.
+    pub(crate) fn exceeded(&self) -> Option<impl Iterator<Item = &Margin>> {
+        let is_true = self.flight_orientation_error <= ORIENTATION
             && self.flight_position_error <= POSITION
-            && self.agrees()
-            && inner.all(|margin| margin.value >= -BEYOND)
+            && self.agrees();
+        let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
+        is_true.then_some(beyond)
     }
 
     /// Whether the nodes are those of one motion, and the forces those that move it.
@@ -204,7 +246,7 @@ impl Audit {
         }
         let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
         told.extend(beyond.map(|m| {
-            if is_clearance(&m.name) {
+            if m.limit == Limit::Clearance {
                 let deep = -1e3 * m.value * self.leg_length;
                 let through = m.name.replace(" to ", " passes through ");
                 return format!("{through} by {deep:.0} mm at {:.3} s", m.time);

@@ -133,6 +133,15 @@ impl Task {
         })
     }
 
+    /// Whether there is nothing to choose in the durations of the phases.
+    #[must_use]
+    pub fn has_given_durations(&self) -> bool {
+        let phases = self.problem.used_phases().iter();
+        phases
+            .into_iter()
+            .all(|phase| phase.min_duration >= phase.max_duration)
+    }
+
     fn of(name: &str, file: &TaskFile, robot: Quadruped) -> Result<Self, Unusable> {
         values::limits(&file.limits)?;
         values::weights(&file.weights)?;

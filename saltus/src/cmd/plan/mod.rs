@@ -72,6 +72,9 @@ pub(crate) struct Args {
     /// Print every iteration to standard error.
     #[arg(long)]
     trace: bool,
+    /// Tell every solve of the whole body on the way to the answer: durations, intervals, torque, and what was drawn in after an audit.
+    #[arg(long, requires = "task", conflicts_with_all = ["reference", "problem"])]
+    explain: bool,
     /// Reference problems: barrier rule.
     #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"], conflicts_with = "task")]
     barrier: String,

@@ -10,6 +10,7 @@ use core::ops::ControlFlow;
 use indicatif::ProgressBar;
 use jump_planner::audit::Audit;
 use jump_planner::task::Task;
+use jump_planner::whole_body::Attempt;
 use jump_planner::{Outcome, Step, Timing};
 use serde_json::{Value, json};
 use std::process::ExitCode;
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args, name: &str) -> ExitCode {
         let error = result.as_ref().err().map(Failure::message);
         say!("{}", report.json(&brief(name), error.as_ref()));
     } else if result.is_ok() && !args.output.quiet {
-        report.print(name);
+        report.print(name, args.explain);
     }
     match result {
         Ok(()) if report.found.answer.is_none() => ExitCode::SUCCESS,
@@ -61,6 +62,7 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         let stage = match step {
             Step::Body => "body",
             Step::WholeBody => "whole body",
+            Step::Durations => "whole body, with durations of its own",
             Step::Relaxations => "looking for what would have to change",
         };
         let Some(progress) = progress else {
@@ -152,6 +154,7 @@ impl Report {
                 "cost": plan.judged.cost,
                 "max_violation": plan.judged.max_violation,
             })),
+            "path": self.found.path.iter().map(Attempt::json).collect::<Vec<_>>(),
             "audit": self.found.audit.as_ref().map(Audit::json),
         });
         if let Some(answer) = &self.found.answer {
@@ -164,7 +167,7 @@ impl Report {
     }
 
     /// The report for people.
-    fn print(&self, name: &str) {
+    fn print(&self, name: &str, explain: bool) {
         say!("{name}: {}", self.status());
         let phases: Vec<String> = (self.phases().iter())
             .map(|(name, t)| format!("{name} {t:.3} s"))
@@ -190,6 +193,9 @@ impl Report {
                 plan.judged.max_violation,
                 plan.judged.peak_effort
             );
+        }
+        for attempt in self.found.path.iter().filter(|_| explain) {
+            say!("    {attempt}");
         }
         if let Some(audit) = &self.found.audit {
             say!("  audit       {}", audit.summary());
