@@ -27,20 +27,6 @@ macro_rules! six_vector {
                 }
             }
 
-            /// self + other · factor.
-            #[inline(always)]
-            #[must_use]
-            pub(crate) fn plus(&self, other: &Self, factor: T) -> Self {
-                let sum = |a: &Vector3<T>, b: &Vector3<T>| {
-                    let term = |a: T, b: T| so3::math::mul_add(b, factor, a);
-                    Vector3::new(term(a.x, b.x), term(a.y, b.y), term(a.z, b.z))
-                };
-                Self {
-                    linear: sum(&self.linear, &other.linear),
-                    angular: sum(&self.angular, &other.angular),
-                }
-            }
-
             /// Its six coordinates, linear first.
             #[inline(always)]
             #[must_use]
