@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+pub mod abreast;
 pub mod algo;
 pub mod convert;
 pub mod hardware;

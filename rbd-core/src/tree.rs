@@ -3,7 +3,7 @@
 //! A [`Fold`] says what happens at *one* body: [`Fold::down`] goes from parent to child, and
 //! [`Fold::up`] returns from the children to the parent. A model says in which order bodies come:
 //! a const model by [`tree!`](macro@crate::tree), which writes the walk with joint kinds resolved and
-//! identical limbs as one loop, a run-time model by [`walk`], which looks the kinds up. Both call the
+//! identical limbs as one loop or abreast, a run-time model by [`walk`], which looks the kinds up. Both call the
 //! same per-body code, so there is one RNEA, not one per robot or per kind of model.
 
 use core::ops::Add;
@@ -11,6 +11,7 @@ use core::ops::Add;
 use heapless::Vec;
 use so3::Scalar;
 
+use crate::abreast::Abreast;
 use crate::algo::at;
 use crate::joint::{
     JointKind, Kind, PrismaticTilted, PrismaticX, PrismaticY, PrismaticZ, RevoluteTilted,
@@ -43,12 +44,17 @@ impl Add for Nothing {
 
 /// What an algorithm does at each body.
 pub trait Fold<T: Scalar> {
+    /// Whether it pays to walk identical limbs abreast ([`crate::abreast`]).
+    const ABREAST: bool = true;
+    /// Whether the code for one body is so long that a walk should call it instead of repeating it for every joint: what
+    /// does not fit a processor's cache of decoded instructions runs at two thirds of the speed.
+    const LONG: bool = false;
     /// What a parent hands to its children.
-    type Down: Copy;
+    type Down: Abreast;
     /// What a body remembers between the way down and the way up.
-    type Keep: Copy + Default;
+    type Keep: Abreast + Default;
     /// What children hand back; siblings add up. The default is what a leaf receives.
-    type Up: Copy + Default + Add<Output = Self::Up>;
+    type Up: Abreast + Default + Add<Output = Self::Up>;
 
     /// From the parent to this body.
     fn down<J: JointKind>(
@@ -191,7 +197,8 @@ pub fn walk<T: Scalar, F: Fold<T>, const N: usize>(
     total
 }
 
-/// Writes the walk of a const model: limbs as chains of joint kinds, identical limbs as one loop.
+/// Writes the walk of a const model: limbs as chains of joint kinds, identical limbs as one loop, or
+/// [`abreast`](crate::abreast) where there are vector registers for them.
 ///
 /// `count * [Kind, Kind, …]` is that many chains one after the other in the table; a chain may end in
 /// `{ … }`, the branches that its last body carries.
@@ -236,23 +243,36 @@ macro_rules! tree {
                 &$bodies
             }
             #[inline(always)]
-            #[allow(unused_assignments, clippy::modulo_one, reason = "the first limb is last for some robots")]
+            #[allow(unused_assignments, reason = "the first limb is last for some robots")]
             fn fold<F: $crate::tree::Fold<$T>>(&self, fold: &mut F, base: &F::Down) -> F::Up {
                 $crate::tree!(@branches fold, (&$bodies), 0, base, $($branches)*)
             }
         }
     };
-    // Branches of one body, first limb at index $first.
+    // Branches of one body, first limb at index $first: identical limbs abreast, or one after the other.
     (@branches $fold:ident, $bodies:tt, $first:expr, $parent:expr, $($count:literal * [$($chain:tt)*]),* $(,)?) => {{
         let mut sum = F::Up::default();
         let mut first = $first;
-        $(
-            for limb in 0..$count {
-                let start = first + limb * $crate::tree!(@len $($chain)*);
-                sum = sum + $crate::tree!(@chain $fold, $bodies, start, $parent, $($chain)*);
+        $({
+            const LENGTH: usize = $crate::tree!(@len $($chain)*);
+            const ABREAST: usize = $crate::abreast::limbs_abreast($count);
+            if F::ABREAST && ABREAST > 1 {
+                for group in 0..$count / ABREAST {
+                    let start = first + group * ABREAST * LENGTH;
+                    let parents = $crate::abreast::repeat::<F::Down, ABREAST>($parent);
+                    let limbs = $crate::tree!(@abreast $fold, $bodies, start, LENGTH, ABREAST, parents, $($chain)*);
+                    for limb in 0..ABREAST {
+                        sum = sum + $crate::abreast::of::<F::Up, ABREAST>(&limbs, limb);
+                    }
+                }
+            } else {
+                for limb in 0..$count {
+                    let start = first + limb * LENGTH;
+                    sum = sum + $crate::tree!(@chain $fold, $bodies, start, $parent, $($chain)*);
+                }
             }
-            first += $count * $crate::tree!(@len $($chain)*);
-        )*
+            first += $count * LENGTH;
+        })*
         sum
     }};
     // A chain: joint after joint, then branches or nothing.
@@ -267,10 +287,36 @@ macro_rules! tree {
             end: index + 1 $(+ $crate::tree!(@len $($rest)*))?,
             body: $crate::tree::row($bodies, index),
         };
-        let (down, keep) = $fold.down::<$crate::joint::$J>(at, $parent);
-        let children = $crate::tree!(@chain $fold, $bodies, index + 1, &down, $($($rest)*)?);
-        let _ = &down;
-        $fold.up::<$crate::joint::$J>(at, &keep, children)
+        let passed = $crate::tree::down::<$crate::joint::$J, F, _>($fold, at, $parent);
+        let children = $crate::tree!(@chain $fold, $bodies, index + 1, &passed.0, $($($rest)*)?);
+        let _ = &passed.0;
+        $crate::tree::up::<$crate::joint::$J, F, _>($fold, at, &passed.1, children)
+    }};
+    // The same chain of $count limbs, each $length bodies after the one before.
+    (@abreast $fold:ident, $bodies:tt, $i:expr, $length:ident, $count:ident, $parents:expr,) => {
+        $crate::abreast::repeat::<F::Up, $count>(&F::Up::default())
+    };
+    (@abreast $fold:ident, $bodies:tt, $i:expr, $length:ident, $count:ident, $parents:expr, { $($branches:tt)* }) => {{
+        let parents = $parents;
+        let mut ups = $crate::abreast::repeat::<F::Up, $count>(&F::Up::default());
+        for limb in 0..$count {
+            let parent = &$crate::abreast::of::<F::Down, $count>(&parents, limb);
+            let up = $crate::tree!(@branches $fold, $bodies, $i + limb * $length, parent, $($branches)*);
+            $crate::abreast::set::<F::Up, $count>(&mut ups, limb, up);
+        }
+        ups
+    }};
+    (@abreast $fold:ident, $bodies:tt, $i:expr, $length:ident, $count:ident, $parents:expr, $J:ident $(, $($rest:tt)*)?) => {{
+        let joints = $crate::abreast::Joints {
+            bodies: $bodies,
+            first: $i,
+            end: $i + 1 $(+ $crate::tree!(@len $($rest)*))?,
+            length: $length,
+        };
+        let (downs, keeps) = joints.down::<$crate::joint::$J, F, $count>($fold, &$parents);
+        let children = $crate::tree!(@abreast $fold, $bodies, $i + 1, $length, $count, downs, $($($rest)*)?);
+        let _ = &downs;
+        joints.up::<$crate::joint::$J, F, $count>($fold, &keeps, &children)
     }};
     // Number of bodies in a chain.
     (@len) => { 0 };
@@ -289,4 +335,57 @@ pub fn row<T, const N: usize>(bodies: &[Body<T>; N], index: usize) -> &Body<T> {
         Some(body) => body,
         None => &bodies[0],
     }
+}
+
+/// [`Fold::down`], repeated here or called.
+#[doc(hidden)]
+#[inline(always)]
+pub fn down<J: JointKind, F: Fold<T>, T: Scalar>(
+    fold: &mut F,
+    at: At<'_, T>,
+    parent: &F::Down,
+) -> (F::Down, F::Keep) {
+    if F::LONG && HAS_DECODED_CACHE {
+        called_down::<J, F, T>(fold, at, parent)
+    } else {
+        fold.down::<J>(at, parent)
+    }
+}
+
+/// [`Fold::up`], repeated here or called.
+#[doc(hidden)]
+#[inline(always)]
+pub fn up<J: JointKind, F: Fold<T>, T: Scalar>(
+    fold: &mut F,
+    at: At<'_, T>,
+    keep: &F::Keep,
+    children: F::Up,
+) -> F::Up {
+    if F::LONG && HAS_DECODED_CACHE {
+        called_up::<J, F, T>(fold, at, keep, children)
+    } else {
+        fold.up::<J>(at, keep, children)
+    }
+}
+
+/// Firmware's processors decode what they fetch, and there a call costs more than it saves.
+const HAS_DECODED_CACHE: bool = cfg!(target_arch = "x86_64");
+
+#[inline(never)]
+fn called_down<J: JointKind, F: Fold<T>, T: Scalar>(
+    fold: &mut F,
+    at: At<'_, T>,
+    parent: &F::Down,
+) -> (F::Down, F::Keep) {
+    fold.down::<J>(at, parent)
+}
+
+#[inline(never)]
+fn called_up<J: JointKind, F: Fold<T>, T: Scalar>(
+    fold: &mut F,
+    at: At<'_, T>,
+    keep: &F::Keep,
+    children: F::Up,
+) -> F::Up {
+    fold.up::<J>(at, keep, children)
 }

@@ -15,6 +15,7 @@ use super::jacobian::columns;
 use super::motion::carried;
 use super::rnea::reactions;
 use super::{at, moving_base, place, put};
+use crate::abreast::abreast_as;
 use crate::joint::{JointKind, JointRotation};
 use crate::linear::ldl_solve;
 use crate::spatial::{Force, Inertia, Motion, Symmetric3, Transform, cross, product};
@@ -196,6 +197,12 @@ struct Moving<T> {
     mass: T,
     first: Vector3<T>,
 }
+
+abreast_as!(
+    Moving<T> => (Force<T>, ([T; 1], Vector3<T>)),
+    |m| (m.momentum, ([m.mass], m.first)),
+    |(momentum, ([mass], first))| Self { momentum, mass, first }
+);
 
 impl<T: Scalar> Default for Moving<T> {
     fn default() -> Self {

@@ -6,6 +6,7 @@ use so3::Scalar;
 use super::crba::unit_force;
 use super::rnea::Field;
 use super::{at, moving_base, place, put};
+use crate::abreast::abreast_as;
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Body;
 use crate::spatial::{Inertia, Symmetric3};
@@ -18,6 +19,12 @@ pub(crate) struct Moments<T> {
     pub(crate) mass: T,
     pub(crate) first: Vector3<T>,
 }
+
+abreast_as!(
+    Moments<T> => ([T; 1], Vector3<T>),
+    |m| ([m.mass], m.first),
+    |([mass], first)| Self { mass, first }
+);
 
 impl<T: Scalar> Moments<T> {
     #[inline(always)]
@@ -230,6 +237,12 @@ struct Linear<T> {
     momentum: Vector3<T>,
     rate: Vector3<T>,
 }
+
+abreast_as!(
+    Linear<T> => (Moments<T>, (Vector3<T>, Vector3<T>)),
+    |l| (l.moments, (l.momentum, l.rate)),
+    |(moments, (momentum, rate))| Self { moments, momentum, rate }
+);
 
 impl<T: Scalar> Default for Linear<T> {
     fn default() -> Self {

@@ -10,7 +10,7 @@ use so3::Scalar;
 
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{ArticulatedInertia, Force, Inertia, cross};
+use crate::spatial::{ArticulatedInertia, Force, Inertia, add_cross};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Nothing, Tree};
 
@@ -95,7 +95,7 @@ impl<T: Scalar, const N: usize> MassMatrix<T, N> {
 struct Crba<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
     /// F_i on its way to the base, by components, so that several walk at once.
-    forces: [[T; N]; 6],
+    forces: &'a mut [[T; N]; 6],
     joints: &'a mut [[T; N]; N],
 }
 
@@ -124,14 +124,15 @@ impl<T: Scalar, const N: usize> Fold<T> for Crba<'_, T, N> {
         for (row, x) in self.forces.iter_mut().zip(own.to_array()) {
             put(row, i, x);
         }
-        let mut j = i;
-        while j + LANES <= here.end {
+        // Counted from the tip, so that joint after joint loads the lanes together that the last one stored together.
+        let mut j = here.end;
+        while j >= i + LANES {
+            j -= LANES;
             self.pass::<J, LANES>(i, j, sign, &rotation, &offset);
-            j += LANES;
         }
-        while j < here.end {
+        while j > i {
+            j -= 1;
             self.pass::<J, 1>(i, j, sign, &rotation, &offset);
-            j += 1;
         }
         if let Some(x) = self.joints.get_mut(i).and_then(|row| row.get_mut(i)) {
             *x += here.body.rotor_inertia;
@@ -156,7 +157,7 @@ impl<T: Scalar, const N: usize> Crba<'_, T, N> {
         offset: &Vector3<T>,
     ) {
         let mut force = [[T::ZERO; L]; 6];
-        for (to, from) in force.iter_mut().zip(&self.forces) {
+        for (to, from) in force.iter_mut().zip(self.forces.iter()) {
             if let Some(from) = from.get(j..).and_then(|rest| rest.first_chunk()) {
                 *to = *from;
             }
@@ -173,7 +174,7 @@ impl<T: Scalar, const N: usize> Crba<'_, T, N> {
             };
             entries[l] = sign * J::component(part);
             let linear = rotation.up(&linear);
-            let angular = rotation.up(&angular) + cross(offset, &linear);
+            let angular = add_cross(&rotation.up(&angular), offset, &linear);
             [fx[l], fy[l], fz[l]] = linear.into();
             [mx[l], my[l], mz[l]] = angular.into();
         }
@@ -240,13 +241,14 @@ pub fn crba<T: Scalar, M: Tree<T, N>, const N: usize>(
         coupling,
         joints,
     } = out;
+    let mut forces = [[T::ZERO; N]; 6];
     let mut fold = Crba {
         posture,
-        forces: [[T::ZERO; N]; 6],
+        forces: &mut forces,
         joints,
     };
     let children = model.fold(&mut fold, &Nothing);
-    let [fx, fy, fz, mx, my, mz] = &fold.forces;
+    let [fx, fy, fz, mx, my, mz] = &forces;
     for (i, column) in coupling.iter_mut().enumerate() {
         *column = Force {
             linear: Vector3::new(at(fx, i), at(fy, i), at(fz, i)),

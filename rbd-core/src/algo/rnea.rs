@@ -17,8 +17,9 @@ use so3::{Scalar, math};
 
 use super::gravity::gravity;
 use super::{at, place, put};
+use crate::abreast::abreast_as;
 use crate::joint::{JointKind, JointRotation};
-use crate::spatial::{Force, Inertia, Motion, cross, product};
+use crate::spatial::{Force, Inertia, Motion, add_cross, add_product};
 use crate::state::{Effort, Posture, Tangent};
 use crate::tree::{At, Fold, Tree};
 
@@ -31,6 +32,12 @@ pub(crate) struct Field<T> {
     /// U = hat(ω̇) + hat(ω)².
     pub(crate) gradient: Matrix3<T>,
 }
+
+abreast_as!(
+    Field<T> => (Vector3<T>, (Vector3<T>, (Vector3<T>, Matrix3<T>))),
+    |f| (f.omega, (f.alpha, (f.acceleration, f.gradient))),
+    |(omega, (alpha, (acceleration, gradient)))| Self { omega, alpha, acceleration, gradient }
+);
 
 impl<T: Scalar> Field<T> {
     #[inline(always)]
@@ -67,7 +74,7 @@ impl<T: Scalar> Field<T> {
     ) -> Self {
         let omega = rotation.down(&self.omega);
         let alpha = rotation.down(&self.alpha);
-        let acceleration = rotation.down(&(self.acceleration + product(&self.gradient, offset)));
+        let acceleration = rotation.down(&add_product(&self.acceleration, &self.gradient, offset));
         if J::KIND.is_revolute() {
             let alpha = J::add_cross_axis(J::along_axis(alpha, qdd), &omega, qd);
             Self::new(J::along_axis(omega, qd), alpha, acceleration)
@@ -104,8 +111,8 @@ impl<T: Scalar> Field<T> {
             row(u.m21, u.m22, u.m23, s.xx, s.xy, s.xz) - row(u.m11, u.m12, u.m13, s.xy, s.yy, s.yz),
         );
         Force {
-            linear: self.acceleration * body.mass + product(u, &body.first),
-            angular: cross(&body.first, &self.acceleration) + moment,
+            linear: add_product(&(self.acceleration * body.mass), u, &body.first),
+            angular: add_cross(&moment, &body.first, &self.acceleration),
         }
     }
 }
@@ -117,7 +124,7 @@ struct Rnea<'a, T: Scalar, const N: usize> {
     acceleration: Option<&'a [T; N]>,
     /// Forces applied to the bodies, each in its body's frame; `None` stands for zero.
     applied: Option<&'a [Force<T>; N]>,
-    effort: [T; N],
+    effort: &'a mut [T; N],
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
@@ -158,11 +165,11 @@ impl<T: Scalar, const N: usize> Fold<T> for Rnea<'_, T, N> {
             &force.linear
         });
         let rotor = at_rotor(self.acceleration, here);
-        put(&mut self.effort, here.index, along * here.body.sign + rotor);
+        put(self.effort, here.index, along * here.body.sign + rotor);
         let linear = rotation.up(&force.linear);
         Force {
             linear,
-            angular: rotation.up(&force.angular) + cross(&offset, &linear),
+            angular: add_cross(&rotation.up(&force.angular), &offset, &linear),
         }
     }
 }
@@ -186,15 +193,15 @@ pub(crate) fn reactions<T: Scalar, M: Tree<T, N>, const N: usize>(
 ) -> (Field<T>, Effort<T, N>) {
     let a = acceleration.map_or(Motion::ZERO, |a| a.base);
     let field = Field::base(posture, &velocity.base, &a, gravity_w);
+    let mut joints = [T::ZERO; N];
     let mut fold = Rnea {
         posture,
         velocity: &velocity.joints,
         acceleration: acceleration.map(|a| &a.joints),
         applied: applied.map(|f| f.1),
-        effort: [T::ZERO; N],
+        effort: &mut joints,
     };
     let base = model.fold(&mut fold, &field);
-    let joints = fold.effort;
     (field, Effort { base, joints })
 }
 

@@ -33,6 +33,7 @@ use so3::{Scalar, math};
 use super::subtree::{COMPOSITE, Composite};
 use super::table::{column, set_column};
 use super::{at, place, put};
+use crate::abreast::abreast_as;
 use crate::joint::{JointKind, JointRotation};
 use crate::model::Link;
 use crate::spatial::{Force, Inertia, Motion, Symmetric3, product};
@@ -351,6 +352,12 @@ struct Carrier<T> {
     acceleration: Motion<T>,
 }
 
+abreast_as!(
+    Carrier<T> => (Matrix3<T>, (Vector3<T>, (Motion<T>, Motion<T>))),
+    |c| (c.rotation, (c.origin, (c.velocity, c.acceleration))),
+    |(rotation, (origin, (velocity, acceleration)))| Self { rotation, origin, velocity, acceleration }
+);
+
 struct Outward<'a, T: Scalar, const N: usize> {
     posture: &'a Posture<T, N>,
     velocity: &'a [T; N],
@@ -359,6 +366,7 @@ struct Outward<'a, T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Outward<'_, T, N> {
+    const ABREAST: bool = false;
     type Down = Carrier<T>;
     type Keep = Nothing;
     type Up = Nothing;

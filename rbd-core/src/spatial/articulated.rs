@@ -51,6 +51,35 @@ impl<T: Scalar> ArticulatedInertia<T> {
         }
     }
 
+    /// The resistance together with that of a body in the same frame.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn with(&self, body: &Inertia<T>) -> Self {
+        let (m, h, i) = (body.mass, &body.first, body.rotational());
+        let (l, c) = (&self.linear, &self.cross);
+        Self {
+            linear: Symmetric3 {
+                xx: l.xx + m,
+                yy: l.yy + m,
+                zz: l.zz + m,
+                ..*l
+            },
+            // ω × h = −hat(h) ω
+            cross: Matrix3::new(
+                c.m11,
+                c.m12 + h.z,
+                c.m13 - h.y,
+                c.m21 - h.z,
+                c.m22,
+                c.m23 + h.x,
+                c.m31 + h.y,
+                c.m32 - h.x,
+                c.m33,
+            ),
+            angular: self.angular + i,
+        }
+    }
+
     /// A − f fᵀ · factor: what is left when the joint that feels `f` moves freely.
     #[inline(always)]
     #[must_use]
@@ -82,56 +111,55 @@ impl<T: Scalar> ArticulatedInertia<T> {
     pub fn shifted(&self, p: &Vector3<T>) -> Self {
         // Motion of the old origin: a_old = a + α × p = a − P α. Hence
         // f = M a + (H − M P) α,  n_new = n_old + p × f.
-        let row = |a: T, b: T, c: T, d: T| mul_add(a, b, -(c * d));
-        let m = &self.linear;
+        let less = |start: T, a: T, b: T, c: T, d: T| mul_add(c, d, mul_add(-a, b, start));
+        let (m, g) = (&self.linear, &self.cross);
         // M P, column by column: column j of P is p × e_j.
-        let mp = Matrix3::new(
-            row(m.xy, p.z, m.xz, p.y),
-            row(m.xz, p.x, m.xx, p.z),
-            row(m.xx, p.y, m.xy, p.x),
-            row(m.yy, p.z, m.yz, p.y),
-            row(m.yz, p.x, m.xy, p.z),
-            row(m.xy, p.y, m.yy, p.x),
-            row(m.yz, p.z, m.zz, p.y),
-            row(m.zz, p.x, m.xz, p.z),
-            row(m.xz, p.y, m.yz, p.x),
+        let h = Matrix3::new(
+            less(g.m11, m.xy, p.z, m.xz, p.y),
+            less(g.m12, m.xz, p.x, m.xx, p.z),
+            less(g.m13, m.xx, p.y, m.xy, p.x),
+            less(g.m21, m.yy, p.z, m.yz, p.y),
+            less(g.m22, m.yz, p.x, m.xy, p.z),
+            less(g.m23, m.xy, p.y, m.yy, p.x),
+            less(g.m31, m.yz, p.z, m.zz, p.y),
+            less(g.m32, m.zz, p.x, m.xz, p.z),
+            less(g.m33, m.xz, p.y, m.yz, p.x),
         );
-        let h = self.cross - mp;
         // I' = I − Hᵀ P + P H'  =  I + (P H)ᵀ + P H'. Both halves are needed; only the
         // symmetric entries are computed.
-        let g = &self.cross;
         // (P G)_{0j} = p_y G_{2j} − p_z G_{1j}, (P G)_{1j} = p_z G_{0j} − p_x G_{2j},
         // (P G)_{2j} = p_x G_{1j} − p_y G_{0j}
         let i = &self.angular;
+        let twice = |start: T, [a, b, c, d]: [T; 4], [e, f, g, h]: [T; 4]| {
+            less(less(start, c, d, a, b), g, h, e, f)
+        };
         Self {
             linear: self.linear,
             cross: h,
             angular: Symmetric3 {
-                xx: i.xx + row(p.y, g.m31, p.z, g.m21) + row(p.y, h.m31, p.z, h.m21),
-                yy: i.yy + row(p.z, g.m12, p.x, g.m32) + row(p.z, h.m12, p.x, h.m32),
-                zz: i.zz + row(p.x, g.m23, p.y, g.m13) + row(p.x, h.m23, p.y, h.m13),
-                xy: i.xy + row(p.z, g.m11, p.x, g.m31) + row(p.y, h.m32, p.z, h.m22),
-                xz: i.xz + row(p.x, g.m21, p.y, g.m11) + row(p.y, h.m33, p.z, h.m23),
-                yz: i.yz + row(p.x, g.m22, p.y, g.m12) + row(p.z, h.m13, p.x, h.m33),
+                xx: twice(i.xx, [p.y, g.m31, p.z, g.m21], [p.y, h.m31, p.z, h.m21]),
+                yy: twice(i.yy, [p.z, g.m12, p.x, g.m32], [p.z, h.m12, p.x, h.m32]),
+                zz: twice(i.zz, [p.x, g.m23, p.y, g.m13], [p.x, h.m23, p.y, h.m13]),
+                xy: twice(i.xy, [p.z, g.m11, p.x, g.m31], [p.y, h.m32, p.z, h.m22]),
+                xz: twice(i.xz, [p.x, g.m21, p.y, g.m11], [p.y, h.m33, p.z, h.m23]),
+                yz: twice(i.yz, [p.x, g.m22, p.y, g.m12], [p.z, h.m13, p.x, h.m33]),
             },
         }
     }
 
-    /// Acceleration under a force: solves the 6×6 system by L D Lᵀ.
+    /// Acceleration under a force: the inverse of the 6×6 matrix by its blocks, whose pivots wait for each other least, times
+    /// the force.
     ///
     /// A pivot that is not positive (no mass) yields zero acceleration in its direction.
+    #[inline]
     #[must_use]
     pub fn solve(&self, force: &Force<T>) -> Motion<T> {
-        let (l, c, a) = (&self.linear, &self.cross, &self.angular);
-        let mut m = [
-            [l.xx, l.xy, l.xz, c.m11, c.m12, c.m13],
-            [l.xy, l.yy, l.yz, c.m21, c.m22, c.m23],
-            [l.xz, l.yz, l.zz, c.m31, c.m32, c.m33],
-            [c.m11, c.m21, c.m31, a.xx, a.xy, a.xz],
-            [c.m12, c.m22, c.m32, a.xy, a.yy, a.yz],
-            [c.m13, c.m23, c.m33, a.xz, a.yz, a.zz],
-        ];
-        Motion::from_array(crate::linear::ldl_solve(&mut m, force.to_array()))
+        let inverse = crate::linear::spd_inverse_6(&self.to_rows());
+        let mut acceleration = [T::ZERO; 6];
+        for (row, x) in inverse.iter().zip(force.to_array()) {
+            crate::algo::blocks::add_scaled(&mut acceleration, x, row);
+        }
+        Motion::from_array(acceleration)
     }
 }
 

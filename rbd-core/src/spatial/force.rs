@@ -4,6 +4,7 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 use so3::Scalar;
+use so3::math::mul_add;
 
 use super::six::six_vector;
 
@@ -17,3 +18,19 @@ pub struct Force<T> {
 }
 
 six_vector!(Force);
+
+impl<T: Scalar> Force<T> {
+    /// self + other · factor.
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn plus(&self, other: &Self, factor: T) -> Self {
+        let sum = |a: &Vector3<T>, b: &Vector3<T>| {
+            let term = |a: T, b: T| mul_add(b, factor, a);
+            Vector3::new(term(a.x, b.x), term(a.y, b.y), term(a.z, b.z))
+        };
+        Self {
+            linear: sum(&self.linear, &other.linear),
+            angular: sum(&self.angular, &other.angular),
+        }
+    }
+}

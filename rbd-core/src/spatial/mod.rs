@@ -37,6 +37,27 @@ pub(crate) fn cross<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
     )
 }
 
+/// v + a × b.
+#[inline(always)]
+pub(crate) fn add_cross<T: Scalar>(v: &Vector3<T>, a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(
+        mul_add(-a.z, b.y, mul_add(a.y, b.z, v.x)),
+        mul_add(-a.x, b.z, mul_add(a.z, b.x, v.y)),
+        mul_add(-a.y, b.x, mul_add(a.x, b.y, v.z)),
+    )
+}
+
+/// v + M x.
+#[inline(always)]
+pub(crate) fn add_product<T: Scalar>(v: &Vector3<T>, m: &Matrix3<T>, x: &Vector3<T>) -> Vector3<T> {
+    let row = |start: T, a: T, b: T, c: T| mul_add(c, x.z, mul_add(b, x.y, mul_add(a, x.x, start)));
+    Vector3::new(
+        row(v.x, m.m11, m.m12, m.m13),
+        row(v.y, m.m21, m.m22, m.m23),
+        row(v.z, m.m31, m.m32, m.m33),
+    )
+}
+
 /// M v.
 #[inline(always)]
 pub(crate) fn product<T: Scalar>(m: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {

@@ -4,6 +4,7 @@ use core::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 use so3::Scalar;
+use so3::math::mul_add;
 
 use super::cross;
 use super::six::six_vector;
@@ -49,7 +50,8 @@ impl<T: Scalar> Motion<T> {
     #[inline(always)]
     #[must_use]
     pub fn dot(&self, force: &super::Force<T>) -> T {
-        self.linear.dot(&force.linear) + self.angular.dot(&force.angular)
+        let dot = |a: &Vector3<T>, b: &Vector3<T>| mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
+        dot(&self.linear, &force.linear) + dot(&self.angular, &force.angular)
     }
 
     /// Velocity of the point at `pos`, in the frame's axes: v + ω × r, in m/s.
