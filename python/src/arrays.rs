@@ -16,30 +16,34 @@ pub(crate) type Tables<'py> = Bound<'py, PyArray3<f64>>;
 
 /// Exactly `K` numbers.
 pub(crate) fn vector<const K: usize>(name: &str, x: &Numbers<'_>) -> PyResult<[f64; K]> {
-    let given = x.as_array();
-    if given.shape() != [K] {
-        return Err(bad(format!(
-            "{name}: must have shape ({K},), not {}",
-            shape(given.shape())
-        )));
-    }
     let mut out = [0.0; K];
-    for (to, from) in out.iter_mut().zip(given) {
-        *to = *from;
+    for (to, from) in out.iter_mut().zip(shaped(name, x, &[K])?) {
+        *to = from;
     }
     Ok(out)
 }
 
-/// A matrix, row by row.
-pub(crate) fn rows(name: &str, x: &Numbers<'_>, [n, m]: [usize; 2]) -> PyResult<Vec<f64>> {
+/// Any numbers of this shape, row by row.
+fn shaped(name: &str, x: &Numbers<'_>, wanted: &[usize]) -> PyResult<Vec<f64>> {
     let given = x.as_array();
-    if given.shape() != [n, m] {
+    if given.shape() != wanted {
         return Err(bad(format!(
-            "{name}: must have shape ({n}, {m}), not {}",
+            "{name}: must have shape {}, not {}",
+            shape(wanted),
             shape(given.shape())
         )));
     }
     Ok(given.iter().copied().collect())
+}
+
+/// `count` numbers.
+pub(crate) fn numbers(name: &str, x: &Numbers<'_>, count: usize) -> PyResult<Vec<f64>> {
+    shaped(name, x, &[count])
+}
+
+/// A matrix of this shape, row by row.
+pub(crate) fn matrix(name: &str, x: &Numbers<'_>, sizes: [usize; 2]) -> PyResult<Vec<f64>> {
+    shaped(name, x, &sizes)
 }
 
 /// As Python writes a shape.

@@ -4,12 +4,40 @@
 
 mod arrays;
 mod coordinates;
+mod envelope;
 mod errors;
+mod estimator;
+mod json;
+mod machine;
+mod observation;
+mod plan;
+mod planner;
+mod qp;
 mod robot;
+mod run;
+mod task;
 
 /// What Python imports.
 #[pyo3::pymodule]
 mod _saltus {
     #[pymodule_export]
+    use super::envelope::{Envelope, envelope};
+    #[pymodule_export]
+    use super::estimator::Estimator;
+    #[pymodule_export]
+    use super::machine::{Command, Machine, Tick};
+    #[pymodule_export]
+    use super::observation::Observation;
+    #[pymodule_export]
+    use super::plan::Plan;
+    #[pymodule_export]
+    use super::planner::plan;
+    #[pymodule_export]
+    use super::qp::{QpSolution, solve_qp};
+    #[pymodule_export]
     use super::robot::Robot;
+    #[pymodule_export]
+    use super::run::{Record, run};
+    #[pymodule_export]
+    use super::task::Task;
 }
