@@ -5,19 +5,49 @@
     plan = saltus.plan("a1/barrel-roll")
     print(plan.audit()["worst_margin"], saltus.run(plan).outcome)
 
-SI units and Pinocchio's conventions throughout: see `Robot`.
+SI units and Pinocchio's conventions throughout: see `Robot`. Tasks as dataclasses stand in `saltus.tasks`.
 """
 
-from saltus._saltus import Robot
+from saltus._saltus import (
+    Command,
+    Envelope,
+    Estimator,
+    Machine,
+    Observation,
+    Plan,
+    QpSolution,
+    Record,
+    Robot,
+    Task,
+    Tick,
+    envelope,
+    plan,
+    run,
+    solve_qp,
+)
 from saltus.errors import AuditFailed, BadInput, Error, Infeasible, NoPlan, NotFound, Refused
 
 __all__ = [
     "AuditFailed",
     "BadInput",
+    "Command",
+    "Envelope",
     "Error",
+    "Estimator",
     "Infeasible",
+    "Machine",
     "NoPlan",
     "NotFound",
+    "Observation",
+    "Plan",
+    "QpSolution",
+    "Record",
     "Refused",
     "Robot",
+    "Task",
+    "Tick",
+    "envelope",
+    "plan",
+    "run",
+    "solve_qp",
 ]
