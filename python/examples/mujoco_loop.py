@@ -84,7 +84,7 @@ def draw(picture: str, plan: saltus.Plan, times: np.ndarray, places: np.ndarray)
 
 def main(task: str = "a1/barrel-roll", urdf: str = str(A1), picture: str = "") -> None:
     """Plans, flies and draws."""
-    robot = saltus.Robot.a1() if urdf == str(A1) else saltus.Robot.load(urdf)
+    robot = saltus.Robot.a1() if A1.samefile(urdf) else saltus.Robot.load(urdf)
     plan = saltus.plan(task, robot)
     times, places, phase = fly(plan, world(urdf))
     up = 1 - 2 * (places[-1, 4] ** 2 + places[-1, 5] ** 2)

@@ -86,6 +86,7 @@ def plan(
     *,
     timing: str = "given",
 ) -> Plan: ...
+
 @final
 class Plan:
     @staticmethod
@@ -224,6 +225,7 @@ def run(
     interface: str = "torque",
     without: list[str] = ...,
 ) -> Record: ...
+
 @final
 class Record:
     @property
@@ -270,6 +272,7 @@ def envelope(
     without: list[str] = ...,
     jobs: int | None = None,
 ) -> Envelope: ...
+
 @final
 class Envelope:
     @property
@@ -304,6 +307,7 @@ def solve_qp(
     optimality: float = 1e-10,
     max_iterations: int = 4294967295,
 ) -> QpSolution: ...
+
 @final
 class QpSolution:
     @property

@@ -140,10 +140,10 @@ class Jump:
         head = ['robot = "a1"', f"goal_m = {_value(self.goal_m)}"]
         if self.trunk_may_touch:
             head.append("trunk_may_touch = true")
-        tables = [("turn", self.turn), ("box", self.box), ("total", self.total)]
-        tables += [("limits", self.limits), ("weights", self.weights)]
+        names = ("turn", "box", "total", "limits", "weights")
+        tables = ((f"[{name}]", getattr(self, name)) for name in names)
         parts = ["\n".join(head)]
-        parts += [_table(f"[{name}]", table) for name, table in tables if table is not None]
+        parts += [_table(title, table) for title, table in tables if table is not None]
         parts += [_table("[[phase]]", phase) for phase in self.phases]
         return "\n\n".join(part for part in parts if part) + "\n"
 

@@ -69,7 +69,7 @@ def test_the_built_in_robot_is_described() -> None:
         (lambda r, q, v: r.com(np.full(19, np.nan)), ["q[3:7]"]),
     ],
 )
-def test_arrays_that_cannot_be_are_named(wrong, words) -> None:  # noqa: ANN001
+def test_arrays_that_cannot_be_are_named(wrong, words) -> None:
     robot = saltus.Robot.a1()
     with pytest.raises(saltus.BadInput) as caught:
         wrong(robot, robot.neutral(), np.zeros(18))

@@ -20,7 +20,9 @@ def test_it_holds_the_first_node_then_walks_through_the_phases(lateral: saltus.P
     command = tick.command
     shapes = {x.shape for x in (command.q, command.dq, command.kp, command.kd, command.tau)}
     assert shapes == {(12,)}
-    assert np.allclose(command.tau + command.kp * (command.q - lateral.q[0, 7:]), lateral.tau[0], atol=0.5)
+    assert np.allclose(
+        command.tau + command.kp * (command.q - lateral.q[0, 7:]), lateral.tau[0], atol=0.5
+    )
     # A robot that does exactly what was planned.
     phases = []
     for k in range(-299, int(1e3 * lateral.touchdown)):

@@ -4,6 +4,7 @@ import os
 import signal
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from test_tasks import LATERAL
 
 import saltus
-from saltus.tasks import Jump, Limits, Phase
+from saltus.tasks import Jump, Limits
 
 
 def test_a_plan_is_a_motion(lateral: saltus.Plan) -> None:
@@ -79,11 +80,15 @@ def test_what_cannot_be_is_proven() -> None:
     assert caught.value.relaxations != []
 
 
+# The solver finds neither a plan nor a proof that there is none.
+SLIPPERY = replace(LATERAL, limits=Limits(friction=0.1))
+
+
 def test_what_is_not_found_says_what_blocks_and_what_would_help() -> None:
-    slippery = Jump((0.0, 0.3, 0.0), LATERAL.phases, limits=Limits(friction=0.35))
-    with pytest.raises(saltus.NoPlan) as caught:
-        saltus.plan(slippery.task())
-    assert type(caught.value) in (saltus.NotFound, saltus.Infeasible, saltus.AuditFailed)
+    with pytest.raises(saltus.NotFound, match="friction would have to be") as caught:
+        saltus.plan(SLIPPERY.task())
+    assert "goal along y" in caught.value.because
+    assert len(caught.value.relaxations) >= 2
     assert caught.value.because in str(caught.value)
 
 
@@ -107,12 +112,10 @@ def test_ctrl_c_ends_planning_also_while_it_looks_for_easier_tasks() -> None:
         if step == wanted:
             os.kill(os.getpid(), signal.SIGINT)
 
-    # A goal that high is found neither possible nor impossible at once.
-    high = Jump((0.0, 0.8, 0.0), [LATERAL.phases[0], Phase([], guess_s=0.3, max_s=0.3)])
-    for task, wanted in ((LATERAL.task(), "whole body"), (high.task(), "relaxations")):
+    for jump, wanted in ((LATERAL, "whole body"), (SLIPPERY, "relaxations")):
         steps: set[str] = set()
         with pytest.raises(KeyboardInterrupt):
-            saltus.plan(task, progress=interrupt)
+            saltus.plan(jump.task(), progress=interrupt)
         assert wanted in steps
 
 

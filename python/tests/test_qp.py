@@ -6,7 +6,9 @@ import pytest
 import saltus
 
 
-@pytest.mark.parametrize(("n", "m"), [(1, 0), (3, 5), (8, 16), (9, 3), (20, 40), (40, 90), (64, 128)])
+@pytest.mark.parametrize(
+    ("n", "m"), [(1, 0), (3, 5), (8, 16), (9, 3), (20, 40), (40, 90), (64, 128)]
+)
 def test_solutions_meet_the_conditions(n: int, m: int) -> None:
     random = np.random.default_rng(n)
     for _ in range(5):

@@ -61,7 +61,7 @@ def test_every_key_of_a_task_file_has_its_field() -> None:
         (lambda: Jump((0, 0, 1e9), []).task(name="far"), ["far", "goal_m", "100"]),
     ],
 )
-def test_what_is_wrong_is_named(make, words) -> None:  # noqa: ANN001
+def test_what_is_wrong_is_named(make, words) -> None:
     with pytest.raises(saltus.BadInput) as caught:
         make()
     assert all(word in str(caught.value) for word in words), caught.value
