@@ -7,6 +7,24 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = [
+    "Command",
+    "Envelope",
+    "Estimator",
+    "Machine",
+    "Observation",
+    "Plan",
+    "QpSolution",
+    "Record",
+    "Robot",
+    "Task",
+    "Tick",
+    "envelope",
+    "plan",
+    "run",
+    "solve_qp",
+]
+
 _Array = NDArray[np.float64]
 _Path = str | PathLike[str]
 
@@ -305,7 +323,7 @@ def solve_qp(
     *,
     feasibility: float = 1e-9,
     optimality: float = 1e-10,
-    max_iterations: int = 4294967295,
+    max_iterations: int | None = None,
 ) -> QpSolution: ...
 
 @final

@@ -26,7 +26,7 @@ use crate::task::Task;
 
 /// A plan that passed its audit: nodes from the posture in which the robot waits to the touchdown.
 ///
-/// Arrays have one row per node. Torques, forces and contacts hold from their node to the next. The first node, at a time below zero,
+/// Arrays have one row per node, and are made anew at every access. Torques, forces and contacts hold from their node to the next. The first node, at a time below zero,
 /// is the posture that waits.
 #[pyclass(frozen, module = "saltus")]
 pub(crate) struct Plan(pub(crate) Arc<Planned>);

@@ -73,11 +73,11 @@ fn fill(to: &mut [f64], from: &[f64]) {
 ///
 /// The solver of the workspace, with its own tolerances: `feasibility` is a distance from a row, `optimality` relative to the terms of the
 /// gradient. Its sizes are fixed when it is built: a program is padded to 8, 16, 32 or 64 variables and twice as many rows, and costs
-/// what the padded one does. At most 64 variables and 128 rows.
+/// what the padded one does. At most 64 variables and 128 rows. `max_iterations` caps rows that enter or leave, where it is given.
 ///
 /// Infeasible and unbounded programs are a status, not an exception. Raises BadInput for numbers that no solver could use, by name.
 #[pyfunction]
-#[pyo3(signature = (hessian, gradient, rows = None, row_lower = None, row_upper = None, lower = None, upper = None, *, feasibility = 1e-9, optimality = 1e-10, max_iterations = u32::MAX))]
+#[pyo3(signature = (hessian, gradient, rows = None, row_lower = None, row_upper = None, lower = None, upper = None, *, feasibility = 1e-9, optimality = 1e-10, max_iterations = None))]
 #[allow(
     clippy::too_many_arguments,
     reason = "a quadratic program has so many parts, and Python names its arguments"
@@ -92,7 +92,7 @@ pub(crate) fn solve_qp(
     upper: Option<Numbers<'_>>,
     feasibility: f64,
     optimality: f64,
-    max_iterations: u32,
+    max_iterations: Option<u32>,
 ) -> PyResult<QpSolution> {
     let n = gradient.as_array().len();
     let m = rows.as_ref().map_or(0, |rows| {
@@ -111,7 +111,7 @@ pub(crate) fn solve_qp(
     let settings = Settings {
         feasibility,
         optimality,
-        max_iterations,
+        max_iterations: max_iterations.unwrap_or(u32::MAX),
         ..Settings::default()
     };
     let answer = match (n, m) {

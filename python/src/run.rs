@@ -89,7 +89,7 @@ pub(crate) fn run(
     record.map_err(failed)
 }
 
-/// A run: one row per millisecond, and the verdict.
+/// A run: one row per millisecond, and the verdict. Arrays are made anew at every access.
 #[pyclass(frozen, module = "saltus")]
 pub(crate) struct Record {
     run: Run,

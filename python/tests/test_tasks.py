@@ -58,7 +58,8 @@ def test_every_key_of_a_task_file_has_its_field() -> None:
         (lambda: saltus.Task.load("a1/laterall"), ["a1/laterall", "a1/lateral,"]),
         (lambda: saltus.Task.from_toml("goal = 3", name="mine"), ["mine", "goal"]),
         (lambda: Jump((0, 0, 0), [Phase(["XX"], 0.4)]).task(), ["phase 1", "XX", "FL"]),
-        (lambda: Jump((0, 0, 1e9), []).task(name="far"), ["far", "goal_m", "100"]),
+        (lambda: Jump((0, 0, 0), []).task(), ["jump", "phase"]),
+        (lambda: Jump((0, 0, 1e9), LATERAL.phases).task(name="far"), ["far", "goal_m", "100"]),
     ],
 )
 def test_what_is_wrong_is_named(make, words) -> None:
