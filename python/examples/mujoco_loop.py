@@ -15,19 +15,28 @@ HOLD, SETTLE = 0.3, 2.0
 A1 = Path(__file__).parents[2] / "models/a1.urdf"
 
 
-def world(urdf: str) -> mujoco.MjModel:
-    """The URDF on a floor, with an IMU in its base."""
+def world(urdf: str, robot: saltus.Robot) -> mujoco.MjModel:
+    """The URDF on a floor, with an IMU in its base; of its shapes those of the feet alone, as the planner knows them."""
     spec = mujoco.MjSpec.from_file(urdf)
     spec.option.timestep = 1e-4
     base = spec.worldbody.first_body()
     base.add_freejoint()
     base.add_site(name="imu")
-    for geom in spec.geoms:
-        geom.contype = 0  # Links touch the floor, and not each other.
-    floor = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[9, 9, 1], priority=1)
+    for shape in [*spec.geoms, *spec.meshes]:
+        spec.delete(shape)
+    sphere, plane = mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_PLANE
+    floor = spec.worldbody.add_geom(type=plane, size=[9, 9, 1], priority=1)
     floor.friction[0] = 0.6
     for sensor in (mujoco.mjtSensor.mjSENS_ACCELEROMETER, mujoco.mjtSensor.mjSENS_GYRO):
         spec.add_sensor(type=sensor, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="imu")
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    shanks = [model.jnt_bodyid[model.joint(name).id] for name in robot.joint_names[2::3]]
+    for shank, foot in zip(shanks, robot.feet([0, 0, 0, 0, 0, 0, 1, *[0] * 12])):
+        place = data.xmat[shank].reshape(3, 3).T @ (foot - data.xpos[shank])
+        ball = {"type": sphere, "size": [robot.foot_radius, 0, 0], "pos": place, "contype": 0}
+        spec.body(model.body(shank).name).add_geom(**ball)
     return spec.compile()
 
 
@@ -86,7 +95,7 @@ def main(task: str = "a1/barrel-roll", urdf: str = str(A1), picture: str = "") -
     """Plans, flies and draws."""
     robot = saltus.Robot.a1() if A1.samefile(urdf) else saltus.Robot.load(urdf)
     plan = saltus.plan(task, robot)
-    times, places, phase = fly(plan, world(urdf))
+    times, places, phase = fly(plan, world(urdf, robot))
     up = 1 - 2 * (places[-1, 4] ** 2 + places[-1, 5] ** 2)
     print(f"{task}: {phase}, base at {places[-1, :3].round(3)}, upright {up:.3f}")
     if picture:

@@ -14,6 +14,7 @@ from saltus._saltus import (
     Estimator,
     Machine,
     Observation,
+    OcpSolution,
     Plan,
     QpSolution,
     Record,
@@ -23,6 +24,7 @@ from saltus._saltus import (
     envelope,
     plan,
     run,
+    solve_ocp,
     solve_qp,
 )
 from saltus.errors import AuditFailed, BadInput, Error, Infeasible, NoPlan, NotFound, Refused
@@ -39,6 +41,7 @@ __all__ = [
     "NoPlan",
     "NotFound",
     "Observation",
+    "OcpSolution",
     "Plan",
     "QpSolution",
     "Record",
@@ -49,5 +52,6 @@ __all__ = [
     "envelope",
     "plan",
     "run",
+    "solve_ocp",
     "solve_qp",
 ]

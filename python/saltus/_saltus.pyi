@@ -1,6 +1,6 @@
 # Types of the native half; what everything means stands in the docstrings, which Python's help() shows.
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, final
 
@@ -13,6 +13,7 @@ __all__ = [
     "Estimator",
     "Machine",
     "Observation",
+    "OcpSolution",
     "Plan",
     "QpSolution",
     "Record",
@@ -22,6 +23,7 @@ __all__ = [
     "envelope",
     "plan",
     "run",
+    "solve_ocp",
     "solve_qp",
 ]
 
@@ -33,7 +35,7 @@ class Robot:
     @staticmethod
     def a1() -> Robot: ...
     @staticmethod
-    def load(path: _Path, lock: list[str] = ...) -> Robot: ...
+    def load(path: _Path, lock: Sequence[str] = ...) -> Robot: ...
     @property
     def name(self) -> str: ...
     @property
@@ -241,7 +243,7 @@ def run(
     seed: int = 0,
     plant: str | None = None,
     interface: str = "torque",
-    without: list[str] = ...,
+    without: Sequence[str] = ...,
 ) -> Record: ...
 
 @final
@@ -287,7 +289,7 @@ def envelope(
     sim: str = "native",
     plant: str | None = None,
     interface: str = "torque",
-    without: list[str] = ...,
+    without: Sequence[str] = ...,
     jobs: int | None = None,
 ) -> Envelope: ...
 
@@ -344,3 +346,29 @@ class QpSolution:
     def iterations(self) -> int: ...
     @property
     def residual(self) -> tuple[float, float, float]: ...
+
+def solve_ocp(
+    evaluate: Callable[[int, _Array, _Array], tuple[ArrayLike, ArrayLike | None, ArrayLike | None]],
+    x: ArrayLike,
+    u: ArrayLike,
+    bounds: Callable[[int], tuple[ArrayLike, ArrayLike]] | None = None,
+    *,
+    free: Sequence[int] = ...,
+    max_iterations: int = 600,
+    progress: Callable[[int, float, float], object] | None = None,
+) -> OcpSolution: ...
+
+@final
+class OcpSolution:
+    @property
+    def status(self) -> str: ...
+    @property
+    def x(self) -> _Array: ...
+    @property
+    def u(self) -> _Array: ...
+    @property
+    def cost(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def violation(self) -> float: ...

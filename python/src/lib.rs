@@ -10,6 +10,7 @@ mod estimator;
 mod json;
 mod machine;
 mod observation;
+mod ocp;
 mod plan;
 mod planner;
 mod qp;
@@ -28,6 +29,8 @@ mod _saltus {
     use super::machine::{Command, Machine, Tick};
     #[pymodule_export]
     use super::observation::Observation;
+    #[pymodule_export]
+    use super::ocp::{OcpSolution, solve_ocp};
     #[pymodule_export]
     use super::plan::Plan;
     #[pymodule_export]
