@@ -48,11 +48,15 @@ impl Asked<'_> {
     fn ask(&self, k: usize, points: &[Vec<f64>]) -> PyResult<Vec<Told>> {
         let (nx, nu) = (self.sizes[0], self.controls(k));
         let (count, m, py) = (points.len(), self.rows(k), self.evaluate.py());
-        let part = |from: usize, to: usize| {
-            let numbers = points.iter().flat_map(|point| &point[from..to]);
-            PyArray1::from_iter(py, numbers.copied()).reshape([count, to - from])
-        };
-        let told = self.evaluate.call1((k, part(0, nx)?, part(nx, nx + nu)?))?;
+        let states = points.iter().flat_map(|point| &point[..nx]);
+        let x = PyArray1::from_iter(py, states.copied()).reshape([count, nx])?;
+        // At the last node there are none: the user's function sees zeros, so that it need not know.
+        let none = vec![0.0; self.sizes[1] - nu];
+        let controls = points
+            .iter()
+            .flat_map(|point| point[nx..].iter().chain(&none));
+        let u = PyArray1::from_iter(py, controls.copied()).reshape([count, self.sizes[1]])?;
+        let told = self.evaluate.call1((k, x, u))?;
         let told = told.cast_into::<PyTuple>().map_err(|_| {
             bad(format!(
                 "evaluate({k}, x, u): must return (cost, next, rows)"
