@@ -12,7 +12,7 @@ use anyhow::{Context, Result, ensure};
 use crate::run;
 
 /// What the checks need beside the package: a version where another would change what is measured.
-const PACKAGES: [&str; 7] = [
+const PACKAGES: [&str; 8] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -20,9 +20,10 @@ const PACKAGES: [&str; 7] = [
     "mypy",
     "matplotlib",
     "mujoco==3.17.0",
+    "drake==1.51.1",
 ];
 
-/// Longest time of the example.
+/// Longest time of an example.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Arguments of `cargo xtask python`.
@@ -56,14 +57,21 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     )?;
     run::succeed(tool("mypy").args(["-p", "saltus"]).current_dir(&home))?;
     run::succeed(tool("pytest").args(["--quiet", "--import-mode=append", "tests"]))?;
-    let mut example = tool("python");
     let picture = home.join("barrel-roll.png");
-    example.arg("examples/mujoco_loop.py");
-    example
-        .arg("a1/barrel-roll")
-        .arg(run::root().join("models/a1.urdf"));
-    print!("{}", run::stdout_within(example.arg(&picture), PATIENCE)?);
-    ensure!(picture.exists(), "the example draws nothing");
+    let urdf = run::root().join("models/a1.urdf");
+    let jump = [Path::new("a1/barrel-roll"), &urdf, &picture];
+    for (example, arguments) in [
+        ("mujoco_loop.py", &jump[..]),
+        ("drake_loop.py", &[]),
+        ("costs.py", &[]),
+    ] {
+        let mut python = tool("python");
+        python
+            .arg(Path::new("examples").join(example))
+            .args(arguments);
+        print!("{}", run::stdout_within(&mut python, PATIENCE)?);
+    }
+    ensure!(picture.exists(), "mujoco_loop.py draws nothing");
     Ok(())
 }
 
