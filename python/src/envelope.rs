@@ -55,7 +55,7 @@ pub(crate) fn envelope(
         return Err(bad("jobs: must be at least 1, not 0"));
     }
     let study = Study {
-        planned: &plan.borrow(py).0.clone(),
+        planned: &plan.get().0.clone(),
         conditions: &conditions,
         seed,
         samples,

@@ -36,13 +36,12 @@ impl Estimator {
     #[new]
     #[pyo3(signature = (robot, q, *, imu = None, loaded = 15.0))]
     fn new(
-        py: Python<'_>,
         robot: Py<Robot>,
         q: Numbers<'_>,
         imu: Option<Numbers<'_>>,
         loaded: f64,
     ) -> PyResult<Self> {
-        let robot = robot.borrow(py).0;
+        let robot = robot.get().0;
         let start: State = configuration("q", &q)?;
         let imu = match imu {
             None => Transform::IDENTITY,

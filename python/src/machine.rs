@@ -82,8 +82,8 @@ impl Machine {
     /// One tick of 1 kHz at the time `now`, s, on a clock that only goes forward. `observation` is what has arrived since the last tick;
     /// None is a sensor that said nothing: the last observation is used until it is 10 ms old.
     #[pyo3(signature = (now, observation = None))]
-    fn tick(&mut self, py: Python<'_>, now: f64, observation: Option<Py<Observation>>) -> Tick {
-        let observed = observation.map(|told| told.borrow(py).0);
+    fn tick(&mut self, now: f64, observation: Option<Py<Observation>>) -> Tick {
+        let observed = observation.map(|told| told.get().0);
         self.0.with_dependent_mut(|_, machine| Tick {
             tick: machine.tick(now, observed.as_ref()),
             command: *machine.command(),

@@ -76,7 +76,7 @@ impl Plan {
         let named = |error: String| bad(format!("{}: {error}", path.display()));
         let bytes = file::read(&path).map_err(|error| named(file::told(&error)))?;
         let task = match task {
-            Some(task) => task.borrow(py).task.clone(),
+            Some(task) => task.get().task.clone(),
             None => {
                 let plan: Stored<'_> =
                     Container::read(&bytes).map_err(|error| named(error.to_string()))?;

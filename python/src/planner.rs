@@ -21,14 +21,10 @@ pub(crate) enum Asked {
 
 impl Asked {
     /// The task, for another robot where one is given.
-    fn task(
-        &self,
-        py: Python<'_>,
-        robot: Option<&Py<Robot>>,
-    ) -> PyResult<jump_planner::task::Task> {
+    fn task(&self, robot: Option<&Py<Robot>>) -> PyResult<jump_planner::task::Task> {
         match self {
-            Self::Task(task) => task.borrow(py).for_robot(py, robot),
-            Self::Name(name) => Ok(Task::named(py, name, robot)?.task),
+            Self::Task(task) => task.get().for_robot(robot),
+            Self::Name(name) => Ok(Task::named(name, robot)?.task),
         }
     }
 }
@@ -69,7 +65,7 @@ pub(crate) fn plan(
     progress: Option<Py<PyAny>>,
     timing: &str,
 ) -> PyResult<Plan> {
-    let task = task.task(py, robot.as_ref())?;
+    let task = task.task(robot.as_ref())?;
     let timing = self::timing(timing)?;
     let mut stopped: Option<PyErr> = None;
     let found = py.detach(|| {

@@ -76,7 +76,7 @@ pub(crate) fn run(
     without: Vec<String>,
 ) -> PyResult<Record> {
     let conditions = Conditions::read(sim, plant, interface, &without)?;
-    let planned = plan.borrow(py).0.clone();
+    let planned = plan.get().0.clone();
     let trial = Trial {
         sim: conditions.sim,
         disturbance: PlantArgument::plant(conditions.plant.as_ref(), Lab::A1, seed),

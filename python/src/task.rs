@@ -20,13 +20,12 @@ pub(crate) struct Task {
 
 impl Task {
     fn of(
-        py: Python<'_>,
         name: &str,
         (file, folder): (TaskFile, PathBuf),
         robot: Option<&Py<Robot>>,
     ) -> PyResult<Self> {
         let robot = match robot {
-            Some(robot) => robot.borrow(py).0,
+            Some(robot) => robot.get().0,
             None => file.own_robot(name, &folder).map_err(bad)?,
         };
         let task = Planned::from_file(name, &file, robot).map_err(bad)?;
@@ -34,21 +33,17 @@ impl Task {
     }
 
     /// The task of this name or path.
-    pub(crate) fn named(py: Python<'_>, name: &str, robot: Option<&Py<Robot>>) -> PyResult<Self> {
+    pub(crate) fn named(name: &str, robot: Option<&Py<Robot>>) -> PyResult<Self> {
         let file = TaskFile::load(name).map_err(bad)?;
-        Self::of(py, name, file, robot)
+        Self::of(name, file, robot)
     }
 
     /// The same task for another robot, where one is given.
-    pub(crate) fn for_robot(
-        &self,
-        py: Python<'_>,
-        robot: Option<&Py<Robot>>,
-    ) -> PyResult<task::Task> {
+    pub(crate) fn for_robot(&self, robot: Option<&Py<Robot>>) -> PyResult<task::Task> {
         match robot {
             None => Ok(self.task.clone()),
             Some(robot) => {
-                let robot = robot.borrow(py).0;
+                let robot = robot.get().0;
                 Planned::from_file(&self.task.name, &self.file, robot).map_err(bad)
             }
         }
@@ -62,8 +57,8 @@ impl Task {
     /// Raises BadInput that names file, line, key, and what is accepted there.
     #[staticmethod]
     #[pyo3(signature = (name, robot = None))]
-    fn load(py: Python<'_>, name: &str, robot: Option<Py<Robot>>) -> PyResult<Self> {
-        Self::named(py, name, robot.as_ref())
+    fn load(name: &str, robot: Option<Py<Robot>>) -> PyResult<Self> {
+        Self::named(name, robot.as_ref())
     }
 
     /// The task in a text of a task file. `name` is what errors and plans call it; `folder` is where the path of its robot is seen from.
@@ -72,14 +67,13 @@ impl Task {
     #[staticmethod]
     #[pyo3(signature = (text, robot = None, *, name = "task", folder = PathBuf::new()))]
     fn from_toml(
-        py: Python<'_>,
         text: &str,
         robot: Option<Py<Robot>>,
         name: &str,
         folder: PathBuf,
     ) -> PyResult<Self> {
         let file = TaskFile::parse(Path::new(name), text).map_err(bad)?;
-        Self::of(py, name, (file, folder), robot.as_ref())
+        Self::of(name, (file, folder), robot.as_ref())
     }
 
     /// Names of the built-in tasks.
