@@ -2,9 +2,10 @@
 
 use jump_planner::robot::State;
 use jump_planner::{JOINTS, Velocity};
+use nalgebra::{Rotation3, Vector3};
 use pyo3::PyResult;
 use rbd_core::convert::{base_from_pinocchio, base_to_pinocchio};
-use rbd_core::{Effort, Force, Motion, Tangent};
+use rbd_core::{Effort, Force, Motion, Tangent, Transform};
 
 use crate::arrays::{Numbers, vector};
 use crate::errors::bad;
@@ -28,6 +29,16 @@ pub(crate) fn configuration(name: &str, q: &Numbers<'_>) -> PyResult<State> {
     let (base, joints) = split::<7>(&vector::<NQ>(name, q)?);
     let base = base_from_pinocchio(&base).map_err(|error| bad(format!("{name}[3:7]: {error}")))?;
     Ok(State { base, joints })
+}
+
+/// A configuration that was measured: where its quaternion is none, the base is not a number, and the machine says so.
+pub(crate) fn measured(name: &str, q: &Numbers<'_>) -> PyResult<State> {
+    let (base, joints) = split::<7>(&vector::<NQ>(name, q)?);
+    let nowhere = Transform::new(Rotation3::identity(), Vector3::from_element(f64::NAN));
+    Ok(State {
+        base: base_from_pinocchio(&base).unwrap_or(nowhere),
+        joints,
+    })
 }
 
 /// A velocity, an acceleration or a displacement.

@@ -7,13 +7,13 @@ use jump_planner::{FOOT_COUNT, JOINTS};
 use pyo3::{PyResult, Python, pyclass, pymethods};
 
 use crate::arrays::{List, Numbers, list, vector};
-use crate::coordinates::{configuration, of_configuration, of_tangent, tangent};
+use crate::coordinates::{measured, of_configuration, of_tangent, tangent};
 
 /// What the machine is told in one tick.
 ///
 /// Observation(q, v, foot_forces, joint_torques, age=0.0): where the robot is and how it moves, shapes (19,) and (18,) as Robot tells;
 /// normal forces on the feet, N, shape (4,); mean torques of the joints since the last tick, friction included, N m, shape (12,); and the
-/// age of the oldest of these numbers, s. An Estimator makes one from sensors.
+/// age of the oldest of these numbers, s. An Estimator makes one from sensors. Numbers that are none are the machine's to find.
 #[pyclass(frozen, module = "saltus")]
 pub(crate) struct Observation(pub(crate) Observed);
 
@@ -28,7 +28,7 @@ impl Observation {
         joint_torques: Numbers<'_>,
         age: f64,
     ) -> PyResult<Self> {
-        let (q, v): (State, _) = (configuration("q", &q)?, tangent("v", &v)?);
+        let (q, v): (State, _) = (measured("q", &q)?, tangent("v", &v)?);
         Ok(Self(Observed {
             measured: Measurement {
                 base: q.base,

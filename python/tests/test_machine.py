@@ -42,6 +42,8 @@ def test_what_cannot_be_acted_on_ends_in_damping(lateral: saltus.Plan) -> None:
     for wrong, told in (
         (lambda q: q[7:].__setitem__(4, np.nan), "joint 4"),
         (lambda q: q.__setitem__(0, np.inf), "base"),
+        (lambda q: q.__setitem__(slice(3, 7), 0.0), "base"),
+        (lambda q: q.__setitem__(6, np.nan), "base"),
     ):
         machine = lateral.machine()
         machine.tick(-0.3, standing(lateral))
