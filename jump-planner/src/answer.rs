@@ -10,9 +10,14 @@ use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Blocked, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
-use ocp_solver::{Settings, Status, blocking_rows};
+use ocp_solver::{Progress, Settings, Status, blocking_rows};
 use serde_json::{Value, json};
 use srb_opt::Row;
+
+/// Who hears every iteration of a solver, and stops it by `Break`.
+pub trait Observer: FnMut(&Progress<f64>) -> ControlFlow<()> {}
+
+impl<F: FnMut(&Progress<f64>) -> ControlFlow<()>> Observer for F {}
 
 /// Why there is no plan.
 pub struct Answer {
@@ -76,9 +81,10 @@ impl Answer {
         }
     }
 
-    /// From a rigid-body plan that was not found.
+    /// From a rigid-body plan that was not found. `observe` hears every iteration of the easier tasks, and stops by `Break`: what was
+    /// found until then is told.
     #[must_use]
-    pub fn no_body_plan(task: &Task, plan: &SrbPlan) -> Self {
+    pub fn no_body_plan(task: &Task, plan: &SrbPlan, observe: impl Observer) -> Self {
         let rows = blocking_rows::<4, _, _, _, _, _, _>(&plan.stages);
         let worst = rows[0].map_or(0.0, |row| row.violation.abs());
         let counts = |violation: f64| violation.abs() >= 0.05 * worst && violation.abs() > 1e-4;
@@ -95,13 +101,18 @@ impl Answer {
                 plan.max_violation,
                 rows.collect(),
             ),
-            relaxations: relaxations(task),
+            relaxations: relaxations(task, observe),
         }
     }
 
-    /// From a whole-body plan that was not found.
+    /// From a whole-body plan that was not found; `observe` as in [`Answer::no_body_plan`].
     #[must_use]
-    pub fn no_whole_body_plan(task: &Task, srb: &SrbPlan, plan: &WholeBodyPlan) -> Self {
+    pub fn no_whole_body_plan(
+        task: &Task,
+        srb: &SrbPlan,
+        plan: &WholeBodyPlan,
+        observe: impl Observer,
+    ) -> Self {
         let rows = plan
             .blocked
             .iter()
@@ -115,7 +126,7 @@ impl Answer {
         Self {
             status: "NotFound",
             because,
-            relaxations: stronger(task, srb).into_iter().collect(),
+            relaxations: stronger(task, srb, observe).into_iter().collect(),
         }
     }
 }
@@ -295,14 +306,12 @@ const EASINGS: [Easing; 5] = [
 ];
 
 /// Every easing with which the rigid body finds a plan, as little of it as halving finds.
-fn relaxations(task: &Task) -> Vec<String> {
+fn relaxations(task: &Task, mut observe: impl Observer) -> Vec<String> {
     let mut settings = Settings::new();
     (settings.max_iterations, settings.restoration_iterations) = (PATIENCE, 0);
     settings.attempt_iterations = PATIENCE;
-    let solve = |eased: &Task| {
-        let plan = eased
-            .attempt(&settings, |_| ControlFlow::Continue(()))
-            .ok()?;
+    let mut solve = |eased: &Task| {
+        let plan = eased.attempt(&settings, &mut observe).ok()?;
         let possible = super::bounds::impossible(eased).is_none();
         (plan.status == Status::Solved && possible).then_some(plan)
     };
@@ -327,11 +336,11 @@ fn relaxations(task: &Task) -> Vec<String> {
 }
 
 /// What the joints would have to give, if that is all that is missing.
-fn stronger(task: &Task, srb: &SrbPlan) -> Option<String> {
+fn stronger(task: &Task, srb: &SrbPlan, observe: impl Observer) -> Option<String> {
     let mut strong = task.clone();
     strong.limits.torque_shares = [10.0; 3];
     strong.limits.speed_share *= 10.0;
-    let plan = whole_body::plan(&strong, srb, Timing::Given, |_| ControlFlow::Continue(())).ok()?;
+    let plan = whole_body::plan(&strong, srb, Timing::Given, observe).ok()?;
     if plan.outcome.status != Status::Solved {
         return None;
     }

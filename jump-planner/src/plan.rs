@@ -69,7 +69,7 @@ pub fn plan(
                 out.answer = Some(if cancelled {
                     Answer::cancelled()
                 } else {
-                    Answer::no_body_plan(task, srb)
+                    Answer::no_body_plan(task, srb, |p| observe(Step::Relaxations, Some(p)))
                 });
                 return Ok(out);
             }
@@ -92,7 +92,9 @@ pub fn plan(
         {
             Some(Answer::cancelled())
         }
-        None => Some(Answer::no_whole_body_plan(task, srb, &whole.plan)),
+        None => Some(Answer::no_whole_body_plan(task, srb, &whole.plan, |p| {
+            observe(Step::Relaxations, Some(p))
+        })),
     };
     (out.wall_ms, out.bytes, out.audit) = (whole.wall_ms, whole.bytes, whole.audit);
     (out.whole_body, out.path) = (Some(whole.plan), whole.path);

@@ -1,8 +1,7 @@
-//! The verdict for people and as JSON.
+//! The verdict for people.
 
 use crate::report::Line;
 use jump_lab::verdict::{Found, Verdict};
-use serde_json::{Value, json};
 
 /// Lines of the result: the verdict, and its three parts.
 pub(crate) fn lines(verdict: &Verdict) -> Vec<Line> {
@@ -63,48 +62,4 @@ fn words(found: &Found) -> String {
         found.supply_power,
         found.supply_energy,
     )
-}
-
-/// The object `verdict` of `--json`.
-pub(crate) fn json(verdict: &Verdict) -> Value {
-    json!({
-        "flight": verdict.flight.map(|f| json!({
-            "position_m": f.position,
-            "rotation_deg": f.rotation,
-            "joints_deg": f.joints,
-        })),
-        "stand": verdict.stand.map(|s| json!({
-            "feet_m": s.feet,
-            "heading_deg": s.heading,
-            "height_m": s.height,
-            "rotation_deg": s.rotation,
-            "upright": s.upright,
-        })),
-        "hardware": hardware(&verdict.hardware),
-        "failures": verdict.failures.iter().map(|failure| json!({
-            "time_s": failure.time,
-            "name": failure.name,
-            "found": failure.found,
-        })).collect::<Vec<_>>(),
-    })
-}
-
-/// Its key `hardware`.
-fn hardware(found: &Found) -> Value {
-    let [push_off, flight, landing] = found.saturation.map(|x| 1e3 * x);
-    json!({
-        "within": found.within(),
-        "exceeded": found.exceeded.iter().map(|x| x.name.trim_start_matches("hardware.")).collect::<Vec<_>>(),
-        "saturation_ms": { "push_off": push_off, "flight": flight, "landing": landing },
-        "stop_ms": 1e3 * found.stop_time,
-        "stop_torque_nm": found.stop_torque,
-        "overspeed_ms": 1e3 * found.overspeed,
-        "peak_joint_speed": found.peak_speed,
-        "ground_force_10ms_weights": found.ground_force,
-        "links_touched": found.touched,
-        "heat_share": found.heat_share,
-        "supply_power_w": found.supply_power,
-        "supply_limit_w": found.supply_limit,
-        "supply_energy_j": found.supply_energy,
-    })
 }

@@ -22,6 +22,7 @@ mod mujoco;
 mod package;
 mod panics;
 mod probe;
+mod python;
 mod qemu;
 mod replay;
 mod report;
@@ -86,6 +87,8 @@ enum Command {
     Examples(examples::Args),
     /// Hostile files and command lines for `saltus`, until the time is over.
     Fuzz(fuzz::Args),
+    /// Build the Python package, install it in an environment of its own, and run its tests and example.
+    Python(python::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -113,6 +116,7 @@ fn main() -> ExitCode {
         Command::Package(args) => package::run(&args),
         Command::Examples(args) => examples::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
+        Command::Python(args) => python::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

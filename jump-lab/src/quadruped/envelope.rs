@@ -2,9 +2,11 @@
 
 use super::execute::Trial;
 use super::judge::Judged;
-use crate::lab::Key;
+use super::measure::Measure;
 use crate::lab::keys::{COUNT, ROWS, Row};
+use crate::lab::{Interface, Key, Lab, PlantArgument};
 use crate::verdict::TARGET;
+use crate::{Sim, noise};
 use core::fmt::Write;
 use std::collections::BTreeMap;
 
@@ -24,13 +26,16 @@ fn axes() -> impl Iterator<Item = &'static Row> {
 pub struct Sample {
     /// Its number in the study.
     pub index: u64,
-    seed: u64,
+    /// Of its lab and its noise.
+    pub seed: u64,
     /// By key.
     values: [f64; COUNT],
-    feet_error: f64,
-    rotation_error: f64,
+    /// Distance of the feet's middle from the goal's in the end, m; not a number where the run ended before.
+    pub feet_error: f64,
+    /// Angle of the base from the goal's in the end, degrees; likewise.
+    pub rotation_error: f64,
     /// `target`, or what failed first.
-    outcome: String,
+    pub outcome: String,
 }
 
 impl Sample {
@@ -98,8 +103,29 @@ impl Sample {
         self.outcome == TARGET
     }
 
-    fn value(&self, key: Key) -> f64 {
+    /// What a key was in this run.
+    #[must_use]
+    pub fn value(&self, key: Key) -> f64 {
         self.values[key as usize]
+    }
+}
+
+/// The run of a sample of a study: the same on every machine. `plant` is what differs in every run, instead of the lab of its seed.
+#[must_use]
+pub fn trial<'a>(
+    (seed, index): (u64, u64),
+    plant: Option<&PlantArgument>,
+    (sim, interface): (Sim, Interface),
+    without: &'a [Measure],
+) -> Trial<'a> {
+    // Seed 0 would be the nominal run.
+    let seed = noise::mix(seed, index).max(1);
+    Trial {
+        sim,
+        disturbance: PlantArgument::plant(plant, Lab::A1, seed),
+        seed,
+        interface,
+        without,
     }
 }
 

@@ -5,6 +5,7 @@
 //! happened, since what comes later is often its consequence.
 
 mod hardware;
+mod json;
 
 pub use hardware::{Found, Hardware, Stage, Tick};
 

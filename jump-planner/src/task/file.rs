@@ -1,5 +1,6 @@
 //! A task as it is written down: one TOML file. The nine tasks of the project are such files too, in `jump-planner/tasks`.
 
+use crate::robot::Quadruped;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -279,11 +280,27 @@ impl TaskFile {
         Self::parse(path, &text).map(|file| (file, folder))
     }
 
-    fn parse(path: &Path, text: &str) -> Result<Self, TaskError> {
+    /// The task in this text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// [`TaskError::Toml`] names line, key and what is accepted there.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, TaskError> {
         toml::from_str(text).map_err(|error| TaskError::Toml {
             path: path.to_owned(),
             error: Box::new(error),
         })
+    }
+
+    /// The robot that the file names; `folder` is where its path is seen from, `task` what errors call the task.
+    ///
+    /// # Errors
+    /// [`TaskError::Robot`] says what is wrong with it.
+    pub fn own_robot(&self, task: &str, folder: &Path) -> Result<Quadruped, TaskError> {
+        let robot = match self.robot.as_str() {
+            "a1" => Quadruped::a1(),
+            path => Quadruped::load(&folder.join(path), &self.lock),
+        };
+        robot.map_err(|error| super::robot_error(task, Path::new(&self.robot), error))
     }
 }
 

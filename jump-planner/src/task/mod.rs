@@ -11,7 +11,7 @@ use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTa
 use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
 use crate::range::{Unusable, require, within};
-use crate::robot::{PLACES, Quadruped, State};
+use crate::robot::{PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Solver, Stage, Status};
 use rbd_core::Transform;
@@ -117,16 +117,20 @@ impl Task {
     pub fn load_for(name: &str, urdf: Option<&Path>, locks: &[String]) -> Result<Self, TaskError> {
         let (file, folder) = TaskFile::load(name)?;
         let robot = match urdf {
-            Some(path) => Quadruped::load(path, locks),
-            None if file.robot == "a1" => Quadruped::a1(),
-            None => Quadruped::load(&folder.join(&file.robot), &file.lock),
+            Some(path) => {
+                Quadruped::load(path, locks).map_err(|error| robot_error(name, path, error))?
+            }
+            None => file.own_robot(name, &folder)?,
         };
-        let robot = robot.map_err(|error| TaskError::Robot {
-            task: name.to_owned(),
-            robot: urdf.map_or(file.robot.clone(), |path| path.display().to_string()),
-            error: Box::new(error),
-        })?;
-        Self::of(name, &file, robot).map_err(|(key, what)| TaskError::Value {
+        Self::from_file(name, &file, robot)
+    }
+
+    /// What a task file says, for this robot; `name` is what errors and plans call the task.
+    ///
+    /// # Errors
+    /// [`TaskError`] names the key.
+    pub fn from_file(name: &str, file: &TaskFile, robot: Quadruped) -> Result<Self, TaskError> {
+        Self::of(name, file, robot).map_err(|(key, what)| TaskError::Value {
             task: name.to_owned(),
             key,
             what,
@@ -303,6 +307,15 @@ impl Task {
             ));
         }
         Ok(plan)
+    }
+}
+
+/// A robot that a task cannot be planned for.
+fn robot_error(task: &str, robot: &Path, error: RobotError) -> TaskError {
+    TaskError::Robot {
+        task: task.to_owned(),
+        robot: robot.display().to_string(),
+        error: Box::new(error),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A run of a humanoid as JSON.
 
-use crate::{plant, verdict};
+use crate::plant;
 use jump_lab::humanoid::Task;
 use jump_lab::humanoid::execute::Run;
 use jump_lab::humanoid::judge::Judged;
@@ -22,7 +22,7 @@ pub(crate) fn json(
         "interface": Interface::Torque.to_string(),
         "plant": plant::json(disturbance),
         "on_target": judged.verdict.on_target(),
-        "verdict": verdict::json(&judged.verdict),
+        "verdict": judged.verdict.json(),
         "momentum_control": task.momentum,
         "height_m": task.height,
         "landed": judged.landed,

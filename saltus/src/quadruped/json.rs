@@ -1,6 +1,6 @@
 //! A run of a quadruped as JSON.
 
-use crate::{plant, verdict};
+use crate::plant;
 use jump_lab::quadruped::execute::{Run, Trial};
 use jump_lab::quadruped::judge::Judged;
 use jump_planner::reference::Reference;
@@ -28,7 +28,7 @@ pub(crate) fn json(
         "placeholders": task.robot.placeholders(),
         "plant": plant::json(&trial.disturbance),
         "on_target": verdict.on_target(),
-        "verdict": verdict::json(verdict),
+        "verdict": verdict.json(),
         "landed": judged.landed,
         "upright": verdict.stands(),
         "upright_after_s": judged.upright_after,

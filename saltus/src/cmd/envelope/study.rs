@@ -9,9 +9,9 @@ use crate::cmd::folder::{describe, write};
 use crate::cmd::interrupt;
 use indicatif::ProgressBar;
 use jump_lab::Sim;
-use jump_lab::lab::{Interface, Lab, PlantArgument};
-use jump_lab::quadruped::envelope::{Sample, table};
-use jump_lab::quadruped::execute::{self, Trial};
+use jump_lab::lab::{Interface, PlantArgument};
+use jump_lab::quadruped::envelope::{Sample, table, trial};
+use jump_lab::quadruped::execute;
 use jump_lab::quadruped::judge::Judged;
 use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
@@ -136,15 +136,12 @@ impl Study<'_> {
     }
 
     fn sample(&self, reference: &Reference, index: u64) -> Result<Sample, String> {
-        // Seed 0 would be the nominal run.
-        let seed = jump_lab::noise::mix(self.seed, index).max(1);
-        let trial = Trial {
-            sim: self.sim,
-            disturbance: PlantArgument::plant(self.plant.as_ref(), Lab::A1, seed),
-            seed,
-            interface: self.interface,
-            without: &self.without,
-        };
+        let trial = trial(
+            (self.seed, index),
+            self.plant.as_ref(),
+            (self.sim, self.interface),
+            &self.without,
+        );
         let run = execute::run_watched(self.task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
         Ok(Sample::new(
             index,

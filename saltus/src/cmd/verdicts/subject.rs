@@ -1,7 +1,6 @@
 //! What is judged: a task with its plan, run under a condition.
 
 use crate::cmd::expected::Found;
-use crate::verdict;
 use jump_lab::Sim;
 use jump_lab::humanoid;
 use jump_lab::lab::{Interface, Lab, PlantArgument};
@@ -199,7 +198,7 @@ impl Cell {
             "task": self.task,
             "sim": self.sim.name(),
             "outcome": self.outcome(),
-            "verdict": self.verdict.as_ref().ok().map(verdict::json),
+            "verdict": self.verdict.as_ref().ok().map(Verdict::json),
             "error": self.verdict.as_ref().err(),
         })
     }

@@ -1,0 +1,57 @@
+"""Jumps of quadrupeds: plan them, audit the plans, step the machine that flies them, simulate, and judge.
+
+    import saltus
+
+    plan = saltus.plan("a1/barrel-roll")
+    print(plan.audit()["worst_margin"], saltus.run(plan).outcome)
+
+SI units and Pinocchio's conventions throughout: see `Robot`. Tasks as dataclasses stand in `saltus.tasks`.
+"""
+
+from saltus._saltus import (
+    Command,
+    Envelope,
+    Estimator,
+    Machine,
+    Observation,
+    OcpSolution,
+    Plan,
+    QpSolution,
+    Record,
+    Robot,
+    Task,
+    Tick,
+    envelope,
+    plan,
+    run,
+    solve_ocp,
+    solve_qp,
+)
+from saltus.errors import AuditFailed, BadInput, Error, Infeasible, NoPlan, NotFound, Refused
+
+__all__ = [
+    "AuditFailed",
+    "BadInput",
+    "Command",
+    "Envelope",
+    "Error",
+    "Estimator",
+    "Infeasible",
+    "Machine",
+    "NoPlan",
+    "NotFound",
+    "Observation",
+    "OcpSolution",
+    "Plan",
+    "QpSolution",
+    "Record",
+    "Refused",
+    "Robot",
+    "Task",
+    "Tick",
+    "envelope",
+    "plan",
+    "run",
+    "solve_ocp",
+    "solve_qp",
+]

@@ -1,0 +1,97 @@
+//! Planning, with the interpreter free meanwhile.
+
+use core::ops::ControlFlow;
+
+use jump_planner::{Step, Timing};
+use pyo3::{FromPyObject, Py, PyAny, PyErr, PyResult, Python, pyfunction};
+
+use crate::errors::{bad, failed, no_plan};
+use crate::plan::Plan;
+use crate::robot::Robot;
+use crate::task::Task;
+
+/// A task, or its name.
+#[derive(FromPyObject)]
+pub(crate) enum Asked {
+    /// As it was made.
+    Task(Py<Task>),
+    /// As `Task.load` takes it.
+    Name(String),
+}
+
+impl Asked {
+    /// The task, for another robot where one is given.
+    fn task(&self, robot: Option<&Py<Robot>>) -> PyResult<jump_planner::task::Task> {
+        match self {
+            Self::Task(task) => task.get().for_robot(robot),
+            Self::Name(name) => Ok(Task::named(name, robot)?.task),
+        }
+    }
+}
+
+/// What a step is called.
+const fn name(step: Step) -> &'static str {
+    match step {
+        Step::Body => "body",
+        Step::WholeBody => "whole body",
+        Step::Relaxations => "relaxations",
+    }
+}
+
+/// Timings by their name.
+fn timing(name: &str) -> PyResult<Timing> {
+    match name {
+        "given" => Ok(Timing::Given),
+        "free" => Ok(Timing::Free),
+        _ => Err(bad(format!(
+            "timing: must be \"given\" or \"free\", not {name:?}"
+        ))),
+    }
+}
+
+/// Plans a task: bounds, rigid body, whole body, audit. Takes one to ten seconds; other threads of Python run meanwhile, and Ctrl-C stops it.
+///
+/// `task` is a Task, or what Task.load takes; `robot` jumps in the place of its own. `progress(step, iteration, violation)` is called
+/// after every iteration of a solver; whatever it raises stops the planner and is raised here. `timing` is "given", from the rigid
+/// body's plan, or "free", unknowns of the whole body's problem.
+///
+/// Raises Infeasible with the proof, NotFound or AuditFailed with the reason, and BadInput.
+#[pyfunction]
+#[pyo3(signature = (task, robot = None, progress = None, *, timing = "given"), name = "plan")]
+pub(crate) fn plan(
+    py: Python<'_>,
+    task: Asked,
+    robot: Option<Py<Robot>>,
+    progress: Option<Py<PyAny>>,
+    timing: &str,
+) -> PyResult<Plan> {
+    let task = task.task(robot.as_ref())?;
+    let timing = self::timing(timing)?;
+    let mut stopped: Option<PyErr> = None;
+    let found = py.detach(|| {
+        jump_planner::plan(&task, timing, |step, at| {
+            let told = Python::attach(|py| {
+                py.check_signals()?;
+                if let (Some(progress), Some(at)) = (&progress, at) {
+                    progress.call1(py, (name(step), at.iteration, at.residual.primal))?;
+                }
+                Ok(())
+            });
+            match told {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    stopped.get_or_insert(error);
+                    ControlFlow::Break(())
+                }
+            }
+        })
+    });
+    if let Some(error) = stopped {
+        return Err(error);
+    }
+    let found = found.map_err(failed)?;
+    match found.answer {
+        Some(answer) => Err(no_plan(&answer)),
+        None => Plan::of(task, &found.bytes),
+    }
+}

@@ -1,0 +1,127 @@
+//! `cargo xtask python`: the Python package as a user gets it: the wheel is built, installed and tested in a virtual environment of its own.
+//!
+//! Everything lies in `target/python`: the environment, cargo's folder and the wheel. What PyPI gives there is installed once.
+
+use core::time::Duration;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::run;
+
+/// What the checks need beside the package: a version where another would change what is measured.
+const PACKAGES: [&str; 8] = [
+    "maturin>=1.9,<2",
+    "numpy",
+    "pytest",
+    "ruff",
+    "mypy",
+    "matplotlib",
+    "mujoco==3.17.0",
+    "drake==1.51.1",
+];
+
+/// Longest time of an example.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Arguments of `cargo xtask python`.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Python with pip.
+    #[arg(long, env = "SALTUS_PYTHON", default_value = "python3")]
+    python: PathBuf,
+}
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let home = run::root().join("target/python");
+    let bin = environment(&args.python, &home.join("venv"))?;
+    let tool = |name: &str| {
+        let mut command = Command::new(bin.join(name));
+        command.current_dir(run::root().join("python"));
+        command
+    };
+    run::succeed(tool("ruff").args(["check", "--quiet", "."]))?;
+    run::succeed(tool("ruff").args(["format", "--check", "--quiet", "."]))?;
+    lints(&home)?;
+    let wheel = build(tool("maturin"), &home)?;
+    let install = ["-m", "pip", "install", "--quiet", "--no-deps"];
+    let forced = ["--force-reinstall", "--no-index"];
+    run::succeed(tool("python").args(install).args(forced).arg(&wheel))?;
+    // Away from the sources, which would be imported in the place of what was installed.
+    run::succeed(
+        tool("python")
+            .args(["-m", "mypy.stubtest", "saltus"])
+            .current_dir(&home),
+    )?;
+    run::succeed(tool("mypy").args(["-p", "saltus"]).current_dir(&home))?;
+    run::succeed(tool("pytest").args(["--quiet", "--import-mode=append", "tests"]))?;
+    let picture = home.join("barrel-roll.png");
+    let urdf = run::root().join("models/a1.urdf");
+    let jump = [Path::new("a1/barrel-roll"), &urdf, &picture];
+    for (example, arguments) in [
+        ("mujoco_loop.py", &jump[..]),
+        ("drake_loop.py", &[]),
+        ("costs.py", &[]),
+    ] {
+        let mut python = tool("python");
+        python
+            .arg(Path::new("examples").join(example))
+            .args(arguments);
+        print!("{}", run::stdout_within(&mut python, PATIENCE)?);
+    }
+    ensure!(picture.exists(), "mujoco_loop.py draws nothing");
+    Ok(())
+}
+
+/// The folder of the environment's programs; made, and filled from PyPI, where it is not there.
+fn environment(python: &Path, venv: &Path) -> Result<PathBuf> {
+    let bin = venv.join("bin");
+    let done = venv.join("packages.txt");
+    let wanted = PACKAGES.join("\n");
+    if fs::read_to_string(&done).is_ok_and(|there| there == wanted) {
+        return Ok(bin);
+    }
+    run::remove_folder(venv)?;
+    run::succeed(Command::new(python).args(["-m", "venv"]).arg(venv))?;
+    let mut pip = Command::new(bin.join("python"));
+    run::succeed(pip.args(["-m", "pip", "install", "--quiet"]).args(PACKAGES))?;
+    fs::write(done, wanted)?;
+    Ok(bin)
+}
+
+/// Formatting and lints of the Rust half.
+fn lints(home: &Path) -> Result<()> {
+    for arguments in [
+        &["fmt", "--check"][..],
+        &["clippy", "--quiet", "--locked", "--", "-D", "warnings"],
+    ] {
+        let mut cargo = run::cargo();
+        cargo.current_dir(run::root().join("python"));
+        run::succeed(
+            cargo
+                .env("CARGO_TARGET_DIR", home.join("cargo"))
+                .args(arguments),
+        )?;
+    }
+    Ok(())
+}
+
+/// Builds the wheel; the only one in its folder.
+fn build(mut maturin: Command, home: &Path) -> Result<PathBuf> {
+    let folder = home.join("wheel");
+    run::remove_folder(&folder)?;
+    maturin.env("CARGO_TARGET_DIR", home.join("cargo"));
+    maturin.args(["build", "--quiet", "--release", "--locked", "--out"]);
+    run::succeed(maturin.arg(&folder))?;
+    let wheel = fs::read_dir(&folder)?
+        .next()
+        .context("no wheel was built")??;
+    println!(
+        "{}: {} kB",
+        wheel.file_name().to_string_lossy(),
+        wheel.metadata()?.len() / 1000
+    );
+    Ok(wheel.path())
+}
