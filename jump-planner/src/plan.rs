@@ -15,8 +15,6 @@ pub enum Step {
     Body,
     /// The motion of all joints.
     WholeBody,
-    /// The motion of all joints and the durations of its phases, because there is none with the rigid body's.
-    Durations,
     /// There is no plan: tasks that ask for less.
     Relaxations,
 }
@@ -76,14 +74,7 @@ pub fn plan(
             srb
         }
     };
-    let mut whole = audited(task, srb, timing, |p| observe(Step::WholeBody, Some(p)))?;
-    // What a rigid body can do in a time, legs with motors may not.
-    let may_differ = timing == Timing::Given && !task.has_given_durations();
-    if may_differ && whole.is_missing() && observe(Step::Durations, None).is_continue() {
-        whole.replace_with(audited(task, srb, Timing::Free, |p| {
-            observe(Step::Durations, Some(p))
-        })?);
-    }
+    let whole = audited(task, srb, timing, |p| observe(Step::WholeBody, Some(p)))?;
     out.answer = match &whole.audit {
         Some(audit) if audit.passes() => None,
         Some(audit) => Some(Answer::failed(audit)),

@@ -107,12 +107,12 @@ pub struct Audited {
 
 impl Audited {
     /// Whether the solver ended without a plan, and was not told to.
-    pub(crate) fn is_missing(&self) -> bool {
+    fn is_missing(&self) -> bool {
         self.audit.is_none() && self.plan.outcome.status != Status::Cancelled
     }
 
     /// Takes over what was found in another way. A plan that fails its audit says more than none.
-    pub(crate) fn replace_with(&mut self, other: Self) {
+    fn replace_with(&mut self, other: Self) {
         let path = core::mem::take(&mut self.path);
         let wall_ms = self.wall_ms + other.wall_ms;
         let more = other.path.clone();
@@ -128,7 +128,8 @@ impl Audited {
 ///
 /// Where the audit finds limits exceeded between nodes, they are drawn in by that much and the plan is made again from where it is
 /// ([`Tightening`]). Where that is no remedy, or the flight is not true to the dynamics, the intervals were too long for this robot: they are
-/// halved, once.
+/// halved, once. Where legs have no motion in the given durations, they are found on the whole body: what a rigid body can do in a time,
+/// legs with motors may not.
 ///
 /// # Errors
 /// A problem that cannot be begun with, or a plan that cannot be stored.
@@ -138,10 +139,25 @@ pub fn audited(
     timing: Timing,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
-    let mut told = tightened(task, Grid::new(task, srb, timing, 1.0)?, &mut observer)?;
+    let mut told = on_grids(task, srb, timing, &mut observer)?;
+    let may_differ = timing == Timing::Given && !task.has_given_durations();
+    if may_differ && told.is_missing() {
+        told.replace_with(on_grids(task, srb, Timing::Free, &mut observer)?);
+    }
+    Ok(told)
+}
+
+/// On the usual intervals, then on halves.
+fn on_grids(
+    task: &Task,
+    srb: &SrbPlan,
+    timing: Timing,
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<Audited, String> {
+    let mut told = tightened(task, Grid::new(task, srb, timing, 1.0)?, observer)?;
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
-        let fine = tightened(task, Grid::new(task, srb, timing, 0.5)?, &mut observer)?;
+        let fine = tightened(task, Grid::new(task, srb, timing, 0.5)?, observer)?;
         told.replace_with(fine);
     }
     Ok(told)

@@ -62,7 +62,6 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         let stage = match step {
             Step::Body => "body",
             Step::WholeBody => "whole body",
-            Step::Durations => "whole body, with durations of its own",
             Step::Relaxations => "looking for what would have to change",
         };
         let Some(progress) = progress else {
