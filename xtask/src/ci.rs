@@ -86,7 +86,6 @@ const RELEASE: &[Step<'_>] = &[
         &["xtask", "suites", "program"],
     ),
     ("the report in a browser", &["xtask", "report"]),
-    ("the Python package", &["xtask", "python"]),
     ("instruction counts", &["xtask", "icount"]),
     ("publishable crates", &["xtask", "package"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
