@@ -5,7 +5,7 @@ use rbd_core::model::{BaseBody, Body, Link};
 use rbd_core::nalgebra::{Rotation3, Vector3};
 use rbd_core::{
     AbaWorkspace, Configuration, Effort, Force, MassMatrix, Motion, Posture, Tangent, Transform,
-    Tree, aba, crba, rnea,
+    Tree, aba, centroidal_state, crba, rnea,
 };
 
 const N: usize = 12;
@@ -102,6 +102,35 @@ fn dynamics<M: Tree<f64, N>>(model: &M) -> (Effort<f64, N>, Tangent<f64, N>, Mas
         ),
         mass,
     )
+}
+
+/// What is added up over all bodies of one state: momentum and energies.
+fn sums<M: Tree<f64, N>>(model: &M, phase: f64) -> [f64; 8] {
+    let configuration = Configuration {
+        joints: numbers(phase),
+        ..Configuration::NEUTRAL
+    };
+    let posture = Posture::new(model, &configuration);
+    let state = centroidal_state(model, &posture, &tangent(phase));
+    let [x, y, z, a, b, c] = state.momentum_w.to_array();
+    [
+        x,
+        y,
+        z,
+        a,
+        b,
+        c,
+        state.kinetic_energy,
+        state.potential_energy,
+    ]
+}
+
+#[test]
+fn sums_over_limbs_abreast_are_those_of_limbs_apart() {
+    for phase in 0..100 {
+        let phase = 0.1 * f64::from(phase);
+        assert_eq!(sums(&Abreast, phase), sums(&Apart, phase), "{phase}");
+    }
 }
 
 #[test]

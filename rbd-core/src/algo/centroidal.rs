@@ -233,6 +233,8 @@ struct Momentum<'a, T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Fold<T> for Momentum<'_, T, N> {
+    /// Energies add up on the way down: abreast they would in another order than limb after limb, and to other bits.
+    const ABREAST: bool = false;
     type Down = Motion<T>;
     /// Momentum of the body itself.
     type Keep = Force<T>;
