@@ -6,8 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-use common::{Draw, Qp, Tally, each};
+use crate::common::{Draw, Qp, Tally, each};
 use dense_qp::{
     Constraint, Error, Problem, Settings, Side, Status, Workspace, infeasibility, kkt_residual,
     resume, solve, solve_warm,

@@ -6,8 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-use common::{Draw, Qp, Tally, dot, each};
+use crate::common::{Draw, Qp, Tally, dot, each};
 use dense_qp::{Problem, Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 use so3::Scalar;
 

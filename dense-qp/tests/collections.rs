@@ -7,10 +7,9 @@
     reason = "tests"
 )]
 
-mod common;
+use crate::common::oracle::clarabel;
+use crate::common::{Draw, Qp, Tally, dot, each};
 use clarabel::solver::SolverStatus;
-use common::oracle::clarabel;
-use common::{Draw, Qp, Tally, dot, each};
 use dense_qp::{Settings, Status, Workspace, solve};
 
 const INF: f64 = f64::INFINITY;

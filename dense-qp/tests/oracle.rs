@@ -6,10 +6,9 @@
     reason = "tests"
 )]
 
-mod common;
+use crate::common::oracle::clarabel;
+use crate::common::{Draw, Qp, each};
 use clarabel::solver::SolverStatus;
-use common::oracle::clarabel;
-use common::{Draw, Qp, each};
 use dense_qp::{Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 
 #[derive(Clone, Copy, Debug, PartialEq)]

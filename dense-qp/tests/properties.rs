@@ -6,8 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-use common::{INF, Qp, definite, dot};
+use crate::common::{INF, Qp, definite, dot};
 use dense_qp::{Settings, Status, Workspace, kkt_residual, resume, solve, solve_warm};
 use proptest::prelude::*;
 

@@ -1,8 +1,7 @@
 //! Small programs of Hock and Schittkowski and of Maros and Meszaros, with their published optima, in both precisions.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop, reason = "tests")]
 
-mod common;
-use common::Qp;
+use crate::common::Qp;
 use dense_qp::{Settings, Status, Workspace, solve};
 
 const INF: f64 = f64::INFINITY;

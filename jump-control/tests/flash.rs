@@ -1,5 +1,4 @@
 //! Plans in flash, as a controller has them: what the compiler reads is what a run-time reader reads, in both scalars.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use jump_control::container::Container;
 use jump_control::{Node, Plan, flash_plan, sample};

@@ -1,7 +1,5 @@
 //! Joint axes are kept to the last digit of the file.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use model_import::options::AXIS_EXACT;
 use model_import::{Options, Robot, Warning};
 use rbd_core::joint::Kind;

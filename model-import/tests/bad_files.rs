@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-mod arm;
-
-use arm::{BOX, arm};
+use crate::arm::{BOX, arm};
 use model_import::{ImportError, InertiaPolicy, Options, Robot, Warning, parse_lock};
 use proptest::prelude::*;
 use rbd_core::BaseKind;

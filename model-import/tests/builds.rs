@@ -1,7 +1,5 @@
 //! What is written builds: a crate in an empty folder, with the commands that are printed.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,10 +1,6 @@
 //! Mimic joints: the coupling beside the tree, chains and rings of followers, and what is written of it.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod arm;
-
-use arm::arm;
+use crate::arm::arm;
 use model_import::emit::{Provenance, module};
 use model_import::{ImportError, MimicPolicy, Options, Robot, Warning};
 use rbd_core::reduction::ReductionError;

@@ -1,7 +1,5 @@
 //! Descriptions that are larger than any robot are refused by name and at once, whatever they are full of.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use core::time::Duration;
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,6 @@
 //! Problems whose optimum is known in closed form.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{BrysonDenham, LeastTime};
+use crate::common::{BrysonDenham, LeastTime};
 use core::ops::ControlFlow;
 use ocp_solver::{
     Barrier, Derivatives, Dims, Error, Evaluated, Problem, Settings, Solver, Stage, Status, Values,

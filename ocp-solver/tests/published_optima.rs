@@ -1,5 +1,4 @@
 //! Published problems with terminal equalities: their optimum in closed form.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use core::ops::ControlFlow;
 use ocp_solver::{

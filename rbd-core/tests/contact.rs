@@ -6,9 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::{CAP, masked, model, state, vector};
+use crate::common::{CAP, masked, model, state, vector};
 use proptest::prelude::*;
 use rbd_core::{
     AbaWorkspace, Axes, BodyMotions, ContactRow, ContactWorkspace, Effort, Frame, FrameJacobian,
@@ -20,7 +18,7 @@ const ROWS: usize = 12;
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// The leaf that ends the chain of the first joint, as far from the base as the table goes.
-fn last_leaf(model: &common::Model) -> usize {
+fn last_leaf(model: &crate::common::Model) -> usize {
     model.joint_count() - 1
 }
 
@@ -29,7 +27,7 @@ proptest! {
 
     #[test]
     fn contact_obeys_both_equations(
-        model in model(), (q, [v, _]) in state(), tau in common::joints(20.0), arm in vector(0.3),
+        model in model(), (q, [v, _]) in state(), tau in crate::common::joints(20.0), arm in vector(0.3),
     ) {
         let v = masked(&model, v);
         let posture = Posture::new(&model, &q);

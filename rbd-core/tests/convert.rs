@@ -1,7 +1,5 @@
 //! Conversions: each goes back to where it came from, and means what it says.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use rbd_core::convert::{

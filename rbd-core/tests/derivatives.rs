@@ -7,9 +7,7 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::{CAP, Model, joints, masked, model, motion, rotation, state, vector};
+use crate::common::{CAP, Model, joints, masked, model, motion, rotation, state, vector};
 use nalgebra::{Rotation3, SMatrix};
 use proptest::prelude::*;
 use rbd_core::{

@@ -1,9 +1,6 @@
 //! A fixed base is part of the world: what is welded to it counts in no quantity of the moving robot.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{CAP, Model, close, masked, model, state};
+use crate::common::{CAP, Model, close, masked, model, state};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use rbd_core::{

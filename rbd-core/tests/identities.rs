@@ -6,9 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::{CAP, Model, close, masked, model, rotation, size, state, vector};
+use crate::common::{CAP, Model, close, masked, model, rotation, size, state, vector};
 use proptest::prelude::*;
 use rbd_core::{
     AbaWorkspace, Axes, BaseBody, BaseKind, Body, BodyMotions, CentroidalMap, ComJacobian,

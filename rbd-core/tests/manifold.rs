@@ -6,9 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::{CAP, masked, model, state};
+use crate::common::{CAP, masked, model, state};
 use proptest::prelude::*;
 use rbd_core::{
     Axes, BodyMotions, Configuration, Frame, FrameJacobian, Kinematics, Link, MassMatrix, Posture,

@@ -6,10 +6,8 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::dual::inverse_dynamics;
-use common::{CAP, masked, model, state};
+use crate::common::dual::inverse_dynamics;
+use crate::common::{CAP, masked, model, state};
 use proptest::prelude::*;
 use rbd_core::{
     BaseKind, DerivativesWorkspace, Posture, RneaDerivatives, Tangent, Tree, rnea, rnea_derivatives,

@@ -1,9 +1,6 @@
 //! Coupled joints: the reduced equations are those of the coupled robot.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{CAP, Model, masked, model, state};
+use crate::common::{CAP, Model, masked, model, state};
 use proptest::prelude::*;
 use rbd_core::{
     BaseBody, BaseKind, Body, Configuration, CoupledWorkspace, Coupling, Effort, Force, Frame,

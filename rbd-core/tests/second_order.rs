@@ -6,9 +6,7 @@
     reason = "tests"
 )]
 
-mod common;
-
-use common::{CAP, Model, joints, model, rotation, state, vector};
+use crate::common::{CAP, Model, joints, model, rotation, state, vector};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use rbd_core::joint::Kind;

@@ -1,9 +1,6 @@
 //! The nine problems on the whole body, judged against IPOPT's costs.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{assert_reaches, mine};
+use crate::common::{assert_reaches, mine};
 use core::ops::ControlFlow;
 use ocp_solver::Barrier;
 use reference_problems::{Answer, File, SHIPPED, SrbMotion, shipped};

@@ -1,5 +1,4 @@
 //! Studies of many runs: shards, resumption, and what is refused.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,5 +1,4 @@
 //! What the program says to mistakes and to malice: a code that is documented, a reason, a remedy, and nothing half done.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

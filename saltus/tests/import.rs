@@ -1,7 +1,5 @@
 //! `saltus import` as a program: exit codes, messages, files, and what it refuses to overwrite.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

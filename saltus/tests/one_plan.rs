@@ -1,10 +1,7 @@
 //! The bytes that `plan` writes are those that the audit reads, and those that the machine flies, in `saltus run` and in the firmware's
 //! images (`tests/tests/plan_in_flash.rs` has the last step: from the file to the nodes in flash).
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod command;
-
-use command::{folder, saltus};
+use crate::command::{folder, saltus};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,8 +1,4 @@
 //! Options that do not apply to what is asked are refused, with what does, and nothing is left behind.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod command;
-mod refused;
 
 use core::time::Duration;
 use std::fs;
@@ -122,9 +118,9 @@ const OTHERS: &[Case] = &[
 
 #[test]
 fn options_that_do_not_apply_are_refused_with_what_does() {
-    let folder = command::folder("options");
+    let folder = crate::command::folder("options");
     for (arguments, words) in [RUNS, PLANS, OTHERS].concat() {
-        refused::refused(Duration::from_secs(60), &folder, arguments, words);
+        crate::refused::refused(Duration::from_secs(60), &folder, arguments, words);
     }
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
 }

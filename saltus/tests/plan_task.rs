@@ -1,5 +1,4 @@
 //! `saltus plan TASK`: margins kept, torques held, audited, stored; and what happens to tasks that cannot be.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;

@@ -1,7 +1,4 @@
 //! `saltus plan --reference` and `--problem`: guesses with noise, and a file of one's own.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod command;
 
 use serde_json::{Value, json};
 use std::fs;
@@ -20,12 +17,12 @@ const IPOPT: [(&str, f64); 9] = [
 ];
 
 fn plan(name: &str, arguments: &[&str]) -> Value {
-    let folder = command::folder(&format!("reference-{name}"));
+    let folder = crate::command::folder(&format!("reference-{name}"));
     let mut file: Value =
         serde_json::from_str(include_str!("../../reference-problems/data/a1-jumps.json")).unwrap();
     file["tasks"]["barrel"]["goal"] = json!([0.0, -0.5, 0.0]);
     fs::write(folder.join("p.json"), file.to_string()).unwrap();
-    let output = command::saltus(&folder, &[&["plan", "--json"], arguments].concat());
+    let output = crate::command::saltus(&folder, &[&["plan", "--json"], arguments].concat());
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

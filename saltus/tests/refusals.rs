@@ -1,21 +1,17 @@
 //! More of what must be refused at once, with the file, the key or the option, and what is accepted; and cases that the fuzzer
 //! (`cargo xtask fuzz`) has found.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod command;
-mod refused;
-
-use command::saltus;
+use crate::command::saltus;
 use core::time::Duration;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 fn folder(name: &str) -> PathBuf {
-    command::folder(&format!("refusals-{name}"))
+    crate::command::folder(&format!("refusals-{name}"))
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
-    refused::refused(Duration::from_secs(20), folder, arguments, words);
+    crate::refused::refused(Duration::from_secs(20), folder, arguments, words);
 }
 
 /// Every command that reads a file names it, whatever is in it, and says what to do.

@@ -1,9 +1,6 @@
 //! The humanoid's jumps, end to end.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-mod keys;
-mod recording;
-
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -29,7 +26,7 @@ fn number(json: &Value, name: &str) -> f64 {
 fn check(task: &str, name: &str) {
     let (json, good) = run(task, name, &[]);
     assert_eq!(json["on_target"], good, "{json}");
-    keys::are_all_there(&json);
+    crate::keys::are_all_there(&json);
     let verdict = &json["verdict"];
     let failures = verdict["failures"].as_array().unwrap();
     assert_eq!(failures.is_empty(), good, "{json}");
@@ -77,9 +74,9 @@ fn the_torque_program_jumps_four_centimetres_and_stands() {
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn the_report_has_the_figures_of_the_paper() {
-    keys::are_all_there(&run("icub/velocity", "icub-report", &[]).0);
+    crate::keys::are_all_there(&run("icub/velocity", "icub-report", &[]).0);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("icub-report");
-    assert!(recording::agrees_with_csv(&folder) > 100);
+    assert!(crate::recording::agrees_with_csv(&folder) > 100);
     let path = folder.join("report.html");
     let page = std::fs::read_to_string(path).unwrap();
     let data = page.split("const DATA = ").nth(1).unwrap();

@@ -1,9 +1,6 @@
 //! The main job, end to end: one command plans, simulates and reports a jump.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-mod keys;
-mod recording;
-
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -84,7 +81,7 @@ fn lateral_lands_upright_on_its_target_and_leaves_a_report() {
         );
     }
     // Standing on four feet alone is longer than the flight.
-    assert!(recording::agrees_with_csv(&out) > 500);
+    assert!(crate::recording::agrees_with_csv(&out) > 500);
     let log = std::fs::read_to_string(out.join("log.csv")).unwrap();
     let columns = log.lines().next().unwrap().split(',').count();
     assert!(log.lines().all(|line| line.split(',').count() == columns));
@@ -225,7 +222,7 @@ fn the_result_has_every_field() {
             assert!(json[group][field].is_u64(), "{group}.{field} in {json}");
         }
     }
-    keys::are_all_there(&json);
+    crate::keys::are_all_there(&json);
     assert_eq!(json["plant"]["ground"], 2.0);
     assert!(json["ticks"]["joint"].as_u64() > json["ticks"]["cartesian"].as_u64());
 }

@@ -1,7 +1,4 @@
 //! A quadruped from its URDF jumps as the built-in one does: with its own motors, shapes and gains, in both simulators.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod keys;
 
 use serde_json::Value;
 use std::fs;
@@ -43,7 +40,7 @@ fn a_robot_from_its_urdf_is_on_target() {
     for sim in sims {
         let output = run(&folder, "a1/spin-90", sim);
         let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-        keys::are_all_there(&json);
+        crate::keys::are_all_there(&json);
         assert_eq!(json["on_target"], true, "{sim}: {}", json["verdict"]);
         assert_eq!(json["placeholders"], serde_json::json!([]));
         assert!(folder.join(format!("{sim}-out/report.html")).exists());

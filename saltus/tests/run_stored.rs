@@ -1,5 +1,4 @@
 //! A stored plan is executed like one that was just made.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
 //! Standard output that takes nothing, targets that cannot be, processes that were killed: an exit code, a reason, nothing half done.
 #![cfg(target_os = "linux")]
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::fs::{self, File};
 use std::io::Read;

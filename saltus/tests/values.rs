@@ -1,21 +1,17 @@
 //! Values that cannot be: named with their key, what they are and what is allowed, before anything is computed; nothing is left behind.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod command;
-mod refused;
-
-use command::saltus;
+use crate::command::saltus;
 use core::time::Duration;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 fn folder(name: &str) -> PathBuf {
-    command::folder(&format!("values-{name}"))
+    crate::command::folder(&format!("values-{name}"))
 }
 
 fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
-    refused::refused(Duration::from_secs(60), folder, arguments, words)
+    crate::refused::refused(Duration::from_secs(60), folder, arguments, words)
 }
 
 const LATERAL: &str = include_str!("../../jump-planner/tasks/a1/lateral.toml");

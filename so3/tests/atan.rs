@@ -1,5 +1,4 @@
 //! `math::atan` against a double-double oracle (f64), against `libm` in f64 (f32), and at its edges.
-mod oracle;
 
 use proptest::prelude::*;
 use so3::math::{atan, atan2};
@@ -21,7 +20,7 @@ fn slopes() -> impl Iterator<Item = f64> {
 #[test]
 fn atan_f64() {
     let worst = slopes()
-        .map(|x| oracle::ulps(atan(x), oracle::atan(x)))
+        .map(|x| crate::oracle::ulps(atan(x), crate::oracle::atan(x)))
         .fold(0.0, f64::max);
     println!("worst error: {worst} ulp");
     assert!(worst <= BOUND, "{worst} ulp");

@@ -1,11 +1,9 @@
 //! Roll, pitch, yaw: both orders against products of elementary rotations, gimbal lock, rates.
 #![allow(clippy::disallowed_methods, reason = "std is the reference here")]
 
-mod cases;
-
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use cases::{matrix_error, rotation_vector, rotation_vectors};
+use crate::cases::{matrix_error, rotation_vector, rotation_vectors};
 use proptest::prelude::*;
 use so3::euler::{RollPitchYaw, rotation_x, rotation_y, rotation_z};
 use so3::{Error, Rotation3, Scalar, Vector3, exp, vee};

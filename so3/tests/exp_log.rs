@@ -5,13 +5,10 @@
     reason = "tests: only inputs are made here"
 )]
 
-mod cases;
-mod oracle;
-
 use core::f64::consts::PI;
 
-use cases::{axes, distance, matrix_error, rotation_vector, rotation_vectors, to_f64};
-use oracle::even_series;
+use crate::cases::{axes, distance, matrix_error, rotation_vector, rotation_vectors, to_f64};
+use crate::oracle::even_series;
 use proptest::prelude::*;
 use so3::{
     Matrix3, Rotation3, Scalar, Unit, Vector3, exp, hat, log, log_near, orthogonality_defect,
@@ -19,7 +16,7 @@ use so3::{
 };
 
 fn exact_exp<T: Scalar>(w: &Vector3<T>) -> [[f64; 3]; 3] {
-    oracle::polynomial(to_f64(w).into(), |z| (even_series(z, 1), even_series(z, 2)))
+    crate::oracle::polynomial(to_f64(w).into(), |z| (even_series(z, 1), even_series(z, 2)))
 }
 
 /// Difference in ε of two rotation vectors, ± at half a turn.

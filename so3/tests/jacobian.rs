@@ -1,10 +1,7 @@
 //! Jacobians against a double-double oracle, as derivatives, and as inverses of each other.
 
-mod cases;
-mod oracle;
-
-use cases::{distance, matrix_error, rotation_vector, rotation_vectors, to_f64};
-use oracle::even_series;
+use crate::cases::{distance, matrix_error, rotation_vector, rotation_vectors, to_f64};
+use crate::oracle::even_series;
 use proptest::prelude::*;
 use so3::{
     Matrix3, Scalar, Vector3, exp, exp_with_jacobian, left_jacobian, left_jacobian_inverse, log,
@@ -15,10 +12,14 @@ fn oracle_errors<T: Scalar>() -> (f64, f64, f64) {
     rotation_vectors::<T>()
         .iter()
         .fold((0.0, 0.0, 0.0), |worst, w| {
-            let exact =
-                oracle::polynomial(to_f64(w).into(), |z| (even_series(z, 2), even_series(z, 3)));
-            let exact_inverse = oracle::polynomial(to_f64(w).into(), |z| {
-                (oracle::Dd(-0.5, 0.0), oracle::inverse_coefficient(z))
+            let exact = crate::oracle::polynomial(to_f64(w).into(), |z| {
+                (even_series(z, 2), even_series(z, 3))
+            });
+            let exact_inverse = crate::oracle::polynomial(to_f64(w).into(), |z| {
+                (
+                    crate::oracle::Dd(-0.5, 0.0),
+                    crate::oracle::inverse_coefficient(z),
+                )
             });
             let product = left_jacobian(w) * left_jacobian_inverse(w);
             (

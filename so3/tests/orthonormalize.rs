@@ -1,9 +1,7 @@
 //! Back to SO(3): one step, and the nearest rotation.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests")]
 
-mod cases;
-
-use cases::{matrix_error, rotation_vector};
+use crate::cases::{matrix_error, rotation_vector};
 use proptest::prelude::*;
 use so3::{
     Error, Matrix3, Rotation3, Scalar, exp, exp_taylor4, log, nearest_rotation,

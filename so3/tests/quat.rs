@@ -1,9 +1,6 @@
 //! Quaternions: round trips, storage orders, exp and log, slerp, bad input.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod cases;
-
-use cases::{matrix_error, rotation_vector, rotation_vectors};
+use crate::cases::{matrix_error, rotation_vector, rotation_vectors};
 use proptest::prelude::*;
 use so3::nalgebra::Quaternion;
 use so3::{Error, Geodesic, Rotation3, Scalar, UnitQuaternion, Vector3, exp, log, quat};

@@ -1,11 +1,9 @@
 //! Rotation errors of paper A's problem (2) and geodesics.
 #![allow(clippy::disallowed_methods, reason = "std is the reference here")]
 
-mod cases;
-
 use core::f64::consts::PI;
 
-use cases::{axes, axis, matrix_error, rotation_vector};
+use crate::cases::{axes, axis, matrix_error, rotation_vector};
 use proptest::prelude::*;
 use so3::{
     Geodesic, Matrix3, Rotation3, Unit, Vector3, exp, right_jacobian_inverse, rotation_error,

@@ -1,13 +1,12 @@
 //! `math::sin_cos` against a double-double oracle (f64), against `libm` in f64 (f32), and at its edges.
-mod oracle;
 
 use proptest::prelude::*;
 use so3::math::{sin_cos, sin_cos_array};
 
 /// Worst error of sine and cosine at `x`, in units in the last place.
 fn error_f64(x: f64) -> f64 {
-    let (exact, ours) = (oracle::sin_cos(x), sin_cos(x));
-    oracle::ulps(ours.0, exact.0).max(oracle::ulps(ours.1, exact.1))
+    let (exact, ours) = (crate::oracle::sin_cos(x), sin_cos(x));
+    crate::oracle::ulps(ours.0, exact.0).max(crate::oracle::ulps(ours.1, exact.1))
 }
 
 /// The same in f32; `libm` in f64 is exact for this purpose.

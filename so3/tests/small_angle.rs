@@ -5,9 +5,7 @@
     reason = "tests: only inputs are made here"
 )]
 
-mod oracle;
-
-use oracle::{Dd, even_series};
+use crate::oracle::{Dd, even_series};
 use so3::Scalar;
 use so3::small_angle::{coefficients, inverse_coefficient};
 
@@ -37,7 +35,10 @@ fn worst<T: Scalar>() -> [f64; 4] {
             relative(ours.a, even_series(exact, 1)) * even_series(exact, 1).0.max(1e-9),
             relative(ours.b, even_series(exact, 2)),
             relative(ours.c, even_series(exact, 3)),
-            relative(inverse_coefficient(z), oracle::inverse_coefficient(exact)),
+            relative(
+                inverse_coefficient(z),
+                crate::oracle::inverse_coefficient(exact),
+            ),
         ];
         core::array::from_fn(|i| worst[i].max(errors[i]))
     })

@@ -1,9 +1,7 @@
 //! The degree-4 Taylor exponential: the series itself, its derivatives and both error statements.
 #![allow(clippy::disallowed_methods, reason = "std is the reference here")]
 
-mod cases;
-
-use cases::{axes, axis, matrix_error};
+use crate::cases::{axes, axis, matrix_error};
 use proptest::prelude::*;
 use so3::{
     Matrix3, Vector3, exp, exp_taylor4, exp_taylor4_defect, exp_taylor4_derivatives,

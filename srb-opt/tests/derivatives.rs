@@ -1,9 +1,6 @@
 //! Stage derivatives against finite differences.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{NI, NU, NX, jump};
+use crate::common::{NI, NU, NX, jump};
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Stage, Values, derivative_errors};
 use proptest::prelude::*;
 use srb_opt::{Exponential, State};

@@ -1,9 +1,6 @@
 //! Problem (2) of paper A as it is printed, in plain formulas, beside what the solver is given.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{NI, NU, NX, jump};
+use crate::common::{NI, NU, NX, jump};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use ocp_solver::{Problem as Ocp, Stage, Values};
 use srb_opt::{OMEGA, POSITION, ROTATION, State, VELOCITY};

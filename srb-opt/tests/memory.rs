@@ -1,9 +1,6 @@
 //! What a plan costs in memory, and that the smaller storage plans the same.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{NI, NU, NX, jump};
+use crate::common::{NI, NU, NX, jump};
 use core::mem::size_of;
 use core::ops::ControlFlow;
 use ocp_solver::{LeanStage, Settings, Stage, Status};

@@ -1,9 +1,6 @@
 //! Problem (2) in `f32`, judged in `f64`.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{NI, NU, NX, jump, jump_in};
+use crate::common::{NI, NU, NX, jump, jump_in};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Settings, Stage, Status};

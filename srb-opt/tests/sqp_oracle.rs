@@ -1,11 +1,8 @@
 //! Two solvers that share nothing but the problem end in the same point with the same multipliers.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod reference;
-
+use crate::reference::{TASKS, Task};
 use core::ops::ControlFlow;
 use ocp_solver::{Settings, Stage, Status};
-use reference::{TASKS, Task};
 use srb_opt::onboard::PHASES;
 use srb_opt::{SqpNode, State};
 

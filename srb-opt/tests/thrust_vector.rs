@@ -1,5 +1,4 @@
 //! The example without legs: its derivatives, and that it flips.
-#![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(
     dead_code,
     unreachable_pub,

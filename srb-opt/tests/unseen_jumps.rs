@@ -1,13 +1,11 @@
 //! A smaller version of `examples/variants.rs`: jumps that nobody tuned for are solved, and from noisy guesses too.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests")]
 
-mod variants;
-
+use crate::variants::{Draw, variant};
 use core::ops::ControlFlow;
 use ocp_solver::{Settings, Stage, Status};
 use srb_opt::State;
 use srb_opt::onboard::{Jump, PHASES};
-use variants::{Draw, variant};
 
 fn solve(jump: &Jump<f64>, noise: f64, seed: u64) -> Option<f64> {
     let mut stages =

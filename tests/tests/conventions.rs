@@ -1,5 +1,4 @@
 //! One test for each line of CONVENTIONS.md.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use a1_model::{A1, A1Reference};
 use icub_model::Icub23;

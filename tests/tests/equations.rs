@@ -1,5 +1,4 @@
 //! The index of equations names what exists, in files that cite the equation, and tests that execute it, and leaves none out.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeSet;
 use std::fs;

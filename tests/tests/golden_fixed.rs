@@ -1,7 +1,5 @@
 //! A fixed base beside Pinocchio, which leaves what is welded to the world out of centre of mass, momentum and energy.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use a1_model::A1;
 use rbd_core::{BaseKind, Model, TableModel, Tree};
 use saltus_tests::everything;

@@ -1,7 +1,5 @@
 //! An MJCF with one of everything beside MuJoCo.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use model_import::{Options, Robot, Warning, mjcf};
 use rbd_core::BaseKind;
 use saltus_tests::everything;

@@ -1,7 +1,5 @@
 //! The model crates against Pinocchio and against what is known of the robots.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use a1_model::{A1, A1Geared, A1Reference, a1, a1_reference, geared};
 use icub_model::{Icub23, Icub23Cad, Icub23GazeboGeared, Icub23Geared, cad, gazebo, robots};
 use model_import::limbs::{expression, structure};

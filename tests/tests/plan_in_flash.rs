@@ -1,5 +1,4 @@
 //! What the firmware's images fly is what stands in the container, which a planner wrote and an audit can read.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use a1_model::A1Geared;
 use jump_control::container::{Container, model_hash};

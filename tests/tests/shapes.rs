@@ -1,7 +1,5 @@
 //! A1's collision shapes are those of its URDF.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use std::fs;
 use std::path::Path;
 

@@ -1,10 +1,6 @@
 //! A friction cone whose apex is above the ground: a margin in newtons on every side.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-#[allow(dead_code, reason = "tests share more than each needs")]
-mod common;
-
-use common::{BASES, FEET, N, NI, NU, NX, data, jump};
+use crate::common::{BASES, FEET, N, NI, NU, NX, data, jump};
 use ocp_solver::{Problem as Ocp, Values};
 use wb_opt::{Friction, Problem, State};
 

@@ -1,13 +1,8 @@
 //! Stage derivatives against finite differences.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-#[path = "common/differences.rs"]
-mod differences;
-
+use crate::common::differences::{entry, mixed, moved, reached};
+use crate::common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump, robot};
 use a1_model::A1Geared;
-use common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump, robot};
-use differences::{entry, mixed, moved, reached};
 use nalgebra::Vector3;
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
 use proptest::prelude::*;

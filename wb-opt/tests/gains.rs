@@ -1,10 +1,7 @@
 //! Gains against differences of the efforts, with controls that respond to the state.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
+use crate::common::{BASES, N, NU, NX, Noise, anywhere, data, jump, robot};
 use a1_model::A1Geared;
-use common::{BASES, N, NU, NX, Noise, anywhere, data, jump, robot};
 use ocp_solver::Problem as Ocp;
 use wb_opt::BaseCoordinates;
 
@@ -26,15 +23,16 @@ fn efforts_and_forces_change(base: BaseCoordinates) {
         let gain: [[f64; NX]; NU] =
             core::array::from_fn(|_| core::array::from_fn(|_| noise.next()));
         let gains = problem.gains(k, &state, &control, &gain);
-        let controls = Ocp::<f64, NX, NU, { common::NI }>::dims(&problem, k).controls;
+        let controls = Ocp::<f64, NX, NU, { crate::common::NI }>::dims(&problem, k).controls;
         let h = 1e-6;
         for j in 0..2 * N {
             let moved = |h: f64| {
                 // The solver's tangent coordinate of a rate is in units of 5 rad/s.
                 let mut step = [0.0; NX];
                 step[j] = if j < N { h } else { h / 5.0 };
-                let x =
-                    Ocp::<f64, NX, NU, { common::NI }>::retract(&problem, k, &state, &step, None);
+                let x = Ocp::<f64, NX, NU, { crate::common::NI }>::retract(
+                    &problem, k, &state, &step, None,
+                );
                 let mut u = control;
                 for (u, row) in u.iter_mut().zip(&gain).take(controls) {
                     *u += row.iter().zip(&step).map(|(k, d)| k * d).sum::<f64>();

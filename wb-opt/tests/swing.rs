@@ -1,21 +1,18 @@
 //! How high feet in the air must be: least after lift-off and before touchdown, more on the way between.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-#[allow(dead_code, reason = "tests share more than each needs")]
-mod common;
-
-use common::{BASES, NI, NU, NX, data, jump};
+use crate::common::{BASES, NI, NU, NX, data, jump};
 use ocp_solver::Problem as Ocp;
 
 /// What `swing_rise` adds to the bounds of interval `k`, m, one number per foot in the air.
 fn added(rise: f64, k: usize) -> Vec<f64> {
     let data = data();
     let mut problem = jump(&data, BASES[2]);
-    let bounds = |problem: &wb_opt::Problem<'_, f64, { common::N }, { common::FEET }>| {
-        let (mut lower, mut upper) = ([0.0; NI], [0.0; NI]);
-        Ocp::<f64, NX, NU, NI>::bounds(problem, k, &mut lower, &mut upper);
-        lower
-    };
+    let bounds =
+        |problem: &wb_opt::Problem<'_, f64, { crate::common::N }, { crate::common::FEET }>| {
+            let (mut lower, mut upper) = ([0.0; NI], [0.0; NI]);
+            Ocp::<f64, NX, NU, NI>::bounds(problem, k, &mut lower, &mut upper);
+            lower
+        };
     let plain = bounds(&problem);
     problem.swing_rise = rise;
     let raised = bounds(&problem);

@@ -1,14 +1,9 @@
 //! Free durations: derivatives against differences of the values, and a jump that finds its own timing.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-#[path = "common/differences.rs"]
-mod differences;
-
+use crate::common::differences::{entry, mixed, moved, reached};
+use crate::common::{BASES, FEET, N, NI, NU, Noise, anywhere, data, jump, robot};
 use a1_model::A1Geared;
-use common::{BASES, FEET, N, NI, NU, Noise, anywhere, data, jump, robot};
 use core::ops::ControlFlow;
-use differences::{entry, mixed, moved, reached};
 use nalgebra::Vector3;
 use ocp_solver::{
     Derivatives, Evaluated, Problem as Ocp, Stage, Status, Values, derivative_errors,

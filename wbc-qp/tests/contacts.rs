@@ -1,10 +1,8 @@
 //! Contacts on inclined ground, polygons, feedback, and what is refused.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-mod common;
-
+use crate::common::{N, Rng, snapshot};
 use a1_model::{A1, FEET, FOOT_RADIUS};
-use common::{N, Rng, snapshot};
 use icub_model::{Icub23, SOLES};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, ContactShape, Frame, Tangent, Transform, integrate, rnea};

@@ -1,9 +1,7 @@
 //! The two programs of paper B as they are printed, beside what comes out of them.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-mod common;
-
-use common::{N, Rng, snapshot};
+use crate::common::{N, Rng, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::Vector3;
 use rbd_core::{

@@ -1,9 +1,7 @@
 //! Rows of the user in both programs: what they keep, how they give way, and what the report says of it.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-mod common;
-
-use common::{N, Rng, oracle, snapshot};
+use crate::common::{N, Rng, oracle, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use rbd_core::{Configuration, Tangent, Transform};
 use wbc_qp::{

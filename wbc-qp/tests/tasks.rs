@@ -1,9 +1,7 @@
 //! Tasks, contacts and limits against finite differences and against what they promise.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-mod common;
-
-use common::{N, Rng, oracle, snapshot};
+use crate::common::{N, Rng, oracle, snapshot};
 use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
 use nalgebra::Vector3;

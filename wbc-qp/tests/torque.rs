@@ -1,9 +1,7 @@
 //! The torque program against the equations of motion, its limits, and Clarabel.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-mod common;
-
-use common::{N, Rng, oracle, snapshot};
+use crate::common::{N, Rng, oracle, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use rbd_core::{Axes, Configuration, Force, Frame, FrameJacobian, Tangent, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};

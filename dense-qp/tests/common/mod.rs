@@ -1,5 +1,5 @@
 //! Random programs from proptest's numbers, and the Clarabel oracle.
-#![allow(dead_code, unreachable_pub, reason = "each test file uses a part")]
+#![allow(unreachable_pub, reason = "tests")]
 #![allow(
     clippy::expect_used,
     clippy::needless_range_loop,

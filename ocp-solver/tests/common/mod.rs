@@ -1,5 +1,4 @@
 //! Small problems with known optima.
-#![allow(dead_code, reason = "every test file uses its own part")]
 
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem, Values};
 

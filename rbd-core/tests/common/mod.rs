@@ -1,9 +1,4 @@
 //! Random robots and states, shared by the integration tests.
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    reason = "tests, each of which uses its own part"
-)]
 
 pub(crate) mod dual;
 

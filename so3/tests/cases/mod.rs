@@ -1,5 +1,4 @@
 //! Axes and angles where rotations go wrong, and random ones.
-#![allow(dead_code, reason = "each test file uses a part")]
 #![allow(
     clippy::disallowed_methods,
     reason = "tests: only inputs are made here"

@@ -1,5 +1,4 @@
 //! Numbers with 106 bits, as unevaluated sums: error-free transformations after Dekker and Knuth.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 #[derive(Clone, Copy)]
 pub(crate) struct Dd(pub(crate) f64, pub(crate) f64);

@@ -1,5 +1,4 @@
 //! A jump to test with: a quarter turn of an A1-like body, four feet, flight.
-#![allow(dead_code, reason = "every test file uses its own part")]
 
 use nalgebra::{Matrix3, Vector3};
 use so3::Scalar;

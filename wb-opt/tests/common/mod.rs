@@ -1,5 +1,7 @@
 //! A small jump of the reference A1: stand on four feet, push off with two, fly.
 
+pub(crate) mod differences;
+
 use a1_model::{A1Reference, a1_reference::frame};
 use nalgebra::Vector3;
 use wb_opt::{
@@ -9,7 +11,6 @@ use wb_opt::{
 
 pub(crate) const N: usize = 18;
 pub(crate) const FEET: usize = 4;
-#[allow(dead_code, reason = "with free durations a state has more coordinates")]
 pub(crate) const NX: usize = 36;
 pub(crate) const NU: usize = 30;
 pub(crate) const NI: usize = 140;

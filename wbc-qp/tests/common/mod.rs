@@ -1,5 +1,5 @@
 //! Random states of iCub.
-#![allow(dead_code, unreachable_pub, reason = "each test file uses a part")]
+#![allow(unreachable_pub, reason = "tests")]
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
 use clarabel::algebra::CscMatrix;

@@ -1,5 +1,4 @@
 //! Equality-constrained linear-quadratic problems against a dense solve of their KKT conditions.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 mod problem;
 

@@ -1,0 +1,5 @@
+//! Every integration test of the crate in one program: linked once.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod flash;
+mod properties;

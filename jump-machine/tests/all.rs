@@ -1,0 +1,6 @@
+//! Every integration test of the crate in one program: linked once.
+
+mod flight;
+mod humanoid;
+mod machine;
+mod similarity;

@@ -1,0 +1,6 @@
+//! Every integration test of the crate in one program: linked once.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+mod srb;
+mod whole_body;

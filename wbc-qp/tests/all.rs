@@ -1,0 +1,10 @@
+//! Every integration test of the crate in one program: linked once.
+
+mod a1;
+mod common;
+mod contacts;
+mod fixed_base;
+mod paper_b;
+mod rows;
+mod tasks;
+mod torque;
