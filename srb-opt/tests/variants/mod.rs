@@ -1,5 +1,9 @@
 //! Jumps of the reference problem's form that nobody tuned for: other goals, heights, turns, payloads, contacts.
-#![allow(dead_code, reason = "every file that includes this uses its own part")]
+#![allow(
+    dead_code,
+    clippy::disallowed_methods,
+    reason = "every program that includes this uses its own part, and draws numbers with std"
+)]
 
 use nalgebra::Vector3;
 use srb_opt::onboard::{FEET, Jump, PHASES, example};

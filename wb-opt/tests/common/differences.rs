@@ -1,6 +1,6 @@
 //! Differences of a stage's values over its coordinates: those of the state, then the controls.
 
-use super::common::{N, NI, NU, Noise, anywhere};
+use super::{N, NI, NU, Noise, anywhere};
 use nalgebra::Vector3;
 use ocp_solver::Derivatives;
 use wb_opt::{BaseCoordinates, State};
