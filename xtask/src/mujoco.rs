@@ -47,16 +47,15 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     run::succeed(cargo.env("LD_LIBRARY_PATH", search))
 }
 
-/// `cargo run` of saltus with both simulators; its arguments follow.
+/// saltus with both simulators, built as [`tests`] build it, so that the suites compile nothing again; its arguments follow.
 pub(crate) fn saltus() -> Result<Command> {
-    let (folder, search) = library(Path::new("python3"))?;
-    let mut cargo = run::cargo();
-    cargo.env("MUJOCO_DYNAMIC_LINK_DIR", &folder);
-    cargo.env("LD_LIBRARY_PATH", search);
-    aside(&mut cargo);
-    let release = ["run", "--release", "--quiet", "--package", "saltus"];
-    cargo.args(release).args(["--features", "mujoco", "--"]);
-    Ok(cargo)
+    let mut build = tests()?;
+    build.args(["--quiet", "--no-run", "--test", "all"]);
+    run::succeed(&mut build)?;
+    let (_, search) = library(Path::new("python3"))?;
+    let mut saltus = Command::new(build_folder().join("release/saltus"));
+    saltus.current_dir(run::root()).env("LD_LIBRARY_PATH", search);
+    Ok(saltus)
 }
 
 /// `cargo test` of `jump-lab` and `saltus` with both simulators, in the release build that the other checks use too.
@@ -74,9 +73,13 @@ pub(crate) fn tests() -> Result<Command> {
 
 /// Builds in a folder of its own, unless the caller has chosen one.
 fn aside(cargo: &mut Command) {
-    if env::var_os("CARGO_TARGET_DIR").is_none() {
-        cargo.env("CARGO_TARGET_DIR", run::root().join("target/mujoco-build"));
-    }
+    cargo.env("CARGO_TARGET_DIR", build_folder());
+}
+
+/// Where [`aside`] builds.
+fn build_folder() -> PathBuf {
+    let chosen = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    chosen.unwrap_or_else(|| run::root().join("target/mujoco-build"))
 }
 
 /// The folder with MuJoCo's library and its `include`, and the path on which programs in C look for it.
