@@ -71,7 +71,7 @@ fn two_reference_problems() {
     ["lateral", "spin"].into_iter().for_each(named);
 }
 
-/// `cargo test --release -p srb-opt --features clarabel --test sqp_oracle -- --ignored`
+/// `cargo test --release -p srb-opt sqp_oracle -- --ignored`
 #[test]
 #[ignore = "a minute"]
 fn all_reference_problems() {
