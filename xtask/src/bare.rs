@@ -69,6 +69,7 @@ impl Bare {
     /// A `cargo build --release` for the target.
     pub(crate) fn build(&self) -> Command {
         let mut cargo = run::cargo();
+        cargo.env_remove(run::LTO);
         cargo.args(["build", "--release", "--target", self.target]);
         if let Source::Debian { rustc } = &self.source {
             cargo

@@ -170,6 +170,7 @@ pub(crate) fn build(target: &Path, flags: &str, features: &str) -> Result<PathBu
             .arg("--target-dir")
             .arg(target)
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            .env_remove(run::LTO)
             .env("RUSTFLAGS", flags),
     )?;
     Ok(target.join("release/bench-dynamics"))
