@@ -6,8 +6,8 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{JointCommand, Measurement, Node, Phase, Plan, Torques};
+use jump_machine::Workspace;
 use jump_machine::{Jump, Machine, Observation, Settings, Tick};
-use landing::Workspace;
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
     BaseBody, BaseKind, Body, Build, Frame, Motion, Motor, TableModel, Transform, Tree,
