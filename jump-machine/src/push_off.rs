@@ -47,10 +47,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             return;
         };
         let forces_w = forces_w.map(|force| force * hold);
-        let rot_wb = self.limbs.posture.base.rotation;
+        let rot_wb = self.limbs.posture.base().rotation;
         let legs = self.limbs.ends.iter().zip(&self.wanted.ends);
         for ((now, planned), force) in legs.zip(&forces_w) {
-            now.add_tr_mul(&(rot_wb.inverse() * -force), &mut reference.torques);
+            now.add_tr_mul(&(rot_wb.inverse() * -*force), &mut reference.torques);
             planned.add_tr_mul(&(base.rot_wb.inverse() * *force), &mut reference.torques);
         }
         let then = t - measured.age;

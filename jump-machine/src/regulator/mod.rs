@@ -137,7 +137,7 @@ impl Regulator {
         planned_w: &[Vector3<T>; F],
     ) -> [Vector3<T>; F] {
         let mut changes = [Vector3::zeros(); F];
-        let base = &limbs.posture.base;
+        let base = limbs.posture.base();
         let now = centroidal_state(model, &limbs.posture, velocity);
         let Some(costate) = self.costate(plan, moments, &base.rotation, &now) else {
             return changes;
