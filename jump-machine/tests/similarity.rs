@@ -297,7 +297,7 @@ fn a_large_robot_jumps_as_a_small_one_does() {
 #[test]
 fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
     type Take = fn(&mut Settings<f64, 12, 4>, &Settings<f64, 12, 4>);
-    let takes: [(&str, Take); 22] = [
+    let takes: [(&str, Take); 29] = [
         ("weighing", |to, of| to.weighing = of.weighing),
         ("levelling", |to, of| to.levelling = of.levelling),
         ("rest", |to, of| to.rest = of.rest),
@@ -308,8 +308,23 @@ fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
         ("joint_gains", |to, of| {
             to.pd.joint_gains = of.pd.joint_gains
         }),
-        ("turning", |to, of| {
-            to.base_feedback.turning = of.base_feedback.turning
+        ("takeoff", |to, of| {
+            to.regulator.takeoff = of.regulator.takeoff
+        }),
+        ("touchdown", |to, of| {
+            to.regulator.touchdown = of.regulator.touchdown
+        }),
+        ("running", |to, of| {
+            to.regulator.running = of.regulator.running
+        }),
+        ("time", |to, of| to.regulator.time = of.regulator.time),
+        ("easing", |to, of| to.unloading.easing = of.unloading.easing),
+        ("lasting", |to, of| {
+            to.unloading.lasting = of.unloading.lasting
+        }),
+        ("pull", |to, of| to.unloading.pull = of.unloading.pull),
+        ("unloaded", |to, of| {
+            to.unloading.loaded = of.unloading.loaded
         }),
         ("inertia_shaping.gain", |to, of| {
             to.inertia_shaping.gain = of.inertia_shaping.gain

@@ -27,6 +27,8 @@
 
 mod body;
 mod cost_to_go;
+#[cfg(test)]
+mod tests;
 mod weights;
 
 use jump_control::Plan;
@@ -54,7 +56,7 @@ type Gain = [[f32; MOMENTA]; ERRORS];
 pub struct Regulator {
     states: [State; STATES],
     gains: [Gain; GAINS],
-    /// Nodes from one state, and one gain, to the next.
+    /// Nodes from one state, and one gain, to the next; states are counted from the first node on, gains back from the last before the take-off.
     every: [usize; 2],
     /// Number of nodes before the take-off.
     nodes: usize,
@@ -118,7 +120,10 @@ impl Regulator {
             let of = [body.com_w, body.com_velocity_w, body.angular_w];
             *to = of.map(|part| <[T; 3]>::from(part).map(single));
         }
-        if let Some(to) = self.gains.get_mut(i / gain).filter(|_| i % gain == 0) {
+        let Some(left) = self.nodes.checked_sub(i + 1) else {
+            return;
+        };
+        if let Some(to) = self.gains.get_mut(left / gain).filter(|_| left % gain == 0) {
             *to = <[[T; MOMENTA]; ERRORS]>::from(cost.costate()).map(|column| column.map(single));
         }
     }
@@ -183,7 +188,12 @@ impl Regulator {
         error.fixed_rows_mut::<3>(ROTATION).copy_from(&rotation);
         error.fixed_rows_mut::<3>(VELOCITY).copy_from(&velocity);
         error.fixed_rows_mut::<3>(ANGULAR).copy_from(&angular);
-        Some(between(&self.gains, gain, here, matrix)? * error)
+        // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
+        let gain = match (self.nodes - 1).checked_sub(node + 1) {
+            Some(left) => between(&self.gains, gain, (left, T::ONE - here.1), matrix)?,
+            None => matrix(self.gains.first()?),
+        };
+        Some(gain * error)
     }
 }
 
