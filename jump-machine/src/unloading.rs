@@ -17,7 +17,7 @@ pub struct Unloading<T> {
     pub lasting: T,
     /// Normal force from which on a foot is on the ground still, N.
     pub loaded: T,
-    /// Force with which it is pulled up, N: two thirds of the weight.
+    /// Force with which it is pulled up, N: the weight, nearly.
     pub pull: T,
 }
 
@@ -26,10 +26,10 @@ impl<T: Scalar> Unloading<T> {
     #[must_use]
     pub fn new(build: &Build<T>) -> Self {
         Self {
-            easing: build.time(0.01),
+            easing: build.time(0.02),
             lasting: build.time(0.05),
             loaded: build.force(8.0),
-            pull: build.force(90.0),
+            pull: build.force(135.0),
         }
     }
 
@@ -99,17 +99,17 @@ mod tests {
 
     #[test]
     fn feet_that_feel_the_ground_are_pulled_up_and_no_others() {
-        let (_, pulls) = applied(0.02, &[0.0, 7.9, 8.1, 300.0]);
-        for (pull, wanted) in pulls.iter().zip([0.0, 0.0, 90.0, 90.0]) {
+        let (_, pulls) = applied(0.03, &[0.0, 7.9, 8.1, 300.0]);
+        for (pull, wanted) in pulls.iter().zip([0.0, 0.0, 135.0, 135.0]) {
             assert!((pull - wanted).abs() < 1e-9, "{pulls:?}");
         }
         assert_eq!(applied(0.051, &[300.0; 4]).1, [0.0; 4]);
-        assert_eq!(applied(0.02, &[f64::NAN; 4]).1, [0.0; 4]);
+        assert_eq!(applied(0.03, &[f64::NAN; 4]).1, [0.0; 4]);
     }
 
     #[test]
     fn joint_gains_come_back() {
-        for (since, share) in [(0.0, 0.0), (0.005, 0.5), (0.01, 1.0), (0.2, 1.0)] {
+        for (since, share) in [(0.0, 0.0), (0.01, 0.5), (0.02, 1.0), (0.2, 1.0)] {
             let gains = applied(since, &[0.0; 4]).0.gains[4];
             assert!((gains.stiffness - 60.0 * share).abs() < 1e-9, "{since}");
             assert!((gains.damping - 1.5 * share).abs() < 1e-9, "{since}");

@@ -398,6 +398,14 @@ fn tune(s: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
             *x = v.parse().unwrap_or(*x);
         }
     };
+    let mut tox = 1.0;
+    get("TOX", &mut tox);
+    s.regulator.takeoff[2] *= tox;
+    s.regulator.takeoff[3] *= tox;
+    let mut tdx = 1.0;
+    get("TDX", &mut tdx);
+    s.regulator.touchdown = s.regulator.touchdown.map(|x| x * tdx);
+    get("EASE", &mut s.unloading.easing);
     get("NORMAL", &mut s.regulator.normal);
     get("TANG", &mut s.regulator.tangential);
     get("HEAD", &mut s.regulator.torque);

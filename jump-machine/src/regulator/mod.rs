@@ -41,17 +41,17 @@ pub use weights::Weights;
 use body::Body;
 use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
 
-/// Most states that are kept of a plan's push-off: 1.4 s of nodes that are 5 ms apart; of a longer one every second, and so on.
-const STATES: usize = 288;
-/// Most gains that are kept: they change more slowly, one in 20 ms is enough.
-const GAINS: usize = 36;
+/// Most states that are kept of a plan's push-off: 0.95 s of nodes that are 5 ms apart; of a longer one every second, and so on.
+const STATES: usize = 192;
+/// Most gains that are kept: they change more slowly, one in 10 ms is enough.
+const GAINS: usize = 72;
 
 /// Place, velocity and angular momentum of a plan's centre of mass, in single precision, as plans are stored.
 type State = [[f32; 3]; 3];
 /// Λ by columns.
 type Gain = [[f32; MOMENTA]; ERRORS];
 
-/// The gains of one jump, and the motion that they are for: 20.7 kB.
+/// The gains of one jump, and the motion that they are for: 27.7 kB.
 #[derive(Clone, Debug)]
 pub struct Regulator {
     states: [State; STATES],
