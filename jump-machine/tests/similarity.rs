@@ -195,7 +195,10 @@ fn heard(k: i32) -> Observation<f64, 12, 4> {
         base_velocity.angular += Vector3::new(0.1, -0.2, 0.05);
     }
     let landed = !flies && t > TAKEOFF;
+    let leaves = flies && t < TAKEOFF + 0.08;
     let load = |foot: usize| match (flies, landed, foot) {
+        // Two feet are late to leave the ground.
+        (true, _, 0 | 1) if leaves => 9.0 - 4.0 * foot as f64,
         (true, ..) | (_, true, 2) => 0.0,
         (_, true, 3) if k % 40 < 10 => 0.0,
         // It settles until the start.
@@ -203,6 +206,9 @@ fn heard(k: i32) -> Observation<f64, 12, 4> {
     };
     let share = if flies {
         0.0
+    } else if t < 0.0 {
+        // It holds a tenth harder than planned, and settles.
+        1.1 + 0.4 * t
     } else {
         0.5 + 0.4 * so3::math::sin(15.0 * t)
     };

@@ -31,6 +31,8 @@ mod cost_to_go;
 mod tests;
 mod weights;
 
+use core::num::NonZeroUsize;
+
 use jump_control::Plan;
 use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
 use rbd_core::{CentroidalState, Frame, Limbs, Tangent, Tree, centroidal_state};
@@ -57,7 +59,7 @@ pub struct Regulator {
     states: [State; STATES],
     gains: [Gain; GAINS],
     /// Nodes from one state, and one gain, to the next; states are counted from the first node on, gains back from the last before the take-off.
-    every: [usize; 2],
+    every: [NonZeroUsize; 2],
     /// Number of nodes before the take-off.
     nodes: usize,
 }
@@ -69,7 +71,7 @@ impl Regulator {
         Self {
             states: [[[0.0; 3]; 3]; STATES],
             gains: [[[0.0; MOMENTA]; ERRORS]; GAINS],
-            every: [1; 2],
+            every: [NonZeroUsize::MIN; 2],
             nodes: 0,
         }
     }
@@ -89,7 +91,8 @@ impl Regulator {
             nodes += 1;
         }
         self.nodes = nodes;
-        self.every = [STATES, GAINS].map(|most| nodes / (most - 1) + 1);
+        self.every =
+            [STATES, GAINS].map(|most| NonZeroUsize::MIN.saturating_add(nodes / (most - 1)));
         let mut cost = CostToGo::zero();
         cost.add(PLACE, &per_variance(weights.touchdown[0]));
         cost.add(ROTATION, &per_variance(weights.touchdown[1]));
@@ -116,14 +119,22 @@ impl Regulator {
     fn keep<T: Scalar, const F: usize>(&mut self, i: usize, body: &Body<T, F>, cost: &CostToGo<T>) {
         let [state, gain] = self.every;
         let single = |x: T| x.to_f64() as f32;
-        if let Some(to) = self.states.get_mut(i / state).filter(|_| i % state == 0) {
+        if let Some(to) = self
+            .states
+            .get_mut(i / state)
+            .filter(|_| i.is_multiple_of(state.get()))
+        {
             let of = [body.com_w, body.com_velocity_w, body.angular_w];
             *to = of.map(|part| <[T; 3]>::from(part).map(single));
         }
         let Some(left) = self.nodes.checked_sub(i + 1) else {
             return;
         };
-        if let Some(to) = self.gains.get_mut(left / gain).filter(|_| left % gain == 0) {
+        if let Some(to) = self
+            .gains
+            .get_mut(left / gain)
+            .filter(|_| left.is_multiple_of(gain.get()))
+        {
             *to = <[[T; MOMENTA]; ERRORS]>::from(cost.costate()).map(|column| column.map(single));
         }
     }
@@ -189,7 +200,7 @@ impl Regulator {
         error.fixed_rows_mut::<3>(VELOCITY).copy_from(&velocity);
         error.fixed_rows_mut::<3>(ANGULAR).copy_from(&angular);
         // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
-        let gain = match (self.nodes - 1).checked_sub(node + 1) {
+        let gain = match self.nodes.checked_sub(node + 2) {
             Some(left) => between(&self.gains, gain, (left, T::ONE - here.1), matrix)?,
             None => matrix(self.gains.first()?),
         };
@@ -251,7 +262,7 @@ fn share<T: Scalar, const N: usize, const F: usize>(
 /// What is kept of every so many nodes, read by `of`, at a share of the way from a node to the next.
 fn between<T: Scalar, K, R>(
     kept: &[K],
-    every: usize,
+    every: NonZeroUsize,
     (node, share): (usize, T),
     of: impl Fn(&K) -> R,
 ) -> Option<R>
@@ -260,7 +271,7 @@ where
 {
     let (i, rest) = (node / every, node % every);
     let whole = |x: usize| T::of(f64::from(u32::try_from(x).unwrap_or(u32::MAX)));
-    let share = (whole(rest) + share) / whole(every);
+    let share = (whole(rest) + share) / whole(every.get());
     let (from, to) = (kept.get(i)?, kept.get(i + 1)?);
     Some(of(from) * (T::ONE - share) + of(to) * share)
 }

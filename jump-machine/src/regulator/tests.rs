@@ -103,8 +103,8 @@ impl Dense {
                 dense.add_errors(&weights.running, inverse, DT / weights.time);
             }
             if i + 1 == NODES {
-                dense.add(PLACE, &Matrix3::identity(), weights.touchdown[0].powi(2));
-                dense.add(ROTATION, &Matrix3::identity(), weights.touchdown[1].powi(2));
+                dense.add(PLACE, &Matrix3::identity(), square(weights.touchdown[0]));
+                dense.add(ROTATION, &Matrix3::identity(), square(weights.touchdown[1]));
             }
             if i < TAKEOFF {
                 dense.push(i, node, &body, weights);
@@ -139,11 +139,15 @@ impl Dense {
                 } else {
                     weights.tangential
                 };
-                let variance = (share * force.z).powi(2) * weights.time / DT;
+                let variance = square(share * force.z) * weights.time / DT;
                 self.normal[(column, column)] += 1.0 / variance;
             }
         }
     }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 fn prepared() -> Regulator {
@@ -162,18 +166,14 @@ fn riccatis_recursion_solves_the_dense_problem() {
         let x = SVector::from_fn(|row, _| if row == k { 0.02 } else { 0.003 * row as f64 });
         let lambda = matrix::<f64>(&regulator.gains[TAKEOFF - 1]) * x;
         let dense = Dense::forces(&weights, &x);
-        for foot in 0..4 {
+        for (foot, wanted) in dense.iter().enumerate() {
             let force = Vector3::from_fn(|axis, _| {
                 let slope = body.push(foot, axis).dot(&lambda);
                 -slope * weights.per_cost(nodes[0].forces_w[foot].z, axis)
             });
-            let off = (force - dense[foot]).norm();
+            let off = (force - wanted).norm();
             // Gains are kept in single precision.
-            assert!(
-                off < 1e-5 * dense[foot].norm().max(1.0),
-                "{k}: {force} {}",
-                dense[foot]
-            );
+            assert!(off < 1e-5 * wanted.norm().max(1.0), "{k}: {force} {wanted}");
         }
     }
 }
