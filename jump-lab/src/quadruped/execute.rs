@@ -330,7 +330,6 @@ pub fn run_watched(
     for measure in trial.without {
         measure.leave(&mut settings);
     }
-    tune(&mut settings);
     let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
     let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
     let mut workspace = jump_machine::Workspace::new();
@@ -350,11 +349,7 @@ pub fn run_watched(
         tamper,
         watch,
     };
-    let end = if std::env::var("EARLY").is_ok() {
-        reference.touchdown + 0.003
-    } else {
-        reference.touchdown + SETTLE + 0.5
-    };
+    let end = reference.touchdown + SETTLE + 0.5;
     closed.run((HOLD, end), &mut keeper, progress)?;
     let mut run = keeper.run;
     run.final_phase = closed.machine.phase();
@@ -390,28 +385,4 @@ fn record(
         planned_forces_w: node.map_or([Vector3::zeros(); FOOT_COUNT], |n| n.forces_w),
         commanded_forces_w: [Vector3::zeros(); FOOT_COUNT],
     }
-}
-
-fn tune(s: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
-    let get = |name: &str, x: &mut f64| {
-        if let Ok(v) = std::env::var(name) {
-            *x = v.parse().unwrap_or(*x);
-        }
-    };
-    let mut tox = 1.0;
-    get("TOX", &mut tox);
-    s.regulator.takeoff[2] *= tox;
-    s.regulator.takeoff[3] *= tox;
-    let mut tdx = 1.0;
-    get("TDX", &mut tdx);
-    s.regulator.touchdown = s.regulator.touchdown.map(|x| x * tdx);
-    get("EASE", &mut s.unloading.easing);
-    get("NORMAL", &mut s.regulator.normal);
-    get("TANG", &mut s.regulator.tangential);
-    get("HEAD", &mut s.regulator.torque);
-    get("PULL", &mut s.unloading.pull);
-    get("LOOK", &mut s.lookahead);
-    get("LEAD", &mut s.posture.lead);
-    get("SHAPE", &mut s.inertia_shaping.gain);
-    get("MAXPAY", &mut s.max_payload);
 }
