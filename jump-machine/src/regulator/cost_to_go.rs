@@ -40,7 +40,8 @@ impl<T: Scalar> CostToGo<T> {
 
     /// The cost before an interval over which an error x becomes A x if nothing answers it: S ← Aᵀ S A.
     pub(super) fn before(&mut self, a: &SMatrix<T, ERRORS, ERRORS>) {
-        self.0 = a.transpose() * (self.0 * a);
+        let ahead = product(&self.0, a);
+        self.0 = product(&a.transpose(), &ahead);
     }
 
     /// The cost where a force u may answer, which changes the momenta by b u and costs u²/g: the least over u of
@@ -49,14 +50,45 @@ impl<T: Scalar> CostToGo<T> {
     /// Forces whose costs add up are taken one after the other, in any order: the least over all of them is the same. Nothing is inverted,
     /// and S stays positive.
     pub(super) fn answered(&mut self, b: &SVector<T, MOMENTA>, g: T) {
-        let sb = self.0.fixed_columns::<MOMENTA>(MOMENTA) * b;
-        let along = sb.fixed_rows::<MOMENTA>(MOMENTA).dot(b);
+        let sb: SVector<T, ERRORS> = SVector::from_fn(|row, _| {
+            let terms = b.iter().enumerate();
+            terms.fold(T::ZERO, |sum, (k, b)| {
+                sum + at(&self.0, row, MOMENTA + k) * *b
+            })
+        });
+        let last = sb.iter().skip(MOMENTA).zip(b.iter());
+        let along = last.fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
         let weight = g / (T::ONE + g * along);
-        self.0 -= sb * (sb.transpose() * weight);
+        for (column, sb_j) in self.0.column_iter_mut().zip(sb.iter()) {
+            for (entry, sb_i) in column.into_iter().zip(sb.iter()) {
+                *entry -= *sb_i * (*sb_j * weight);
+            }
+        }
     }
 
     /// Λ, the rows of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
     pub(super) fn costate(&self) -> SMatrix<T, MOMENTA, ERRORS> {
-        self.0.fixed_rows::<MOMENTA>(MOMENTA).into()
+        SMatrix::from_fn(|row, column| at(&self.0, MOMENTA + row, column))
     }
+}
+
+/// An entry; 0 outside, since the compiler does not see that no index is.
+fn at<T: Scalar, const R: usize, const C: usize>(
+    m: &SMatrix<T, R, C>,
+    row: usize,
+    column: usize,
+) -> T {
+    m.get((row, column)).copied().unwrap_or_default()
+}
+
+/// The product of two matrices, without a bound to check: the link proves that nothing here panics.
+pub(super) fn product<T: Scalar, const R: usize, const C: usize>(
+    left: &SMatrix<T, R, ERRORS>,
+    right: &SMatrix<T, ERRORS, C>,
+) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|row, column| {
+        (0..ERRORS).fold(T::ZERO, |sum, k| {
+            sum + at(left, row, k) * at(right, k, column)
+        })
+    })
 }

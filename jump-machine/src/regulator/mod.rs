@@ -41,7 +41,7 @@ use so3::{Scalar, math};
 pub use weights::Weights;
 
 use body::Body;
-use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
+use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, product};
 
 /// Most states that are kept of a plan's push-off: 0.95 s of nodes that are 5 ms apart; of a longer one every second, and so on.
 const STATES: usize = 192;
@@ -204,7 +204,7 @@ impl Regulator {
             Some(left) => between(&self.gains, gain, (left, T::ONE - here.1), matrix)?,
             None => matrix(self.gains.first()?),
         };
-        Some(gain * error)
+        Some(product(&gain, &error))
     }
 }
 
