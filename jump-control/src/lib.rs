@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
-pub mod base_feedback;
 pub mod cartesian;
 pub mod com_profile;
 pub mod container;
@@ -14,7 +13,6 @@ pub mod sample;
 pub mod slew;
 pub mod watch;
 
-pub use base_feedback::BaseFeedback;
 pub use cartesian::{CartesianGains, CartesianPd};
 pub use com_profile::{ComPoint, ComProfile, Curve, takeoff_speed};
 pub use joint::{JointCommand, JointGains};

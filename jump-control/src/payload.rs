@@ -1,16 +1,19 @@
-//! The robot weighs itself while it waits for its jump.
+//! The robot weighs itself while it waits for its jump, with its motors.
 //!
-//! A payload of 5 % is 5 % of take-off speed when the plan's torques are applied as they are. Standing still, the normal forces
-//! of the feet add up to the weight m g; their mean over the hold, relative to the weight that was planned with, is the
-//! factor for the plan's torques.
+//! A payload of 5 %, or motors that are 5 % weaker than they believe, are 5 % of take-off speed when the plan's torques are applied as they
+//! are. Standing still with torques τ where the plan has τ_p, the robot holds κ = Σ τ·τ_p / Σ τ_p·τ_p times as hard as planned, the least-squares
+//! answer to τ = κ τ_p, and κ is the factor for the plan's torques: it has the weight and the motors' gain in it. Force sensors under the feet would
+//! tell the weight alone, and their own gain.
 
 use so3::Scalar;
 
-/// Mean normal force of all feet over the hold.
+/// How much harder than planned the robot holds its first posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PayloadEstimate<T> {
-    sum: T,
-    count: T,
+    /// Σ τ·τ_p, (N m)².
+    along: T,
+    /// Σ τ_p·τ_p, (N m)².
+    planned: T,
 }
 
 impl<T: Scalar> PayloadEstimate<T> {
@@ -18,27 +21,30 @@ impl<T: Scalar> PayloadEstimate<T> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            sum: T::ZERO,
-            count: T::ZERO,
+            along: T::ZERO,
+            planned: T::ZERO,
         }
     }
 
-    /// Adds one measurement of the normal forces, N. One that is not finite is left out.
-    pub fn add<const F: usize>(&mut self, foot_forces: &[T; F]) {
-        let total = foot_forces.iter().fold(T::ZERO, |sum, &f| sum + f);
-        if total.is_finite_number() {
-            self.sum += total;
-            self.count += T::ONE;
+    /// Adds the torques of one moment beside those that are planned for it, N m. Where one is not finite, the moment is left out.
+    pub fn add<const N: usize>(&mut self, torques: &[T; N], planned: &[T; N]) {
+        let pairs = torques.iter().zip(planned);
+        let (along, square) = pairs.fold((T::ZERO, T::ZERO), |(along, square), (&tau, &p)| {
+            (along + tau * p, square + p * p)
+        });
+        if along.is_finite_number() && square.is_finite_number() {
+            self.along += along;
+            self.planned += square;
         }
     }
 
-    /// Weight measured over `planned_weight`, both N: the factor for the plan's torques in the push-off.
+    /// κ, the factor for the plan's torques in the push-off.
     ///
-    /// 1 where nothing was weighed, or where the ratio differs from 1 by more than `most`: a foot sensor is dead then, or
-    /// the robot does not stand freely, and neither is a reason to push differently.
+    /// 1 where nothing was weighed, or where κ differs from 1 by more than `most`: the robot does not stand freely then, or a motor lies, and
+    /// neither is a reason to push differently.
     #[must_use]
-    pub fn factor(&self, planned_weight: T, most: T) -> T {
-        let ratio = self.sum / (self.count * planned_weight);
+    pub fn factor(&self, most: T) -> T {
+        let ratio = self.along / self.planned;
         if so3::math::abs(ratio - T::ONE) <= most {
             ratio
         } else {
@@ -57,18 +63,23 @@ impl<T: Scalar> Default for PayloadEstimate<T> {
 mod tests {
     use super::PayloadEstimate;
 
+    const PLANNED: [f64; 3] = [1.0, -2.0, 6.0];
+
     #[test]
-    fn the_mean_weight_scales_and_broken_sensors_do_not() {
+    fn torques_of_a_heavier_robot_scale_and_broken_sensors_do_not() {
         let mut estimate = PayloadEstimate::new();
-        assert_eq!(estimate.factor(100.0, 0.15), 1.0);
-        estimate.add(&[20.0, 30.0, 25.0, 27.0]);
-        estimate.add(&[f64::NAN, 30.0, 25.0, 27.0]);
-        estimate.add(&[26.0, 26.0, 26.0, 28.0]);
-        assert!((estimate.factor(100.0, 0.15) - 1.04).abs() < 1e-12);
-        // A dead sensor: a quarter of the weight is missing.
-        let mut dead = PayloadEstimate::new();
-        dead.add(&[0.0, 25.0, 25.0, 25.0]);
-        assert_eq!(dead.factor(100.0, 0.15), 1.0);
-        assert_eq!(estimate.factor(0.0, 0.15), 1.0);
+        assert_eq!(estimate.factor(0.3), 1.0);
+        // 10 % more, and a torque of friction that has nothing to do with the weight.
+        estimate.add(&[1.1 + 0.2, -2.2 + 0.1, 6.6], &PLANNED);
+        estimate.add(&[f64::NAN, -2.0, 6.0], &PLANNED);
+        assert!((estimate.factor(0.3) - 1.1).abs() < 1e-12);
+        // The robot hangs: its motors hold half of what they should.
+        let mut hanging = PayloadEstimate::new();
+        hanging.add(&PLANNED.map(|p| 0.5 * p), &PLANNED);
+        assert_eq!(hanging.factor(0.3), 1.0);
+        // A plan that holds with nothing weighs nothing.
+        let mut nothing = PayloadEstimate::new();
+        nothing.add(&[1.0; 3], &[0.0; 3]);
+        assert_eq!(nothing.factor(0.3), 1.0);
     }
 }

@@ -186,8 +186,27 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Plan<'a, T, N, F> {
         self.following::<{ parts::ALL }, _>(i, |nodes| nodes.first().copied())
     }
 
+    /// The node at or before `time`; the first one before it, and where `time` is not a number. The search goes on from `hint`, which
+    /// changes nothing but its length.
+    #[must_use]
+    pub fn node_at(&self, time: T, hint: usize) -> usize {
+        let begun = |i| self.time(i).is_some_and(|begun| begun <= time);
+        let mut i = if begun(hint) { hint } else { 0 };
+        while begun(i + 1) {
+            i += 1;
+        }
+        i
+    }
+
+    /// Forces of the ground on the feet from node `i` to the next, world axes, N.
+    #[must_use]
+    pub fn forces(&self, i: usize) -> Option<[Vector3<T>; F]> {
+        self.following::<{ parts::FORCES }, _>(i, |nodes| nodes.first().map(|node| node.forces_w))
+    }
+
     /// The time of node `i`, s.
-    pub(crate) fn time(&self, i: usize) -> Option<T> {
+    #[must_use]
+    pub fn time(&self, i: usize) -> Option<T> {
         match &self.nodes {
             Nodes::Ready(nodes) => nodes.get(i).map(|node| node.time),
             Nodes::Stored(nodes) => nodes.time(i).map(|x| T::of(f64::from(x))),

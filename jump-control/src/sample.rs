@@ -64,11 +64,7 @@ fn sample_stored<T: Scalar, const N: usize, const F: usize>(
     time: T,
     hint: usize,
 ) -> Reference<T, N> {
-    let begun = |i| plan.time(i).is_some_and(|begun| begun <= time);
-    let mut i = if begun(hint) { hint } else { 0 };
-    while begun(i + 1) {
-        i += 1;
-    }
+    let i = plan.node_at(time, hint);
     plan.following::<{ parts::JOINTS }, _>(i, |nodes| {
         let mut reference = sample_in(nodes, plan.torques, time, 0);
         reference.node += i;

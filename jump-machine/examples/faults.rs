@@ -11,7 +11,7 @@ fn main() {
     let crouch = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
     let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch);
     // All memory there is; a static in firmware.
-    let mut workspace = landing::Workspace::new();
+    let mut workspace = jump_machine::Workspace::new();
     let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings, &mut workspace);
     let mut inputs = Observation {
         measured: Measurement {

@@ -7,11 +7,17 @@ mod interface;
 mod jump;
 mod machine;
 mod observation;
+mod push_off;
+pub mod regulator;
 mod settings;
 mod supervisor;
+mod unloading;
+mod workspace;
 
 pub use interface::{JumpMachine, Tick};
 pub use jump::{Jump, Refusal};
 pub use machine::{Machine, Work};
 pub use observation::Observation;
 pub use settings::Settings;
+pub use unloading::Unloading;
+pub use workspace::Workspace;

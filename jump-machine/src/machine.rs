@@ -1,15 +1,16 @@
 //! The machine: memory, and one method per rate.
 
 use jump_control::{
-    Fault, JointCommand, JointGains, Measurement, PayloadEstimate, Phase, Plan, Reference, sample,
+    Fault, JointCommand, JointGains, Measurement, PayloadEstimate, Phase, Plan, sample,
 };
-use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning, Workspace};
+use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
 use so3::Scalar;
 
+use crate::push_off::predicted;
 use crate::supervisor::{Limits, Supervisor};
-use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick};
+use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
 
 /// What a tick computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +25,7 @@ pub enum Work {
 
 /// A robot that stands, jumps when it is given a plan, lands and stands again.
 ///
-/// It borrows model, plans and the landing's memory, so that they can be statics.
+/// It borrows model, plans and its workspace, so that they can be statics.
 #[derive(Debug)]
 pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) settings: Settings<T, N, F>,
@@ -33,18 +34,18 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) contact: DetectorState<T, N, F>,
     /// Time at rest so far, s.
     pub(crate) calm: T,
-    model: &'a M,
+    pub(crate) model: &'a M,
     landing: Landing<T, N, F>,
-    workspace: &'a mut Workspace<T, N, F>,
+    pub(crate) workspace: &'a mut Workspace<T, N, F>,
     posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
     level_feet: [Vector3<T>; F],
     /// The landing posture as it follows the body.
     legs: [T; N],
     /// The legs as measured, and as they should be: kept so that a tick copies nothing.
-    limbs: Limbs<T, N, F>,
-    wanted: Limbs<T, N, F>,
-    payload: PayloadEstimate<T>,
+    pub(crate) limbs: Limbs<T, N, F>,
+    pub(crate) wanted: Limbs<T, N, F>,
+    pub(crate) payload: PayloadEstimate<T>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
     /// Node of the plan's last sample.
@@ -90,7 +91,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     }
 
     /// Gives a standing robot a jump that begins at `start`, on the clock of [`Machine::tick`]; until then it holds the plan's
-    /// first node.
+    /// first node. The push-off's gains are computed here, which takes as long as some hundred ticks.
     ///
     /// # Errors
     /// A robot that does not stand and a start that is too near are refused: nothing changes then.
@@ -99,6 +100,9 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.posture.joints = jump.landing_joints;
         self.level_feet = self.posture.level_feet(self.model);
         self.legs = jump.landing_joints;
+        let (weights, feet) = (&self.settings.regulator, &self.settings.pd.feet);
+        let regulator = &mut self.workspace.regulator;
+        regulator.prepare(self.model, &jump.plan, weights, feet);
         self.jump = Some(jump);
         (self.start, self.node) = (start, 0);
         self.shaping = T::ZERO;
@@ -147,8 +151,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
 
     /// The landing's memory: [`landing::Program::of`] writes out the quadratic program of the last landing tick.
     #[must_use]
-    pub const fn workspace(&self) -> &Workspace<T, N, F> {
-        self.workspace
+    pub const fn workspace(&self) -> &landing::Workspace<T, N, F> {
+        &self.workspace.landing
     }
 
     /// Which feet are on the ground, and which foot sensors are not believed.
@@ -166,8 +170,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     fn act(&mut self, t: T, inputs: &Observation<T, N, F>, dt: T) -> Work {
         let measured = &inputs.measured;
         let feet = &self.settings.pd.feet;
-        self.limbs
-            .update(self.model, &measured.configuration(), feet);
+        let now = match self.supervisor.phase {
+            Phase::Stance => predicted(measured),
+            _ => measured.configuration(),
+        };
+        self.limbs.update(self.model, &now, feet);
         let v = measured.velocity();
         self.settings.detector.update_at(
             self.model,
@@ -183,7 +190,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         }
         let (command, work) = match (self.supervisor.phase, self.jump) {
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
-                (self.follow(&jump, t, measured, dt), Work::Cartesian)
+                (self.follow(&jump, t, inputs, dt), Work::Cartesian)
             }
             (Phase::Landing | Phase::Stand, _) => self.stand(&v),
             _ => (self.supervisor.safe(), Work::Damping),
@@ -199,18 +206,19 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         &mut self,
         jump: &Jump<'a, T, N, F>,
         t: T,
-        measured: &Measurement<T, N, F>,
+        inputs: &Observation<T, N, F>,
         dt: T,
     ) -> JointCommand<T, N> {
-        let s = &self.settings;
+        let (s, measured) = (&self.settings, &inputs.measured);
         let mut reference = sample(&jump.plan, t, self.node);
         self.node = reference.node;
         reference.torques = sample(&jump.plan, t + s.lookahead, self.node).torques;
         let moment = (reference.node, t);
         match self.supervisor.phase {
-            // Its weight has settled on the feet by then.
-            Phase::Hold if t > -s.weighing => self.payload.add(&measured.foot_forces),
-            Phase::Stance => self.push_off(jump, moment, measured, &mut reference),
+            // It has come to rest by then.
+            Phase::Hold if t > -s.weighing => {
+                self.payload.add(&inputs.joint_torques, &reference.torques);
+            }
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);
@@ -234,29 +242,20 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
-        let speeds = &measured.joint_velocities;
-        s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference)
-    }
-
-    /// Feedback of the push-off at a `moment` of the plan: torques as the weight on the feet was, and forces that damp the base's wrong
-    /// turning.
-    #[inline(always)]
-    fn push_off(
-        &self,
-        jump: &Jump<'a, T, N, F>,
-        moment: (usize, T),
-        measured: &Measurement<T, N, F>,
-        reference: &mut Reference<T, N>,
-    ) {
-        let s = &self.settings;
-        let factor = self.payload.factor(jump.weight, s.max_payload);
-        reference.torques = reference.torques.map(|torque| torque * factor);
-        let feet_b = self.limbs.ends.map(|end| end.position);
-        let omega_b = &measured.base_velocity.angular;
-        let forces_b = s.base_feedback.forces(&jump.plan, moment, omega_b, &feet_b);
-        for (end, force) in self.limbs.ends.iter().zip(&forces_b) {
-            end.add_tr_mul(&-force, &mut reference.torques);
+        if matches!(self.supervisor.phase, Phase::Stance) {
+            self.push_off(jump, t, measured, &mut reference);
         }
+        let s = &self.settings;
+        let speeds = &measured.joint_velocities;
+        let mut command =
+            s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference);
+        if matches!(self.supervisor.phase, Phase::Flight) {
+            let up_b = measured.base.rotation.inverse() * Vector3::z();
+            let (since, limbs) = (t - jump.plan.takeoff, (&self.limbs, &up_b));
+            let foot_forces = &measured.foot_forces;
+            s.unloading.apply(since, limbs, foot_forces, &mut command);
+        }
+        command
     }
 
     /// The landing posture as the body is turned and moves.
@@ -288,7 +287,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &self.contact.contacts,
             &target,
             &self.posture.joints,
-            self.workspace,
+            &mut self.workspace.landing,
         );
         let mut gains = [JointGains {
             stiffness: T::ZERO,

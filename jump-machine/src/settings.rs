@@ -1,9 +1,12 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
-use jump_control::{BaseFeedback, CartesianPd};
+use jump_control::CartesianPd;
 use landing::{Detector, InertiaShaping, PreLanding};
 use rbd_core::{Build, Frame, Motor};
 use so3::Scalar;
+
+use crate::Unloading;
+use crate::regulator::Weights;
 
 /// Periods, limits and gains of a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,9 +19,9 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_silence: T,
     /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
     pub lookahead: T,
-    /// Time before the start during which the weight on the feet is measured, s.
+    /// Time before the start during which the robot weighs itself, s.
     pub weighing: T,
-    /// Largest share of the planned weight that counts as payload.
+    /// Largest share by which the robot may hold harder, or less hard, than planned: 15 % of payload over motors that are 10 % weak, and some.
     pub max_payload: T,
     /// Farthest that a joint may be from the plan's first node at the start, rad.
     pub start_tolerance: T,
@@ -38,8 +41,10 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub slew: T,
     /// Push-off and flight.
     pub pd: CartesianPd<T, N, F>,
-    /// The base in the push-off.
-    pub base_feedback: BaseFeedback<T>,
+    /// The body in the push-off.
+    pub regulator: Weights<T>,
+    /// Feet at the take-off.
+    pub unloading: Unloading<T>,
     /// Legs in flight.
     pub inertia_shaping: InertiaShaping<T>,
     /// Touchdown.
@@ -75,7 +80,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             max_silence: of(0.005),
             lookahead: of(0.001),
             weighing: build.time(0.15),
-            max_payload: of(0.15),
+            max_payload: of(0.35),
             start_tolerance: of(0.15),
             levelling: build.time(0.12),
             patience: build.time(0.5),
@@ -85,7 +90,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             safe_damping: build.joint_damping(2.0),
             slew: build.torque(1e4),
             pd: CartesianPd::new(build, feet),
-            base_feedback: BaseFeedback::new(build),
+            regulator: Weights::new(build),
+            unloading: Unloading::new(build),
             inertia_shaping: InertiaShaping::new(build),
             detector: Detector::new(build, feet),
             posture: PreLanding {

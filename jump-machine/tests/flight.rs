@@ -3,8 +3,8 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Measurement, Node, Phase, Plan, Torques};
-use jump_machine::{Jump, Machine, Observation, Settings};
-use landing::{PreLanding, Workspace};
+use jump_machine::{Jump, Machine, Observation, Settings, Workspace};
+use landing::PreLanding;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
 use rbd_core::{Configuration, Frame, GRAVITY, Limbs, Motion, Transform};

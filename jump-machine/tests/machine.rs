@@ -3,8 +3,8 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Fault, Measurement, Node, Phase, Plan, Torques};
+use jump_machine::Workspace;
 use jump_machine::{Jump, Machine, Observation, Refusal, Settings, Work};
-use landing::Workspace;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
 use rbd_core::{Frame, Motion, Motor, Transform};

@@ -71,7 +71,8 @@ fn the_study_without_each_measure_is_one_table() {
             "margins",
             "lookahead",
             "posture",
-            "base-feedback",
+            "regulator",
+            "unloading",
             "inertia-shaping"
         ]
     );

@@ -13,9 +13,9 @@ use jump_lab::noise::Noise;
 use jump_lab::quadruped::execute::{Trial, closed, feet};
 use jump_lab::quadruped::plant::simulator;
 use jump_lab::quadruped::{FOOT_COUNT, JOINTS, OWNERS, Observed, State, World};
-use jump_machine::{Jump, Machine, Settings, Tick, Work};
+use jump_machine::{Jump, Machine, Settings, Tick, Work, Workspace};
 use jump_planner::robot::Quadruped;
-use landing::{Outcome, Status, Workspace};
+use landing::{Outcome, Status};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, GRAVITY, Motion, Tangent};
 

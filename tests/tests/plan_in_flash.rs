@@ -3,8 +3,8 @@
 use a1_model::A1Geared;
 use jump_control::container::{Container, model_hash};
 use jump_control::{Measurement, Node, Phase};
+use jump_machine::Workspace;
 use jump_machine::{Jump, Machine, Observation};
-use landing::Workspace;
 use saltus_probe::flight::{BYTES, PLAN, Planned, jump, settings};
 
 type A1<'a> = Container<'a, 12, 4>;

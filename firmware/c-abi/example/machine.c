@@ -9,7 +9,7 @@
 
 extern const uint8_t plan_begin[], plan_end[];
 
-static _Alignas(16) unsigned char machine[32 * 1024];
+static _Alignas(16) unsigned char machine[64 * 1024];
 static _Alignas(16) unsigned char moved[32 * 1024];
 static _Alignas(16) unsigned char estimator[8 * 1024];
 static uint8_t broken[512 * 1024];

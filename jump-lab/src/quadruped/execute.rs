@@ -332,7 +332,7 @@ pub fn run_watched(
     }
     let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
     let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
-    let mut workspace = landing::Workspace::new();
+    let mut workspace = jump_machine::Workspace::new();
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;

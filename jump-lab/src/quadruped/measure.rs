@@ -13,7 +13,7 @@ use rbd_core::{Model, Tree, joint_friction};
 /// One measure against disturbances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Measure {
-    /// Weighing while the robot waits, and the plan's torques scaled by what it weighs.
+    /// Weighing by the motors while the robot waits, and the plan's torques scaled by it.
     Weighing,
     /// Rotor inertia and joint friction in the plan's torques.
     Drives,
@@ -23,21 +23,24 @@ pub enum Measure {
     Lookahead,
     /// A landing posture that follows tilt and speed before touchdown.
     Posture,
-    /// Forces of the feet against a wrong turning rate.
-    BaseFeedback,
+    /// Forces of the feet that bring the body back to its plan, by a time-varying LQR.
+    Regulator,
+    /// Feet that let go at the take-off, and are pulled up where the ground does not let go.
+    Unloading,
     /// Legs drawn in or stretched in flight, so that the body turns on time.
     InertiaShaping,
 }
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Weighing,
         Self::Drives,
         Self::Margins,
         Self::Lookahead,
         Self::Posture,
-        Self::BaseFeedback,
+        Self::Regulator,
+        Self::Unloading,
         Self::InertiaShaping,
     ];
 
@@ -50,7 +53,8 @@ impl Measure {
             Self::Margins => "margins",
             Self::Lookahead => "lookahead",
             Self::Posture => "posture",
-            Self::BaseFeedback => "base-feedback",
+            Self::Regulator => "regulator",
+            Self::Unloading => "unloading",
             Self::InertiaShaping => "inertia-shaping",
         }
     }
@@ -60,7 +64,7 @@ impl Measure {
     pub const fn what(self) -> &'static str {
         match self {
             Self::Weighing => {
-                "Weighing while the robot waits, and the plan's torques scaled by what it weighs"
+                "Weighing by the motors while the robot waits, and the plan's torques scaled by it"
             }
             Self::Drives => "Rotor inertia and joint friction in the plan's torques",
             Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
@@ -68,7 +72,8 @@ impl Measure {
                 "The plan's torques a millisecond early, for what holding and the slew limit delay them by"
             }
             Self::Posture => "A landing posture that follows tilt and speed before touchdown",
-            Self::BaseFeedback => "Forces of the feet against a wrong turning rate",
+            Self::Regulator => "Forces of the feet that bring the body back to its plan",
+            Self::Unloading => "Feet that let go at the take-off and are pulled up",
             Self::InertiaShaping => {
                 "Legs drawn in or stretched in flight, so that the body turns on time"
             }
@@ -112,7 +117,9 @@ impl Measure {
             Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => settings.levelling = -f64::INFINITY,
-            Self::BaseFeedback => settings.base_feedback.turning = 0.0,
+            Self::Regulator => settings.regulator.normal = 0.0,
+            // No time after the take-off is that early.
+            Self::Unloading => settings.unloading.lasting = -f64::INFINITY,
             Self::InertiaShaping => settings.inertia_shaping.gain = 0.0,
             Self::Drives | Self::Margins => {}
         }

@@ -3,7 +3,7 @@
 use a1_model::A1Geared;
 use jump_control::{JointCommand, Measurement};
 use jump_machine::{Machine, Observation};
-use landing::Workspace;
+use jump_machine::Workspace;
 use rbd_core::{Model, Motion};
 use saltus_probe::Real;
 use saltus_probe::flight::{HOLD, Planned, jump, settings};

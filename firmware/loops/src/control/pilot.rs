@@ -3,7 +3,7 @@
 use a1_model::{A1Geared, FOOT_RADIUS};
 use jump_control::{JointCommand, Measurement, Phase};
 use jump_machine::{Machine, Observation};
-use landing::Workspace;
+use jump_machine::Workspace;
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Model, Transform};
 use saltus_probe::Real;

@@ -84,10 +84,10 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
         });
     }
     let mut estimate = PayloadEstimate::new();
-    let input = (&mut estimate, measured.foot_forces);
+    let input = (&mut estimate, measured.joints);
     on.call("PayloadEstimate", input, |(s, f)| {
-        s.add(&f);
-        s.factor(T::of(100.0), T::of(0.15))
+        s.add(&f, &f);
+        s.factor(T::of(0.35))
     });
     let speed = on.call("takeoff_speed", T::of(0.04), |h| {
         takeoff_speed(h, T::of(9.81))

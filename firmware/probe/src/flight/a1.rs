@@ -138,7 +138,7 @@ pub fn a1<T: Planned, R: Recorder>(recorder: &mut R)
 where
     A1Geared: Model<T, 12>,
 {
-    let mut workspace = Workspace::new();
+    let mut workspace = jump_machine::Workspace::new();
     let mut machine = Machine::<T, _, 12, 4>::new(&A1Geared, settings(), &mut workspace);
     let Some(jump) = jump() else { return };
     if machine.arm(jump, T::of(HOLD)).is_err() {

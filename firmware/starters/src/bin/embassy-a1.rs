@@ -12,7 +12,7 @@ mod app {
     use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
     use embassy_sync::signal::Signal;
     use jump_machine::Observation;
-    use landing::Workspace;
+    use jump_machine::Workspace;
     use saltus_loops::boards::{Board, Mps};
     use saltus_loops::control::{Control, Jumper};
     use saltus_loops::firmware::start_clock;

@@ -9,7 +9,7 @@
 #[rtic::app(device = saltus_starters::device, peripherals = false, dispatchers = [SPARE0])]
 mod app {
     use jump_machine::Observation;
-    use landing::Workspace;
+    use jump_machine::Workspace;
     use saltus_loops::boards::{Board, Mps};
     use saltus_loops::control::{Control, Jumper};
     use saltus_loops::firmware::start_clock;
