@@ -56,14 +56,13 @@ impl<T: Scalar> CostToGo<T> {
                 sum + at(&self.0, row, MOMENTA + k) * *b
             })
         });
-        let last = sb.iter().skip(MOMENTA).zip(b.iter());
-        let along = last.fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
+        let along = (0..MOMENTA).fold(T::ZERO, |sum, k| {
+            sum + at(&sb, MOMENTA + k, 0) * at(b, k, 0)
+        });
         let weight = g / (T::ONE + g * along);
-        for (column, sb_j) in self.0.column_iter_mut().zip(sb.iter()) {
-            for (entry, sb_i) in column.into_iter().zip(sb.iter()) {
-                *entry -= *sb_i * (*sb_j * weight);
-            }
-        }
+        self.0 = SMatrix::from_fn(|row, column| {
+            at(&self.0, row, column) - at(&sb, row, 0) * (at(&sb, column, 0) * weight)
+        });
     }
 
     /// Λ, the rows of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
