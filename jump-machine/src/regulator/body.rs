@@ -7,7 +7,7 @@ use rbd_core::{
 };
 use so3::Scalar;
 
-use super::cost_to_go::{ANGULAR, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
+use super::cost_to_go::{ANGULAR, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, put, stack};
 
 /// The robot of a node as one body, with its legs as they are there.
 pub(super) struct Body<T: Scalar, const F: usize> {
@@ -70,14 +70,10 @@ impl<T: Scalar, const F: usize> Body<T, F> {
         let turns = (one + turning * T::HALF) * self.inverse_inertia_w * dt;
         let total: Vector3<T> = self.forces_w.iter().sum();
         let mut a = SMatrix::<T, ERRORS, ERRORS>::identity();
-        a.fixed_view_mut::<3, 3>(PLACE, VELOCITY)
-            .copy_from(&(one * dt));
-        a.fixed_view_mut::<3, 3>(ROTATION, ROTATION)
-            .copy_from(&turned);
-        a.fixed_view_mut::<3, 3>(ROTATION, ANGULAR)
-            .copy_from(&turns);
-        a.fixed_view_mut::<3, 3>(ANGULAR, PLACE)
-            .copy_from(&(so3::hat(&total) * dt));
+        put(&mut a, (PLACE, VELOCITY), &(one * dt));
+        put(&mut a, (ROTATION, ROTATION), &turned);
+        put(&mut a, (ROTATION, ANGULAR), &turns);
+        put(&mut a, (ANGULAR, PLACE), &(so3::hat(&total) * dt));
         a
     }
 
@@ -88,9 +84,6 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             *entry = T::ONE;
         }
         let arm = self.arms_w.get(foot).copied().unwrap_or_default();
-        let mut push = SVector::<T, MOMENTA>::zeros();
-        push.fixed_rows_mut::<3>(0).copy_from(&(unit / self.mass));
-        push.fixed_rows_mut::<3>(3).copy_from(&arm.cross(&unit));
-        push
+        stack(&[unit / self.mass, arm.cross(&unit)])
     }
 }

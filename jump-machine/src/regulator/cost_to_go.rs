@@ -1,7 +1,7 @@
 //! The least cost from an instant on, as a quadratic form of the body's error there, and Riccati's recursion in two steps: over time
 //! without feedback ([`CostToGo::before`]), and with one force that may answer ([`CostToGo::answered`]).
 
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use so3::Scalar;
 
 /// Rows of the error x = (δc, δθ, δv, δL): place of the centre of mass, m; rotation, rad; velocity of the centre of mass, m/s; angular
@@ -56,14 +56,13 @@ impl<T: Scalar> CostToGo<T> {
                 sum + at(&self.0, row, MOMENTA + k) * *b
             })
         });
-        let last = sb.iter().skip(MOMENTA).zip(b.iter());
-        let along = last.fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
+        let along = (0..MOMENTA).fold(T::ZERO, |sum, k| {
+            sum + at(&sb, MOMENTA + k, 0) * at(b, k, 0)
+        });
         let weight = g / (T::ONE + g * along);
-        for (column, sb_j) in self.0.column_iter_mut().zip(sb.iter()) {
-            for (entry, sb_i) in column.into_iter().zip(sb.iter()) {
-                *entry -= *sb_i * (*sb_j * weight);
-            }
-        }
+        self.0 = SMatrix::from_fn(|row, column| {
+            at(&self.0, row, column) - at(&sb, row, 0) * (at(&sb, column, 0) * weight)
+        });
     }
 
     /// Λ, the rows of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
@@ -73,7 +72,7 @@ impl<T: Scalar> CostToGo<T> {
 }
 
 /// An entry; 0 outside, since the compiler does not see that no index is.
-fn at<T: Scalar, const R: usize, const C: usize>(
+pub(super) fn at<T: Scalar, const R: usize, const C: usize>(
     m: &SMatrix<T, R, C>,
     row: usize,
     column: usize,
@@ -91,4 +90,29 @@ pub(super) fn product<T: Scalar, const R: usize, const C: usize>(
             sum + at(left, row, k) * at(right, k, column)
         })
     })
+}
+
+/// Vectors one under the other.
+pub(super) fn stack<T: Scalar, const R: usize, const P: usize>(
+    parts: &[Vector3<T>; P],
+) -> SVector<T, R> {
+    SVector::from_fn(|row, _| {
+        let part = parts.get(row / 3);
+        part.map_or(T::ZERO, |part| at(part, row % 3, 0))
+    })
+}
+
+/// Writes a block into the rows and columns from `row` and `column` on.
+pub(super) fn put<T: Scalar>(
+    to: &mut SMatrix<T, ERRORS, ERRORS>,
+    (row, column): (usize, usize),
+    block: &Matrix3<T>,
+) {
+    for j in 0..3 {
+        for i in 0..3 {
+            if let Some(entry) = to.get_mut((row + i, column + j)) {
+                *entry = at(block, i, j);
+            }
+        }
+    }
 }

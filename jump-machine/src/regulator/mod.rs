@@ -41,7 +41,9 @@ use so3::{Scalar, math};
 pub use weights::Weights;
 
 use body::Body;
-use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, product};
+use cost_to_go::{
+    ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, at, product, stack,
+};
 
 /// Most states that are kept of a plan's push-off: 0.95 s of nodes that are 5 ms apart; of a longer one every second, and so on.
 const STATES: usize = 192;
@@ -91,8 +93,8 @@ impl Regulator {
             nodes += 1;
         }
         self.nodes = nodes;
-        self.every =
-            [STATES, GAINS].map(|most| NonZeroUsize::MIN.saturating_add(nodes / (most - 1)));
+        let more = [nodes / (STATES - 1), nodes / (GAINS - 1)];
+        self.every = more.map(|more| NonZeroUsize::MIN.saturating_add(more));
         let mut cost = CostToGo::zero();
         cost.add(PLACE, &per_variance(weights.touchdown[0]));
         cost.add(ROTATION, &per_variance(weights.touchdown[1]));
@@ -158,8 +160,8 @@ impl Regulator {
         let Some(costate) = self.costate(plan, moments, &base.rotation, &now) else {
             return changes;
         };
-        let linear = costate.fixed_rows::<3>(0) / now.mass;
-        let angular = costate.fixed_rows::<3>(3).into_owned();
+        let linear = Vector3::from_fn(|row, _| at(&costate, row, 0)) / now.mass;
+        let angular = Vector3::from_fn(|row, _| at(&costate, 3 + row, 0));
         for ((change, end), planned) in changes.iter_mut().zip(&limbs.ends).zip(planned_w) {
             let arm = base.point(&end.position) - now.com_w;
             let gradient: Vector3<T> = linear + angular.cross(&arm);
@@ -194,11 +196,7 @@ impl Regulator {
         let rotation = so3::log(&(rot_wb * planned.rot_wb.inverse()));
         let velocity = now.com_velocity_w - at(there, 1)?;
         let angular = now.momentum_w.angular - at(there, 2)?;
-        let mut error = SVector::<T, ERRORS>::zeros();
-        error.fixed_rows_mut::<3>(PLACE).copy_from(&place);
-        error.fixed_rows_mut::<3>(ROTATION).copy_from(&rotation);
-        error.fixed_rows_mut::<3>(VELOCITY).copy_from(&velocity);
-        error.fixed_rows_mut::<3>(ANGULAR).copy_from(&angular);
+        let error = stack(&[place, rotation, velocity, angular]);
         // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
         let gain = match self.nodes.checked_sub(node + 2) {
             Some(left) => between(&self.gains, gain, (left, T::ONE - here.1), matrix)?,
