@@ -2,11 +2,11 @@
 
 use jump_control::JointCommand;
 use jump_lab::quadruped::Planned;
+use jump_machine::Workspace;
 use jump_machine::{Jump, Machine as Jumper, Settings, Tick as Ticked};
 use jump_planner::robot::Quadruped;
 use jump_planner::stored::Stored;
 use jump_planner::{FOOT_COUNT, JOINTS};
-use jump_machine::Workspace;
 use pyo3::{Py, PyResult, Python, pyclass, pymethods};
 use self_cell::{MutBorrow, self_cell};
 

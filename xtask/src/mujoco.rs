@@ -54,7 +54,9 @@ pub(crate) fn saltus() -> Result<Command> {
     run::succeed(&mut build)?;
     let (_, search) = library(Path::new("python3"))?;
     let mut saltus = Command::new(build_folder().join("release/saltus"));
-    saltus.current_dir(run::root()).env("LD_LIBRARY_PATH", search);
+    saltus
+        .current_dir(run::root())
+        .env("LD_LIBRARY_PATH", search);
     Ok(saltus)
 }
 

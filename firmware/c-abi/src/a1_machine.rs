@@ -4,8 +4,8 @@ use core::ffi::{c_char, c_void};
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::container::GroundStep;
-use jump_machine::{Machine, Settings};
 use jump_machine::Workspace;
+use jump_machine::{Machine, Settings};
 use rbd_core::Motor;
 
 use crate::Status;

@@ -2,8 +2,8 @@
 
 use a1_model::A1Geared;
 use jump_control::{JointCommand, Measurement};
-use jump_machine::{Machine, Observation};
 use jump_machine::Workspace;
+use jump_machine::{Machine, Observation};
 use rbd_core::{Model, Motion};
 use saltus_probe::Real;
 use saltus_probe::flight::{HOLD, Planned, jump, settings};

@@ -2,8 +2,8 @@
 
 use a1_model::{A1Geared, FOOT_RADIUS};
 use jump_control::{JointCommand, Measurement, Phase};
-use jump_machine::{Machine, Observation};
 use jump_machine::Workspace;
+use jump_machine::{Machine, Observation};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Model, Transform};
 use saltus_probe::Real;
