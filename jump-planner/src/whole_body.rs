@@ -375,7 +375,6 @@ impl<'a> Grid<'a> {
 fn settings() -> Settings<f64> {
     let mut settings = wb_opt::settings();
     (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
-    settings.primal_tolerance = 1e-6;
     settings.dual_tolerance = 1e-3;
     settings.complementarity_tolerance = 1e-5;
     settings
