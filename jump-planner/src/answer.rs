@@ -9,6 +9,7 @@ use super::bounds::Impossible;
 use super::task::{SrbPlan, Task};
 use super::whole_body::{self, Blocked, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
+use core::time::Duration;
 use nalgebra::Vector3;
 use ocp_solver::{Progress, Settings, Status, blocking_rows};
 use serde_json::{Value, json};
@@ -21,7 +22,7 @@ impl<F: FnMut(&Progress<f64>) -> ControlFlow<()>> Observer for F {}
 
 /// Why there is no plan.
 pub struct Answer {
-    /// `Infeasible` where that is proven, else `NotFound`, `AuditFailed` or `Cancelled`.
+    /// `Infeasible` where that is proven, else `NotFound`, `AuditFailed`, `OutOfTime` or `Cancelled`.
     pub status: &'static str,
     /// What blocks.
     pub because: String,
@@ -36,6 +37,7 @@ impl Answer {
         let head = match self.status {
             "Infeasible" => "infeasible",
             "AuditFailed" => "planned, but the audit refuses the plan",
+            "OutOfTime" => "out of time",
             "Cancelled" => "cancelled",
             _ => "not found",
         };
@@ -77,6 +79,15 @@ impl Answer {
         Self {
             status: "Cancelled",
             because: "stopped before a plan was found".to_owned(),
+            relaxations: Vec::new(),
+        }
+    }
+
+    /// Of a search that the end of the time there was cut short: the rows are those that it had still to meet.
+    pub(crate) fn out_of_time(self, within: Duration) -> Self {
+        Self {
+            status: "OutOfTime",
+            because: format!("after {} s {}", within.as_secs_f64(), self.because),
             relaxations: Vec::new(),
         }
     }

@@ -19,7 +19,7 @@ mod tightening;
 pub mod track;
 pub mod whole_body;
 
-pub use plan::{Outcome, Step, plan};
+pub use plan::{Options, Outcome, Step, plan};
 pub use whole_body::Timing;
 
 use rbd_core::{Configuration, Tangent};

@@ -5,8 +5,21 @@ use crate::audit::Audit;
 use crate::bounds::impossible;
 use crate::task::{SrbPlan, Task};
 use crate::whole_body::{Attempt, Timing, WholeBodyPlan, audited};
+use core::cell::Cell;
 use core::ops::ControlFlow;
+use core::time::Duration;
 use ocp_solver::{Progress, Settings, Status};
+use std::time::Instant;
+
+/// How to plan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Where the durations of the phases come from.
+    pub timing: Timing,
+    /// The time there is, from the call on: it ends an iteration or an audit late, a few tenths of a second on long jumps. None: as
+    /// much as it takes.
+    pub within: Option<Duration>,
+}
 
 /// What the planner is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +57,7 @@ pub struct Outcome {
 /// A sentence, for a task that no solver can begin with.
 pub fn plan(
     task: &Task,
-    timing: Timing,
+    options: &Options,
     mut observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
 ) -> Result<Outcome, String> {
     let mut out = Outcome::default();
@@ -52,8 +65,18 @@ pub fn plan(
         out.answer = Some(Answer::proven(proof));
         return Ok(out);
     }
+    let clock = Instant::now();
+    let late = Cell::new(None);
+    let mut observe = |step, progress: Option<&Progress<f64>>| {
+        late.set(options.within.filter(|within| clock.elapsed() >= *within));
+        if late.get().is_some() {
+            ControlFlow::Break(())
+        } else {
+            observe(step, progress)
+        }
+    };
     let guess;
-    let srb = match timing {
+    let srb = match options.timing {
         Timing::Free => {
             guess = task.guess()?;
             &guess
@@ -62,32 +85,68 @@ pub fn plan(
             let found = task.attempt(&Settings::new(), |p| observe(Step::Body, Some(p)))?;
             let srb = &*out.srb.insert(found);
             if srb.status != Status::Solved {
-                let cancelled =
-                    srb.status == Status::Cancelled || observe(Step::Relaxations, None).is_break();
-                out.answer = Some(if cancelled {
-                    Answer::cancelled()
-                } else {
+                let end = End::of(srb.status, &late, &mut observe);
+                out.answer = Some(end.answer(|| {
                     Answer::no_body_plan(task, srb, |p| observe(Step::Relaxations, Some(p)))
-                });
+                }));
                 return Ok(out);
             }
             srb
         }
     };
-    let whole = audited(task, srb, timing, |p| observe(Step::WholeBody, Some(p)))?;
+    let whole = audited(task, srb, options.timing, |p| {
+        observe(Step::WholeBody, Some(p))
+    })?;
     out.answer = match &whole.audit {
         Some(audit) if audit.passes() => None,
         Some(audit) => Some(Answer::failed(audit)),
-        None if whole.plan.outcome.status == Status::Cancelled
-            || observe(Step::Relaxations, None).is_break() =>
-        {
-            Some(Answer::cancelled())
+        None => {
+            let end = End::of(whole.plan.outcome.status, &late, &mut observe);
+            Some(end.answer(|| {
+                Answer::no_whole_body_plan(task, srb, &whole.plan, |p| {
+                    observe(Step::Relaxations, Some(p))
+                })
+            }))
         }
-        None => Some(Answer::no_whole_body_plan(task, srb, &whole.plan, |p| {
-            observe(Step::Relaxations, Some(p))
-        })),
     };
     (out.wall_ms, out.bytes, out.audit) = (whole.wall_ms, whole.bytes, whole.audit);
     (out.whole_body, out.path) = (Some(whole.plan), whole.path);
     Ok(out)
+}
+
+/// Why a solver ended without a plan.
+enum End {
+    /// It found none.
+    Itself,
+    /// The observer wants no more.
+    Cancelled,
+    /// The time ended.
+    Late(Duration),
+}
+
+impl End {
+    /// After a solve that ended so. A solver that found nothing is asked for easier tasks, unless the observer wants no more.
+    fn of(
+        status: Status,
+        late: &Cell<Option<Duration>>,
+        observe: &mut impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
+    ) -> Self {
+        if status == Status::Cancelled {
+            return late.get().map_or(Self::Cancelled, Self::Late);
+        }
+        if observe(Step::Relaxations, None).is_break() && late.get().is_none() {
+            Self::Cancelled
+        } else {
+            Self::Itself
+        }
+    }
+
+    /// What to tell, from what `found` tells of where the solver stands.
+    fn answer(self, found: impl FnOnce() -> Answer) -> Answer {
+        match self {
+            Self::Itself => found(),
+            Self::Cancelled => Answer::cancelled(),
+            Self::Late(within) => found().out_of_time(within),
+        }
+    }
 }

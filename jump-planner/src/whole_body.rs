@@ -9,7 +9,7 @@ use super::task::{PHASES, SrbPlan, Task};
 use crate::audit::Audit;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
-use ocp_solver::{Progress, Settings, Solution, Stage, Status, blocking_rows};
+use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_rows};
 use serde_json::{Value, json};
 use std::time::Instant;
 use wb_opt::{BASE, FreeTiming, Gains, Judgement, Phase, Problem, Row, Sample, State, TimedState};
@@ -22,9 +22,10 @@ const TIGHTENINGS: usize = 3;
 const WARM_MU: f64 = 1e-3;
 
 /// Where the durations of the phases come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Timing {
     /// From the rigid body's plan: the two-stage way of paper A.
+    #[default]
     Given,
     /// They are unknowns of the whole body's problem, and start from the given ones.
     Free,
@@ -228,8 +229,8 @@ struct Grid<'a> {
     task: &'a Task,
     timing: Timing,
     setup: Setup<'a>,
-    stages: Vec<Stage<f64, State<f64, N>, NX, NU, NI>>,
-    timed: Vec<Stage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
+    stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
+    timed: Vec<SparseStage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
     /// Share of the torque limits of the last solve.
     torque_share: f64,
     path: Vec<Attempt>,
@@ -254,10 +255,10 @@ impl<'a> Grid<'a> {
         Ok(Self {
             task,
             timing,
-            stages: vec![Stage::new(start); nodes],
+            stages: vec![SparseStage::sparse(start); nodes],
             timed: match timing {
                 Timing::Given => Vec::new(),
-                Timing::Free => vec![Stage::new(timed); nodes],
+                Timing::Free => vec![SparseStage::sparse(timed); nodes],
             },
             torque_share: 0.0,
             path: Vec::new(),
@@ -399,7 +400,7 @@ fn free_timing<'a>(
 fn finish<S: Copy, const X: usize>(
     problem: &Problem<'_, f64, N, FOOT_COUNT>,
     (outcome, torque_share): (Solution<f64>, f64),
-    stages: &[Stage<f64, S, X, NU, NI>],
+    stages: &[SparseStage<f64, S, X, NU, NI>],
     state: impl Fn(&S) -> &State<f64, N>,
 ) -> Result<WholeBodyPlan, String> {
     let strongest = problem

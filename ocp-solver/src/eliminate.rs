@@ -76,6 +76,9 @@ pub(crate) struct Row<T, const NX: usize, const NU: usize> {
     factors: [T; NU],
 }
 
+/// How many rows are whitened together: enough to fill the vectors of a processor.
+const BATCH: usize = 8;
+
 /// The pivot rows while a node is being eliminated: `du_p = −(x · dx + u · du + constant)` each, `u` without `p`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Elimination<T, const NX: usize, const NU: usize> {
@@ -89,6 +92,11 @@ pub(crate) struct Elimination<T, const NX: usize, const NU: usize> {
     /// Controls that may become dependent.
     free: [bool; NU],
     tolerance: T,
+    /// Number of controls.
+    n: usize,
+    /// Rows that came last, in the controls themselves.
+    new: [Row<T, NX, NU>; BATCH],
+    new_count: usize,
     /// Rows that wait: little or nothing was left of their controls when they came.
     waiting: [Row<T, NX, NU>; NX],
     waiting_count: usize,
@@ -134,7 +142,8 @@ impl<T: Scalar, const NU: usize> Pivots<T, NU> {
         n: usize,
         mut write: impl FnMut(Source, T),
     ) {
-        self.whitening.gradient(&mut gradient, n);
+        self.whitening
+            .gradients(core::array::from_mut(&mut gradient), n);
         let mut y = [T::ZERO; NU];
         for (i, column) in self.column.iter().enumerate().take(self.count) {
             let mut value = -entry(&gradient, *column);
@@ -206,7 +215,6 @@ impl<T: Scalar, const NX: usize, const NU: usize> Row<T, NX, NU> {
             constant,
             scale,
             source,
-            size: largest(&u),
             in_state: largest(&x),
             ..Self::NONE
         }
@@ -224,14 +232,18 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
             size: [T::ZERO; NU],
             free: [false; NU],
             tolerance: T::ZERO,
+            n: 0,
+            new: [Row::NONE; BATCH],
+            new_count: 0,
             waiting: [Row::NONE; NX],
             waiting_count: 0,
         }
     }
 
-    /// No rows; controls with `free[j]` may become dependent.
-    pub(crate) const fn start(&mut self, free: [bool; NU], tolerance: T) {
-        (self.count, self.waiting_count) = (0, 0);
+    /// No rows; of `n` controls those with `free[j]` may become dependent.
+    pub(crate) const fn start(&mut self, n: usize, free: [bool; NU], tolerance: T) {
+        self.n = n;
+        (self.count, self.new_count, self.waiting_count) = (0, 0, 0);
         (self.free, self.tolerance) = (free, tolerance);
     }
 
@@ -248,10 +260,38 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
         self.free.get(j).copied().unwrap_or(false)
     }
 
-    /// Takes a row in. It becomes a pivot at once if much of its controls is left; otherwise it waits for
+    /// Takes a row in the controls themselves in.
+    #[inline(always)]
+    pub(crate) fn insert(&mut self, row: Row<T, NX, NU>, pivots: &mut Pivots<T, NU>) {
+        if self.new_count >= BATCH {
+            self.whiten(pivots);
+        }
+        if let Some(slot) = self.new.get_mut(self.new_count) {
+            *slot = row;
+            self.new_count = self.new_count.saturating_add(1);
+        }
+    }
+
+    /// Turns the rows that came last to whitened coordinates, all at once, and eliminates them.
+    #[inline(never)]
+    fn whiten(&mut self, pivots: &mut Pivots<T, NU>) {
+        let mut gradients = [[T::ZERO; NU]; BATCH];
+        for (gradient, row) in gradients.iter_mut().zip(&self.new).take(self.new_count) {
+            *gradient = row.u;
+        }
+        pivots.whitening.gradients(&mut gradients, self.n);
+        for (k, gradient) in gradients.iter().enumerate().take(self.new_count) {
+            let mut row = self.new[k];
+            (row.u, row.size) = (*gradient, largest(gradient));
+            self.eliminate(row, pivots);
+        }
+        self.new_count = 0;
+    }
+
+    /// Eliminates a row. It becomes a pivot at once if much of its controls is left; otherwise it waits for
     /// [`Self::finish`], because what is left may be what later pivots take away.
     #[inline(always)]
-    pub(crate) fn insert(&mut self, mut row: Row<T, NX, NU>, pivots: &mut Pivots<T, NU>) {
+    fn eliminate(&mut self, mut row: Row<T, NX, NU>, pivots: &mut Pivots<T, NU>) {
         for i in 0..self.count.min(NU) {
             self.subtract(&mut row, i);
         }
@@ -409,6 +449,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
     /// rows to hand back in `carried` and what the multipliers of the others need in `pivots`.
     #[inline(always)]
     pub(crate) fn finish(&mut self, carried: &mut Carried<T, NX>, pivots: &mut Pivots<T, NU>) {
+        self.whiten(pivots);
         self.settle(pivots);
         carried.count = self.waiting_count;
         let places = carried.rows.iter_mut().zip(&mut carried.residual);

@@ -1,8 +1,8 @@
 //! Equalities of a node in the recursion: collected backwards, their multipliers recovered forwards.
 
 use crate::eliminate::{Carried, Elimination, Pivots, Row, Source};
-use crate::kernel::{add_product, add_scaled, add_transposed_product, dot, largest};
-use crate::problem::Derivatives;
+use crate::kernel::{add_product, add_scaled, dot, largest};
+use crate::linearised::Linearised;
 use crate::project::{Work, minimise};
 use crate::stage::Node;
 use so3::Scalar;
@@ -17,7 +17,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[must_use]
     pub(crate) fn minimise(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         work: &mut Work<T, NX, NU>,
         next: Option<&Carried<T, NX>>,
         tolerance: T,
@@ -38,7 +38,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
             for free in free.iter_mut().take(n) {
                 *free = true;
             }
-            work.elimination.start(free, tolerance);
+            work.elimination.start(n, free, tolerance);
             work.whiten(n, &mut self.riccati.pivots.whitening);
             self.insert_rows(d, next, &mut work.elimination);
         }
@@ -63,11 +63,11 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
     /// Puts the rows of the successor through dynamics without controls.
     #[inline(never)]
-    fn pass_back(&mut self, d: &Derivatives<T, NX, NU, NI>, next: &Carried<T, NX>) {
-        let (a, rows) = (&d.dynamics_x, self.row_count());
+    fn pass_back(&mut self, d: &impl Linearised<T, NX, NU>, next: &Carried<T, NX>) {
+        let rows = self.row_count();
         let carried = &mut self.riccati.carried;
         carried.pass(next, rows, |h, x| {
-            add_transposed_product(x, a, h);
+            d.pull_back_x(h, x);
             dot(h, &self.values.gap)
         });
     }
@@ -75,49 +75,31 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[inline(never)]
     fn insert_rows(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         next: Option<&Carried<T, NX>>,
         to: &mut Elimination<T, NX, NU>,
     ) {
         let (rows, n) = (self.row_count(), self.dims.controls.min(NU));
-        let before_mixed = self.dims.state_rows.saturating_add(self.dims.control_rows);
         let pivots = &mut self.riccati.pivots;
         for i in 0..rows {
             if !self.rows.is_equality(i) {
                 continue;
             }
             let lower = self.rows.lower[i];
-            let in_state = i < self.dims.state_rows || i >= before_mixed;
-            let in_control = i >= self.dims.state_rows;
-            let (x, mut u) = (
-                if in_state { d.rows_x[i] } else { [T::ZERO; NX] },
-                if in_control {
-                    d.rows_u[i]
-                } else {
-                    [T::ZERO; NU]
-                },
-            );
+            let (x, u) = d.row(i, self.dims.parts(i));
             let scale = max(largest(&x), largest(&u));
-            pivots.whitening.gradient(&mut u, n);
             let constant = self.values.rows[i] - lower;
             to.insert(Row::new(x, u, constant, scale, i as Source), pivots);
         }
         let Some(next) = next.filter(|next| next.count > 0) else {
             return;
         };
-        let authority = d
-            .dynamics_u
-            .iter()
-            .take(n)
-            .fold(T::ZERO, |most, b| max(most, largest(b)));
+        let authority = d.authority(n);
         let handed = next.rows.iter().zip(&next.residual).take(next.count);
         for (j, (h, residual)) in handed.enumerate() {
             let (mut x, mut u) = ([T::ZERO; NX], [T::ZERO; NU]);
-            add_transposed_product(&mut x, &d.dynamics_x, h);
-            for ((u, b), _) in u.iter_mut().zip(&d.dynamics_u).zip(0..n) {
-                *u = dot(b, h);
-            }
-            pivots.whitening.gradient(&mut u, n);
+            d.pull_back_x(h, &mut x);
+            d.pull_back_u(h, &mut u);
             let constant = *residual + dot(h, &self.values.gap);
             let source = rows.saturating_add(j) as Source;
             to.insert(
@@ -138,7 +120,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[inline(never)]
     pub(crate) fn recover_multipliers(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         costate: &[T; NX],
         next: Option<&mut Carried<T, NX>>,
         shift: T,
@@ -161,17 +143,16 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         self.riccati.carried.multipliers(&mut write);
         if !self.riccati.pivots.is_empty() {
             // Gradient in the controls: everything but the pivot rows, whose multipliers are still zero.
-            let mut gradient = d.cost_u;
+            let mut gradient = *d.cost_u();
             add_scaled(&mut gradient, shift, &self.step.control);
-            add_transposed_product(&mut gradient, &d.hessian_xu, &self.step.state);
-            add_product(&mut gradient, &d.hessian_uu, &self.step.control);
+            d.add_curvature(&self.step.state, &self.step.control, &mut gradient);
             let mut costate = *costate;
             if let Some(next) = &next {
                 for (row, y) in next.rows.iter().zip(&handed).take(next.count) {
                     add_scaled(&mut costate, *y, row);
                 }
             }
-            add_transposed_product(&mut gradient, &d.dynamics_u, &costate);
+            d.pull_back_u(&costate, &mut gradient);
             let first = self.dims.state_rows;
             for i in first..rows {
                 let y = if self.rows.is_equality(i) {
@@ -183,7 +164,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                     target + weight * change
                 };
                 if y != T::ZERO {
-                    add_scaled(&mut gradient, y, &d.rows_u[i]);
+                    d.add_row_u(i, y, &mut gradient);
                 }
             }
             let n = self.dims.controls.min(NU);
@@ -240,7 +221,7 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
         return found.then(|| step.map(|[value]| value));
     }
     let mut pivots = Pivots::new();
-    work.elimination.start(*free, tolerance);
+    work.elimination.start(NX, *free, tolerance);
     work.whiten(NX, &mut pivots.whitening);
     let given = carried.rows.iter().zip(&carried.residual);
     for (i, (h, residual)) in given.enumerate().take(carried.count) {
@@ -248,7 +229,6 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
         for (value, free) in u.iter_mut().zip(free) {
             *value = if *free { *value } else { T::ZERO };
         }
-        pivots.whitening.gradient(&mut u, NX);
         let row = Row::new([T::ZERO], u, *residual, largest(h), i as Source);
         work.elimination.insert(row, &mut pivots);
     }

@@ -2,7 +2,8 @@
 
 use crate::filter::{LogSum, Point};
 use crate::keep::Keep;
-use crate::kernel::{add_scaled, add_transposed_product, larger};
+use crate::kernel::{add_scaled, larger};
+use crate::linearised::Linearised;
 use crate::problem::{Derivatives, Problem, Values};
 use crate::rows::Complementarity;
 use crate::settings::Residual;
@@ -104,7 +105,7 @@ pub(crate) fn differentiate<
         sum: T::ZERO,
         count: T::ONE,
     };
-    let mut scratch = K::SCRATCH;
+    let mut scratch = Derivatives::new();
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
@@ -137,22 +138,21 @@ impl<T: Scalar> Dual<T> {
     fn add<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         node: &Node<T, NX, NU, NI>,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         next_costate: &[T; NX],
         free: Option<&[bool; NX]>,
     ) {
-        let (mut in_x, mut in_u) = (d.cost_x, d.cost_u);
-        add_transposed_product(&mut in_x, &d.dynamics_x, next_costate);
-        add_transposed_product(&mut in_u, &d.dynamics_u, next_costate);
-        let before_mixed = node.dims.state_rows.saturating_add(node.dims.control_rows);
+        let (mut in_x, mut in_u) = (*d.cost_x(), *d.cost_u());
+        d.pull_back_x(next_costate, &mut in_x);
+        d.pull_back_u(next_costate, &mut in_u);
         let multipliers = node.rows.multipliers();
-        let rows = d.rows_x.iter().zip(&d.rows_u).zip(&multipliers);
-        for (i, ((row_x, row_u), y)) in rows.enumerate().take(node.row_count()) {
-            if i < node.dims.state_rows || i >= before_mixed {
-                add_scaled(&mut in_x, *y, row_x);
+        for (i, y) in multipliers.iter().enumerate().take(node.row_count()) {
+            let parts = node.dims.parts(i);
+            if parts.state {
+                d.add_row_x(i, *y, &mut in_x);
             }
-            if i >= node.dims.state_rows {
-                add_scaled(&mut in_u, *y, row_u);
+            if parts.control {
+                d.add_row_u(i, *y, &mut in_u);
             }
             self.sum += abs(*y);
             self.count += T::ONE;

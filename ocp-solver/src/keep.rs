@@ -1,54 +1,77 @@
 //! Memory against time: whether a stage keeps its derivatives between the passes of an iteration.
 
-use crate::problem::Derivatives;
+use crate::linearised::Linearised;
+use crate::packed::Packed;
+use crate::problem::{Derivatives, Dims};
 use so3::Scalar;
 
 /// What a stage does with the derivatives of its node between the three passes of an iteration (residuals,
-/// factorisation, substitution): keep them ([`Derivatives`]), or have them written again ([`Recomputed`]).
+/// factorisation, substitution): keep them ([`Derivatives`]), keep what is not zero of them ([`Packed`]), or have them written again
+/// ([`Recomputed`]).
 ///
-/// Both give the same numbers, bit for bit.
-pub trait Keep<T, const NX: usize, const NU: usize, const NI: usize>:
+/// All give the same numbers, bit for bit.
+pub trait Keep<T: Scalar, const NX: usize, const NU: usize, const NI: usize>:
     Copy + sealed::Sealed
 {
-    /// What one solve needs besides the stages; on the stack of the solve.
+    /// The derivatives, as the passes read them.
     #[doc(hidden)]
-    type Scratch;
+    type Linearised: Linearised<T, NX, NU>;
 
     /// Nothing kept yet.
     #[doc(hidden)]
     const EMPTY: Self;
 
-    /// Scratch before its first use.
-    #[doc(hidden)]
-    const SCRATCH: Self::Scratch;
-
-    /// The derivatives at the iterate, written by `fill`; `is_new` tells that the iterate is another one than
-    /// in the call before.
+    /// The derivatives of a node of these sizes at the iterate, written by `fill` into `scratch`; `is_new` tells that the
+    /// iterate is another one than in the call before.
     #[doc(hidden)]
     fn at<'a>(
         &'a mut self,
-        scratch: &'a mut Self::Scratch,
+        scratch: &'a mut Derivatives<T, NX, NU, NI>,
+        dims: Dims,
         is_new: bool,
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
-    ) -> &'a Derivatives<T, NX, NU, NI>;
+    ) -> &'a Self::Linearised;
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, NU, NI>
     for Derivatives<T, NX, NU, NI>
 {
-    type Scratch = ();
+    type Linearised = Self;
     const EMPTY: Self = Self::new();
-    const SCRATCH: Self::Scratch = ();
 
     #[inline(always)]
     fn at<'a>(
         &'a mut self,
-        (): &'a mut Self::Scratch,
+        _: &'a mut Self,
+        _: Dims,
         is_new: bool,
-        fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
-    ) -> &'a Derivatives<T, NX, NU, NI> {
+        fill: impl FnOnce(&mut Self),
+    ) -> &'a Self {
         if is_new {
             fill(self);
+        }
+        self
+    }
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, NU, NI>
+    for Packed<T, NX, NU, NI>
+{
+    type Linearised = Self;
+    const EMPTY: Self = Self::new();
+
+    #[inline(always)]
+    fn at<'a>(
+        &'a mut self,
+        scratch: &'a mut Derivatives<T, NX, NU, NI>,
+        dims: Dims,
+        is_new: bool,
+        fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
+    ) -> &'a Self {
+        if is_new {
+            scratch.clear();
+            fill(scratch);
+            self.pack(scratch, dims);
         }
         self
     }
@@ -62,19 +85,18 @@ pub struct Recomputed;
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, NU, NI>
     for Recomputed
 {
-    type Scratch = Derivatives<T, NX, NU, NI>;
+    type Linearised = Derivatives<T, NX, NU, NI>;
     const EMPTY: Self = Self;
-    const SCRATCH: Self::Scratch = Derivatives::new();
 
     #[inline(always)]
     fn at<'a>(
         &'a mut self,
-        scratch: &'a mut Self::Scratch,
+        scratch: &'a mut Derivatives<T, NX, NU, NI>,
+        _: Dims,
         _: bool,
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
     ) -> &'a Derivatives<T, NX, NU, NI> {
-        // The last node's pattern may be another one.
-        *scratch = Derivatives::new();
+        scratch.clear();
         fill(scratch);
         scratch
     }
@@ -83,8 +105,9 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
 mod sealed {
     pub trait Sealed {}
     impl<T, const NX: usize, const NU: usize, const NI: usize> Sealed
-        for crate::problem::Derivatives<T, NX, NU, NI>
+        for super::Derivatives<T, NX, NU, NI>
     {
     }
+    impl<T, const NX: usize, const NU: usize, const NI: usize> Sealed for super::Packed<T, NX, NU, NI> {}
     impl Sealed for super::Recomputed {}
 }

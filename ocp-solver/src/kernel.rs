@@ -15,22 +15,44 @@ pub(crate) fn add_scaled<T: Scalar, const N: usize>(y: &mut [T; N], factor: T, x
     }
 }
 
-/// `xᵀ y`, summed in eight lanes so that it vectorises under strict rounding.
+/// A sum in eight lanes, so that it vectorises under strict rounding: term `i` goes into lane `i mod 8`.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<T>([T; 8]);
+
+impl<T: Scalar> Lanes<T> {
+    #[inline(always)]
+    pub(crate) const fn new() -> Self {
+        Self([T::ZERO; 8])
+    }
+
+    /// Adds term `i`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, i: usize, term: T) {
+        self.0[i & 7] += term;
+    }
+
+    #[inline(always)]
+    pub(crate) fn total(self) -> T {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    }
+}
+
+/// `xᵀ y`.
 #[inline(always)]
 pub(crate) fn dot<T: Scalar, const N: usize>(x: &[T; N], y: &[T; N]) -> T {
-    let mut lanes = [T::ZERO; 8];
+    let mut sum = Lanes::new();
     let (x8, x_rest) = x.as_chunks::<8>();
     let (y8, y_rest) = y.as_chunks::<8>();
     for (x, y) in x8.iter().zip(y8) {
-        for ((lane, x), y) in lanes.iter_mut().zip(x).zip(y) {
+        for ((lane, x), y) in sum.0.iter_mut().zip(x).zip(y) {
             *lane += *x * *y;
         }
     }
-    for ((lane, x), y) in lanes.iter_mut().zip(x_rest).zip(y_rest) {
+    for ((lane, x), y) in sum.0.iter_mut().zip(x_rest).zip(y_rest) {
         *lane += *x * *y;
     }
-    let [a, b, c, d, e, f, g, h] = lanes;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
+    sum.total()
 }
 
 /// `out += matrix · weights`, skipping zero weights.

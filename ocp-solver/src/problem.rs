@@ -58,7 +58,7 @@ impl<T: Scalar, const NX: usize, const NI: usize> Default for Values<T, NX, NI> 
 
 /// Derivatives of a node at one point; matrices are column-major.
 ///
-/// The arrays are zero before the first call and hold afterwards what the problem wrote last at the same
+/// The arrays are zero before the first call, and later ones hold zeros or what the problem wrote last at the same
 /// node, so a problem with a fixed pattern writes only that pattern.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivatives<T, const NX: usize, const NU: usize, const NI: usize> {
@@ -96,6 +96,23 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Derivatives<T
             hessian_xx: [[T::ZERO; NX]; NX],
             hessian_xu: [[T::ZERO; NX]; NU],
             hessian_uu: [[T::ZERO; NU]; NU],
+        }
+    }
+
+    /// Zero again, in place.
+    pub(crate) fn clear(&mut self) {
+        for vector in [
+            &mut self.cost_x[..],
+            &mut self.cost_u,
+            self.dynamics_x.as_flattened_mut(),
+            self.dynamics_u.as_flattened_mut(),
+            self.rows_x.as_flattened_mut(),
+            self.rows_u.as_flattened_mut(),
+            self.hessian_xx.as_flattened_mut(),
+            self.hessian_xu.as_flattened_mut(),
+            self.hessian_uu.as_flattened_mut(),
+        ] {
+            vector.fill(T::ZERO);
         }
     }
 }

@@ -15,7 +15,9 @@
 //! 1e10 and more, and eliminating in the plain controls would subtract such numbers from each other.
 
 use crate::eliminate::{Elimination, entry};
-use crate::kernel::{add_outer_products, add_scaled, factor, largest, solve_lower, solve_upper};
+use crate::kernel::{
+    add_outer_products, add_scaled, factor, largest, solve_lower, solve_upper, transpose,
+};
 use so3::Scalar;
 use so3::math::{abs, max, sqrt};
 
@@ -123,19 +125,17 @@ impl<T: Scalar, const NU: usize> Whitening<T, NU> {
         }
     }
 
-    /// A gradient in the first `n` controls, in the coordinates `w`: `S⁻¹ L⁻¹ g`.
+    /// Gradients in the first `n` controls, in the coordinates `w`: `S⁻¹ L⁻¹ g` of each.
     #[inline(always)]
-    pub(crate) fn gradient(&self, g: &mut [T; NU], n: usize) {
-        for j in 0..NU {
-            if j >= n {
-                break;
+    pub(crate) fn gradients<const M: usize>(&self, g: &mut [[T; NU]; M], n: usize) {
+        let mut rows = transpose(g);
+        solve_lower(&self.lower, &mut rows, n);
+        for (row, scale) in rows.iter_mut().zip(&self.scale).take(n) {
+            for value in row {
+                *value *= *scale;
             }
-            let value = g[j];
-            for (g, l) in g.iter_mut().zip(&self.lower[j]).take(n).skip(j + 1) {
-                *g -= value * *l;
-            }
-            g[j] = value * self.scale[j];
         }
+        *g = transpose(&rows);
     }
 }
 

@@ -20,9 +20,8 @@
 //! multipliers, the costate of a node is `P dx + p + H_kᵀ ν`.
 
 use crate::keep::Keep;
-use crate::kernel::{
-    add_outer, add_product, add_scaled, add_transposed_product, dot, mirror_lower, transpose,
-};
+use crate::kernel::{add_product, add_scaled, dot, mirror_lower, transpose};
+use crate::linearised::{Linearised, Quadratic};
 use crate::problem::{Derivatives, Problem};
 use crate::project::Work;
 use crate::rows::RowBarrier;
@@ -58,7 +57,7 @@ where
     K: Keep<T, NX, NU, NI>,
 {
     let mut work = Work::new();
-    let mut scratch = K::SCRATCH;
+    let mut scratch = Derivatives::new();
     let mut k = stages.len();
     while let Some((head, tail)) = stages.split_at_mut_checked(k) {
         let Some(stage) = head.last_mut() else { break };
@@ -78,23 +77,26 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[inline(always)]
     fn factorise(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         work: &mut Work<T, NX, NU>,
         next: Option<&Riccati<T, NX, NU>>,
         barrier: RowBarrier<T>,
         shift: T,
     ) -> bool {
         let n = self.dims.controls.min(NU);
-        let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
-        (*q_xx, *q_x) = (d.hessian_xx, d.cost_x);
-        for (i, column) in q_xx.iter_mut().enumerate() {
+        let mut q = Quadratic {
+            xx: &mut self.riccati.hessian,
+            xu: &mut work.xu,
+            uu: &mut work.uu,
+            x: &mut self.riccati.gradient,
+            u: &mut work.u,
+        };
+        d.write(n, &mut q);
+        for (i, column) in q.xx.iter_mut().enumerate() {
             column[i] += shift;
         }
-        if n > 0 {
-            (work.xu, work.uu, work.u) = (d.hessian_xu, d.hessian_uu, d.cost_u.map(|g| [g]));
-            for (i, column) in work.uu.iter_mut().enumerate() {
-                column[i] += shift;
-            }
+        for (i, column) in q.uu.iter_mut().enumerate().take(n) {
+            column[i] += shift;
         }
         self.add_rows(d, work, barrier.mu);
 
@@ -103,31 +105,28 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
             // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
             let mut v = next.gradient;
             add_product(&mut v, &next.hessian, &self.values.gap);
-            add_transposed_product(q_x, &d.dynamics_x, &v);
+            d.pull_back_x(&v, q_x);
             let mut w = [[T::ZERO; NX]; NX];
-            for (w, a) in w.iter_mut().zip(&d.dynamics_x) {
-                add_product(w, &next.hessian, a);
+            for (j, w) in w.iter_mut().enumerate() {
+                d.combine_x(j, &next.hessian, w);
             }
             let w = transpose(&w);
-            for (q, a) in q_xx.iter_mut().zip(&d.dynamics_x) {
-                add_product(q, &w, a);
+            for (j, q) in q_xx.iter_mut().enumerate() {
+                d.combine_x(j, &w, q);
             }
             if n > 0 {
+                let mut of_u = [T::ZERO; NU];
+                d.pull_back_u(&v, &mut of_u);
                 let mut v_u = [[T::ZERO; NX]; NU];
-                for ((((v_u, q_xu), q_u), b), _) in v_u
-                    .iter_mut()
-                    .zip(&mut work.xu)
-                    .zip(&mut work.u)
-                    .zip(&d.dynamics_u)
-                    .zip(0..n)
-                {
-                    add_product(v_u, &next.hessian, b);
-                    add_product(q_xu, &w, b);
-                    q_u[0] += dot(b, &v);
+                let columns = v_u.iter_mut().zip(&mut work.xu).zip(&mut work.u);
+                for (j, (((v_u, q_xu), q_u), of_u)) in columns.zip(&of_u).enumerate().take(n) {
+                    d.combine_u(j, &next.hessian, v_u);
+                    d.combine_u(j, &w, q_xu);
+                    q_u[0] += *of_u;
                 }
                 let v_u = transpose(&v_u);
-                for (q, b) in work.uu.iter_mut().zip(&d.dynamics_u).take(n) {
-                    add_product(q, &v_u, b);
+                for (j, q) in work.uu.iter_mut().enumerate().take(n) {
+                    d.combine_u(j, &v_u, q);
                 }
             }
         }
@@ -140,36 +139,22 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         true
     }
 
-    /// Adds the condensed rows to the stage Hessian and gradient.
+    /// Adds the condensed rows to the stage Hessian, of whose diagonal blocks only the lower triangles count, and gradient.
     #[inline(never)]
-    fn add_rows(&mut self, d: &Derivatives<T, NX, NU, NI>, q: &mut Work<T, NX, NU>, mu: T) {
-        let state_rows = self.dims.state_rows;
-        let before_mixed = state_rows.saturating_add(self.dims.control_rows);
+    fn add_rows(&mut self, d: &impl Linearised<T, NX, NU>, q: &mut Work<T, NX, NU>, mu: T) {
         for i in 0..self.row_count() {
             if self.rows.is_equality(i) && self.elastic == T::ZERO {
                 continue;
             }
-            let (weight, target) = self.condensed(i, mu);
-            let (row_x, row_u) = (&d.rows_x[i], &d.rows_u[i]);
-            let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
-            let (in_state, in_control) = (i < state_rows || i >= before_mixed, i >= state_rows);
-            if in_state {
-                add_outer(q_xx, weight, row_x);
-                add_scaled(q_x, target, row_x);
-            }
-            if in_control {
-                add_outer(&mut q.uu, weight, row_u);
-                for (q, entry) in q.u.iter_mut().zip(row_u) {
-                    q[0] += target * *entry;
-                }
-            }
-            if in_state && in_control {
-                for (column, entry) in q.xu.iter_mut().zip(row_u) {
-                    if *entry != T::ZERO {
-                        add_scaled(column, weight * *entry, row_x);
-                    }
-                }
-            }
+            let condensed = self.condensed(i, mu);
+            let mut quadratic = Quadratic {
+                xx: &mut self.riccati.hessian,
+                xu: &mut q.xu,
+                uu: &mut q.uu,
+                x: &mut self.riccati.gradient,
+                u: &mut q.u,
+            };
+            d.condense(i, self.dims.parts(i), condensed, &mut quadratic);
         }
     }
 }
@@ -201,7 +186,7 @@ where
         first.node.step.state = start;
         first.node.step.costate = first.node.riccati.costate(&start);
     }
-    let mut scratch = K::SCRATCH;
+    let mut scratch = Derivatives::new();
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
@@ -219,7 +204,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[inline(always)]
     fn substitute(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         next: Option<&mut Self>,
         barrier: RowBarrier<T>,
         direction: &mut Direction<T>,
@@ -232,7 +217,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         for (control, (gain, feedforward)) in self.step.control.iter_mut().zip(law) {
             *control = feedforward[0] + dot(gain, &step);
         }
-        direction.slope += dot(&d.cost_x, &step) + dot(&d.cost_u, &self.step.control);
+        direction.slope += dot(d.cost_x(), &step) + dot(d.cost_u(), &self.step.control);
         self.step_rows(d, barrier, direction);
 
         // The costate of this node lacks its rows until here.
@@ -245,8 +230,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         let mut carried = None;
         if let Some(next) = next {
             let mut step_next = self.values.gap;
-            add_product(&mut step_next, &d.dynamics_x, &step);
-            add_product(&mut step_next, &d.dynamics_u, &self.step.control);
+            d.push_forward(&step, &self.step.control, &mut step_next);
             next.step.state = step_next;
             costate = next.riccati.costate(&step_next);
             next.step.costate = costate;

@@ -16,8 +16,8 @@
 //! `Σ/(1 + e Σ)` and `(µ/(h−s) − µ/(s−l) + Σ(c − s))/(1 + e Σ)`, and an equality `1/e` and `(c − l)/e`.
 
 use crate::iterate::Merit;
-use crate::kernel::{dot, larger};
-use crate::problem::Derivatives;
+use crate::kernel::larger;
+use crate::linearised::Linearised;
 use crate::riccati::Direction;
 use crate::stage::{Node, Rows};
 use so3::Scalar;
@@ -233,17 +233,9 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
     /// `J d` of row `i` for the state and control steps.
     #[inline(always)]
-    fn row_change(&self, d: &Derivatives<T, NX, NU, NI>, i: usize) -> T {
-        let x_rows = self.dims.state_rows;
-        let u_rows = x_rows.saturating_add(self.dims.control_rows);
-        let mut change = T::ZERO;
-        if i < x_rows || i >= u_rows {
-            change += dot(&d.rows_x[i], &self.step.state);
-        }
-        if i >= x_rows {
-            change += dot(&d.rows_u[i], &self.step.control);
-        }
-        change
+    fn row_change(&self, d: &impl Linearised<T, NX, NU>, i: usize) -> T {
+        let parts = self.dims.parts(i);
+        d.row_change(i, parts, &self.step.state, &self.step.control)
     }
 
     /// Slack steps, and in elastic mode multipliers of equalities, from the state and control steps.
@@ -252,7 +244,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     /// derivative of the barrier to the slope.
     pub(crate) fn step_rows(
         &mut self,
-        d: &Derivatives<T, NX, NU, NI>,
+        d: &impl Linearised<T, NX, NU>,
         barrier: RowBarrier<T>,
         to: &mut Direction<T>,
     ) {

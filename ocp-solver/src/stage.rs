@@ -3,6 +3,7 @@
 use crate::eliminate::{Carried, Pivots};
 use crate::keep::{Keep, Recomputed};
 use crate::kernel::{factor, solve_lower, solve_upper};
+use crate::packed::Packed;
 use crate::problem::{Derivatives, Dims, Evaluated, Problem, Values};
 use so3::Scalar;
 
@@ -39,6 +40,11 @@ pub struct Stage<
 /// A stage that keeps no derivatives: about half the size, see [`Recomputed`].
 pub type LeanStage<T, X, const NX: usize, const NU: usize, const NI: usize> =
     Stage<T, X, NX, NU, NI, Recomputed>;
+
+/// A stage that keeps the nonzero entries of its derivatives: on large problems that are mostly zeros the passes of an
+/// iteration have less memory to go through, on small ones finding the zeros costs more than it saves.
+pub type SparseStage<T, X, const NX: usize, const NU: usize, const NI: usize> =
+    Stage<T, X, NX, NU, NI, Packed<T, NX, NU, NI>>;
 
 /// What the solver knows of a node besides where it is.
 ///
@@ -155,6 +161,16 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
 }
 
 impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
+    SparseStage<T, X, NX, NU, NI>
+{
+    /// Zeroed storage around a state, for the nonzero entries of its derivatives.
+    #[must_use]
+    pub const fn sparse(state: X) -> Self {
+        Self::with(state, Packed::new())
+    }
+}
+
+impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize>
     LeanStage<T, X, NX, NU, NI>
 {
     /// Zeroed storage around a state, without room for derivatives.
@@ -182,21 +198,21 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
     }
 
     /// Derivatives at the iterate of node `k`, beside what the solver knows of it.
-    ///
     #[inline(always)]
     pub(crate) fn linearise<'a, P: Problem<T, NX, NU, NI, State = X>>(
         &'a mut self,
         problem: &P,
         k: usize,
         next: Option<&Self>,
-        scratch: &'a mut K::Scratch,
+        scratch: &'a mut Derivatives<T, NX, NU, NI>,
         pass: Pass,
-    ) -> (&'a mut Node<T, NX, NU, NI>, &'a Derivatives<T, NX, NU, NI>)
+    ) -> (&'a mut Node<T, NX, NU, NI>, &'a K::Linearised)
     where
         K: Keep<T, NX, NU, NI>,
     {
         let node = &mut self.node;
-        let derivatives = self.kept.at(scratch, pass == Pass::New, |derivatives| {
+        let (kept, dims, is_new) = (&mut self.kept, node.dims, pass == Pass::New);
+        let derivatives = kept.at(scratch, dims, is_new, |derivatives| {
             let costate = next.map_or([T::ZERO; NX], |next| next.node.costate);
             let next = next.map(|next| &next.state);
             let mut values = Values::new();

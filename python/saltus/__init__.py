@@ -27,7 +27,16 @@ from saltus._saltus import (
     solve_ocp,
     solve_qp,
 )
-from saltus.errors import AuditFailed, BadInput, Error, Infeasible, NoPlan, NotFound, Refused
+from saltus.errors import (
+    AuditFailed,
+    BadInput,
+    Error,
+    Infeasible,
+    NoPlan,
+    NotFound,
+    OutOfTime,
+    Refused,
+)
 
 __all__ = [
     "AuditFailed",
@@ -42,6 +51,7 @@ __all__ = [
     "NotFound",
     "Observation",
     "OcpSolution",
+    "OutOfTime",
     "Plan",
     "QpSolution",
     "Record",

@@ -105,6 +105,7 @@ def plan(
     progress: Callable[[str, int, float], object] | None = None,
     *,
     timing: str = "given",
+    within: float | None = None,
 ) -> Plan: ...
 
 @final

@@ -40,5 +40,9 @@ class AuditFailed(NoPlan):
     """A plan was found, and its audit refuses it."""
 
 
+class OutOfTime(NoPlan):
+    """The time that was given ended before the solver did: the text says what stood in the way then."""
+
+
 class Refused(Error):
     """The machine does not begin the jump; the robot goes on standing."""

@@ -6,6 +6,7 @@ use jump_planner::answer::Answer;
 use pyo3::{PyErr, import_exception};
 
 import_exception!(saltus.errors, AuditFailed);
+import_exception!(saltus.errors, OutOfTime);
 import_exception!(saltus.errors, BadInput);
 import_exception!(saltus.errors, Error);
 import_exception!(saltus.errors, Infeasible);
@@ -32,6 +33,7 @@ pub(crate) fn no_plan(answer: &Answer) -> PyErr {
     match answer.status {
         "Infeasible" => Infeasible::new_err(told),
         "AuditFailed" => AuditFailed::new_err(told),
+        "OutOfTime" => OutOfTime::new_err(told),
         _ => NotFound::new_err(told),
     }
 }

@@ -1,8 +1,9 @@
 //! Planning, with the interpreter free meanwhile.
 
 use core::ops::ControlFlow;
+use core::time::Duration;
 
-use jump_planner::{Step, Timing};
+use jump_planner::{Options, Step, Timing};
 use pyo3::{FromPyObject, Py, PyAny, PyErr, PyResult, Python, pyfunction};
 
 use crate::errors::{bad, failed, no_plan};
@@ -53,23 +54,29 @@ fn timing(name: &str) -> PyResult<Timing> {
 ///
 /// `task` is a Task, or what Task.load takes; `robot` jumps in the place of its own. `progress(step, iteration, violation)` is called
 /// after every iteration of a solver; whatever it raises stops the planner and is raised here. `timing` is "given", from the rigid
-/// body's plan, or "free", unknowns of the whole body's problem.
+/// body's plan, or "free", unknowns of the whole body's problem. `within` is the time there is, s, which ends an iteration or an audit
+/// late; None: as much as it takes.
 ///
-/// Raises Infeasible with the proof, NotFound or AuditFailed with the reason, and BadInput.
+/// Raises Infeasible with the proof, NotFound or AuditFailed with the reason, OutOfTime with what stood in the way, and BadInput.
 #[pyfunction]
-#[pyo3(signature = (task, robot = None, progress = None, *, timing = "given"), name = "plan")]
+#[pyo3(signature = (task, robot = None, progress = None, *, timing = "given", within = None), name = "plan")]
 pub(crate) fn plan(
     py: Python<'_>,
     task: Asked,
     robot: Option<Py<Robot>>,
     progress: Option<Py<PyAny>>,
     timing: &str,
+    within: Option<f64>,
 ) -> PyResult<Plan> {
     let task = task.task(robot.as_ref())?;
-    let timing = self::timing(timing)?;
+    let within = within.map(Duration::try_from_secs_f64).transpose();
+    let options = Options {
+        timing: self::timing(timing)?,
+        within: within.map_err(|error| bad(format!("within: {error}")))?,
+    };
     let mut stopped: Option<PyErr> = None;
     let found = py.detach(|| {
-        jump_planner::plan(&task, timing, |step, at| {
+        jump_planner::plan(&task, &options, |step, at| {
             let told = Python::attach(|py| {
                 py.check_signals()?;
                 if let (Some(progress), Some(at)) = (&progress, at) {

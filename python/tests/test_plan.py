@@ -92,6 +92,13 @@ def test_what_is_not_found_says_what_blocks_and_what_would_help() -> None:
     assert caught.value.because in str(caught.value)
 
 
+def test_a_search_ends_with_the_time_there_is() -> None:
+    with pytest.raises(saltus.OutOfTime, match="after 0 s the body's motion"):
+        saltus.plan("a1/lateral", within=0.0)
+    with pytest.raises(saltus.BadInput, match="within"):
+        saltus.plan("a1/lateral", within=-1.0)
+
+
 def test_progress_is_told_and_its_error_ends_planning() -> None:
     told = []
     saltus.plan("a1/lateral", progress=lambda *step: told.append(step))

@@ -5,7 +5,7 @@ use crate::file::{FEET, File};
 use crate::legs::{DT, N, SrbMotion};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
-use ocp_solver::{Barrier, Progress, Stage};
+use ocp_solver::{Barrier, Progress, SparseStage};
 use serde_json::{Value, json};
 use std::time::Instant;
 use wb_opt::{BASE, EulerOrder, Pose, Sample, State};
@@ -15,7 +15,7 @@ const NX: usize = 2 * N;
 const NU: usize = N + 3 * FEET;
 const NI: usize = wb_opt::row_capacity(N, FEET, 4, 12, false);
 
-type Node = Stage<f64, State<f64, N>, NX, NU, NI>;
+type Node = SparseStage<f64, State<f64, N>, NX, NU, NI>;
 
 impl File {
     /// Solves the problem of a task on the whole body, with the phases of a solution on the single rigid body and along its motion, as
@@ -35,7 +35,7 @@ impl File {
         let problem = data.problem();
         let mut settings = wb_opt::settings();
         settings.barrier = barrier;
-        let rest = Stage::new(State::at_rest(Pose::level([0.0; N])));
+        let rest = SparseStage::sparse(State::at_rest(Pose::level([0.0; N])));
         let mut stages: Vec<Node> = vec![rest; problem.intervals() + 1];
         let force = |k: usize, foot: usize| Vector3::from_fn(|i, _| data.forces[k][3 * foot + i]);
         let clock = Instant::now();

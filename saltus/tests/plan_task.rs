@@ -337,3 +337,26 @@ fn bad_input_is_named() {
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
+
+/// Nothing can be found in no time; that is an answer, with what stands in the way, and no plan lies there.
+#[test]
+fn a_search_ends_with_the_time_there_is() {
+    let folder = folder("within");
+    let out = folder.join("plan");
+    let arguments = ["plan", "a1/lateral", "--within", "0", "--json", "--out"];
+    let output = saltus(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["status"], "OutOfTime", "{report}");
+    let because = report["answer"]["because"].as_str().unwrap();
+    assert!(
+        because.starts_with("after 0 s the body's motion"),
+        "{because}"
+    );
+    assert!(!out.exists());
+
+    let output = saltus(&["plan", "a1/lateral", "--within", "-1"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("--within"), "{said}");
+}

@@ -3,7 +3,7 @@
 use crate::common::{NI, NU, NX, jump};
 use core::mem::size_of;
 use core::ops::ControlFlow;
-use ocp_solver::{LeanStage, Settings, Stage, Status};
+use ocp_solver::{LeanStage, Settings, SparseStage, Stage, Status};
 use srb_opt::onboard::{self, Workspace};
 use srb_opt::{Error, State};
 
@@ -41,7 +41,7 @@ fn a_jump_is_planned_and_replanned_in_a_workspace() {
 }
 
 #[test]
-fn stages_without_derivatives_plan_the_same_jump_bit_for_bit() {
+fn stages_without_derivatives_or_their_zeros_plan_the_same_jump_bit_for_bit() {
     let mut problem = jump();
     (problem.edge, problem.goal_w) = (None, nalgebra::Vector3::new(0.3, -0.1, 0.25));
     let go = |_: &_| ControlFlow::Continue(());
@@ -50,11 +50,20 @@ fn stages_without_derivatives_plan_the_same_jump_bit_for_bit() {
     let kept = problem.plan(&Settings::new(), &mut full, go).unwrap();
     assert_eq!(kept.status, Status::Solved);
 
+    let mut sparse =
+        vec![SparseStage::<_, _, NX, NU, NI>::sparse(State::new()); problem.intervals() + 1];
+    problem.write_guess(&mut sparse, || 0.0);
+    assert_eq!(
+        kept,
+        problem.plan(&Settings::new(), &mut sparse, go).unwrap()
+    );
+
     let mut lean = vec![LeanStage::<_, _, NX, NU, NI>::lean(State::new()); problem.intervals() + 1];
     problem.write_guess(&mut lean, || 0.0);
     let recomputed = problem.plan(&Settings::new(), &mut lean, go).unwrap();
     assert_eq!(kept, recomputed);
-    for (a, b) in full.iter().zip(&lean) {
+    for ((a, b), c) in full.iter().zip(&lean).zip(&sparse) {
         assert_eq!((a.state, a.control), (b.state, b.control));
+        assert_eq!((a.state, a.control), (c.state, c.control));
     }
 }

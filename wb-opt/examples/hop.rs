@@ -5,7 +5,7 @@
 use a1_model::{A1Reference, a1_reference::frame};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
-use ocp_solver::{Stage, Status};
+use ocp_solver::{SparseStage, Status};
 use wb_opt::{BASE, Foot, Friction, Phase, Pose, Problem, Robot, State, Weights, row_capacity};
 
 const N: usize = 18;
@@ -74,8 +74,8 @@ fn main() -> Result<(), wb_opt::Error> {
             goal: 10.0,
         },
     };
-    let mut stages: Vec<Stage<f64, State<f64, N>, 36, 30, NI>> =
-        vec![Stage::new(State::at_rest(crouch)); 41];
+    let mut stages: Vec<SparseStage<f64, State<f64, N>, 36, 30, NI>> =
+        vec![SparseStage::sparse(State::at_rest(crouch)); 41];
     let weight = Vector3::new(0.0, 0.0, 12.453 * 9.81 / 4.0);
     problem.write_guess(&mut stages, &vec![crouch; 41], |_, _| weight, || 0.0);
     let solution = problem.plan(&wb_opt::settings(), &mut stages, |_| {

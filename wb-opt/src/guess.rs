@@ -4,7 +4,7 @@ use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
 use crate::state::{Layout, Pose, State, Units};
 use nalgebra::Vector3;
-use ocp_solver::Stage;
+use ocp_solver::SparseStage;
 use so3::Scalar;
 
 impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
@@ -16,7 +16,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     /// solver's units: pass `|| T::ZERO` for the plain guess.
     pub fn write_guess<const NX: usize, const NU: usize, const NI: usize>(
         &self,
-        stages: &mut [Stage<T, State<T, N>, NX, NU, NI>],
+        stages: &mut [SparseStage<T, State<T, N>, NX, NU, NI>],
         nodes: &[Pose<T, N>],
         mut forces: impl FnMut(usize, usize) -> Vector3<T>,
         mut perturb: impl FnMut() -> T,

@@ -5,7 +5,7 @@ use crate::problem::Problem;
 use crate::rows::row_capacity;
 use crate::state::State;
 use core::ops::ControlFlow;
-use ocp_solver::{Progress, Settings, Solution, Solver, Stage};
+use ocp_solver::{Progress, Settings, Solution, Solver, SparseStage};
 use so3::Scalar;
 
 /// Settings for whole-body problems: the solver's defaults with a tighter primal tolerance, because a row of
@@ -29,7 +29,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     pub fn plan<const NX: usize, const NU: usize, const NI: usize>(
         &self,
         settings: &Settings<T>,
-        stages: &mut [Stage<T, State<T, N>, NX, NU, NI>],
+        stages: &mut [SparseStage<T, State<T, N>, NX, NU, NI>],
         observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Result<Solution<T>, Error> {
         self.check()?;

@@ -9,8 +9,8 @@ use crate::rows::row_capacity;
 use crate::state::State;
 use core::ops::ControlFlow;
 use ocp_solver::{
-    Derivatives, Dims, Evaluated, Problem as Ocp, Progress, Settings, Solution, Solver, Stage,
-    Values,
+    Derivatives, Dims, Evaluated, Problem as Ocp, Progress, Settings, Solution, Solver,
+    SparseStage, Values,
 };
 use so3::Scalar;
 use so3::math::max;
@@ -43,7 +43,7 @@ pub type TimedStage<
     const NX: usize,
     const NU: usize,
     const NI: usize,
-> = Stage<T, TimedState<T, N, PHASES>, NX, NU, NI>;
+> = SparseStage<T, TimedState<T, N, PHASES>, NX, NU, NI>;
 
 impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
     FreeTiming<'_, T, N, FEET, PHASES>
@@ -108,7 +108,7 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
     /// Writes the guess of the problem with given timing ([`Problem::write_guess`]) into the stages.
     pub fn write_guess<const SMALL: usize, const NX: usize, const NU: usize, const NI: usize>(
         &self,
-        given: &[Stage<T, State<T, N>, SMALL, NU, NI>],
+        given: &[SparseStage<T, State<T, N>, SMALL, NU, NI>],
         stages: &mut [TimedStage<T, N, PHASES, NX, NU, NI>],
     ) {
         let durations = self.guessed();

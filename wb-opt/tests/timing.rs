@@ -6,7 +6,7 @@ use a1_model::A1Geared;
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{
-    Derivatives, Evaluated, Problem as Ocp, Stage, Status, Values, derivative_errors,
+    Derivatives, Evaluated, Problem as Ocp, SparseStage, Status, Values, derivative_errors,
 };
 use wb_opt::{BaseCoordinates, FreeTiming, Problem, State, TimedState};
 
@@ -117,11 +117,12 @@ fn a_jump_finds_its_timing() {
     let data = data();
     let problem = jump(&data, BaseCoordinates::Rotation);
     let nodes = vec![problem.start; problem.intervals() + 1];
-    let mut given =
-        vec![
-            Stage::<f64, State<f64, N>, { 2 * N }, NU, NI>::new(State::at_rest(problem.start));
-            problem.intervals() + 1
-        ];
+    let mut given = vec![
+        SparseStage::<f64, State<f64, N>, { 2 * N }, NU, NI>::sparse(
+            State::at_rest(problem.start)
+        );
+        problem.intervals() + 1
+    ];
     let stand = Vector3::new(0.0, 0.0, 30.0);
     problem.write_guess(&mut given, &nodes, |_, _| stand, || 0.0);
     let mut timed = free(problem);
@@ -129,9 +130,10 @@ fn a_jump_finds_its_timing() {
         state: State::at_rest(problem.start),
         durations: timed.guessed(),
     };
-    let mut guess = vec![Stage::<f64, _, NX, NU, NI>::new(start); given.len()];
+    let mut guess = vec![SparseStage::<f64, _, NX, NU, NI>::sparse(start); given.len()];
     timed.write_guess(&given, &mut guess);
-    let plan = |timed: &FreeTiming<'_, f64, N, FEET, PHASES>, guess: &[Stage<_, _, NX, NU, NI>]| {
+    let plan = |timed: &FreeTiming<'_, f64, N, FEET, PHASES>,
+                guess: &[SparseStage<_, _, NX, NU, NI>]| {
         let mut stages = guess.to_vec();
         let go = |_: &_| ControlFlow::Continue(());
         let solution = timed.plan(&wb_opt::settings(), &mut stages, go).unwrap();

@@ -32,6 +32,16 @@ pub(crate) struct Args {
     /// rules out (III).
     #[arg(long, requires = "task", conflicts_with_all = ["timing", "reference", "problem"])]
     direct: bool,
+    /// Time there is to plan in, s: it ends an iteration or an audit late, with what stands in the way until then.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        requires = "task",
+        conflicts_with_all = ["reference", "problem"],
+        allow_negative_numbers = true,
+        value_parser = seconds
+    )]
+    within: Option<f64>,
     /// Plan for the quadruped of this URDF, or of a profile (TOML beside a URDF), instead of the task's robot: twelve joints, four legs of three below a floating base, one per
     /// quadrant, with effort and speed limits.
     #[arg(long, requires = "task", conflicts_with_all = ["reference", "problem"])]
@@ -83,6 +93,11 @@ pub(crate) struct Args {
 fn noise(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().map_err(|error| error.to_string())?;
     Range::From(0.0, 10.0).check(number).map(|()| number)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+    Range::From(0.0, 1e6).check(number).map(|()| number)
 }
 
 /// Runs the command.

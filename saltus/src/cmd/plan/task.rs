@@ -7,11 +7,12 @@ use super::layout::layout;
 use crate::cmd::failure::{Failure, brief};
 use crate::cmd::folder::{check_new, publish, write_file};
 use core::ops::ControlFlow;
+use core::time::Duration;
 use indicatif::ProgressBar;
 use jump_planner::audit::Audit;
 use jump_planner::task::Task;
 use jump_planner::whole_body::Attempt;
-use jump_planner::{Outcome, Step, Timing};
+use jump_planner::{Options, Outcome, Step, Timing};
 use serde_json::{Value, json};
 use std::process::ExitCode;
 
@@ -58,7 +59,9 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
     } else {
         Timing::Given
     };
-    report.found = jump_planner::plan(task, timing, |step, progress| {
+    let within = args.within.map(Duration::from_secs_f64);
+    let options = Options { timing, within };
+    report.found = jump_planner::plan(task, &options, |step, progress| {
         let stage = match step {
             Step::Body => "body",
             Step::WholeBody => "whole body",
