@@ -1,4 +1,4 @@
-//! Derivatives as the passes of an iteration read them: by the entries that are not zero.
+//! Derivatives by their entries that are not zero.
 //!
 //! A stage of a robot is mostly zeros: a row of one leg knows nothing of the others, dynamics are an integrator. The
 //! passes of an iteration stream all stages through the processor's caches, and what they need of each is what
@@ -93,6 +93,7 @@ struct Vectors<T, const R: usize, const C: usize> {
 
 impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
     const fn new() -> Self {
+        const { assert!(R <= u16::MAX as usize, "places are numbers of 16 bits") };
         Self {
             values: [[T::ZERO; R]; C],
             places: [[0; R]; C],
@@ -100,7 +101,7 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
         }
     }
 
-    /// Takes the entries of the vectors from `first(j)` on; those of vectors behind the given ones stay as they are.
+    /// Takes the entries of the vectors, each from a place on; vectors behind the given ones have none.
     #[inline(always)]
     fn fill<'a>(&mut self, vectors: impl Iterator<Item = (&'a [T; R], usize)>)
     where
@@ -110,8 +111,8 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
             self.values.as_flattened_mut(),
             self.places.as_flattened_mut(),
         );
-        let mut count = 0usize;
-        for ((vector, first), end) in vectors.zip(&mut self.ends) {
+        let (mut count, mut ends) = (0usize, self.ends.iter_mut());
+        for (vector, first) in vectors {
             for (i, value) in vector.iter().enumerate().skip(first) {
                 if *value != T::ZERO
                     && let (Some(slot), Some(place)) =
@@ -121,6 +122,11 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
                     count = count.wrapping_add(1);
                 }
             }
+            if let Some(end) = ends.next() {
+                *end = count as u32;
+            }
+        }
+        for end in ends {
             *end = count as u32;
         }
     }
@@ -352,9 +358,10 @@ mod tests {
         // Fewer vectors than before.
         packed.fill(given.iter().zip([0, 0]));
         assert!(packed.vector(0).eq([(1, 2.0)]));
+        assert!(packed.vector(2).eq([]) && packed.vector(3).eq([]));
 
         let mut sum = [1.0; 4];
         packed.add_transposed_product(&[1.0, 10.0, 100.0], &mut sum);
-        assert_eq!(sum[..2], [21.0, 1.0]);
+        assert_eq!(sum, [21.0, 1.0, 1.0, 1.0]);
     }
 }
