@@ -123,8 +123,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
     /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
     pub fn tick(&mut self, now: T, heard: Option<&Observation<T, N, F>>) -> Tick {
-        let work = match self.supervisor.hear(now, heard) {
-            Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
+        let work = match self.supervisor.hear(now, heard, &mut None) {
+            Ok((inputs, dt)) => self.act(now - self.start, inputs, dt),
             Err(fault) => self.abort(fault),
         };
         self.supervisor.ticked(work)
@@ -195,12 +195,22 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         if let Some(event) = self.event(t, measured) {
             self.supervisor.happened(event);
         }
-        let (command, work) = match (self.supervisor.phase, self.jump) {
+        // Made in its place.
+        let command;
+        let work = match (self.supervisor.phase, self.jump) {
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
-                (self.follow(&jump, t, inputs, dt), Work::Cartesian)
+                command = self.follow(&jump, t, inputs, &v, dt);
+                Work::Cartesian
             }
-            (Phase::Landing | Phase::Stand, _) => self.stand(&v),
-            _ => (self.supervisor.safe(), Work::Damping),
+            (Phase::Landing | Phase::Stand, _) => {
+                let work;
+                (command, work) = self.stand(&v);
+                work
+            }
+            _ => {
+                command = self.supervisor.safe();
+                Work::Damping
+            }
         };
         match self.supervisor.give(&command) {
             Ok(()) => work,
@@ -214,6 +224,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         jump: &Jump<'a, T, N, F>,
         t: T,
         inputs: &Observation<T, N, F>,
+        velocity: &Tangent<T, N>,
         dt: T,
     ) -> JointCommand<T, N> {
         let (s, measured) = (&self.settings, &inputs.measured);
@@ -229,7 +240,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 }
                 let (body, plan) = ((self.model, &s.regulator), &jump.plan);
                 let regulator = &mut self.workspace.regulator;
-                regulator.advance(body, plan, &s.pd.feet, NODES_PER_TICK);
+                let legs = (&s.pd.feet, &mut self.wanted);
+                regulator.advance(body, plan, legs, NODES_PER_TICK);
             }
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
@@ -255,7 +267,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
         if matches!(self.supervisor.phase, Phase::Stance) {
-            self.push_off(jump, t, measured, &mut reference);
+            self.push_off(jump, t, (measured, velocity), &mut reference);
         }
         let s = &self.settings;
         let speeds = &measured.joint_velocities;

@@ -22,11 +22,12 @@ pub(super) struct Body<T: Scalar, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize> Body<T, F> {
-    /// The body of `node`.
+    /// The body of `node`; `limbs` is memory for its legs.
     pub(super) fn new<M: Tree<T, N>, const N: usize>(
         model: &M,
         node: &Node<T, N, F>,
         feet: &[Frame<T>; F],
+        limbs: &mut Limbs<T, N, F>,
     ) -> Self {
         let q = Configuration {
             base: node.base,
@@ -37,7 +38,7 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             joints: node.joint_velocities,
         };
         let mut map = CentroidalMap::ZERO;
-        let limbs = Limbs::<T, N, F>::new(model, &q, feet);
+        limbs.update(model, &q, feet);
         centroidal_map(model, &limbs.posture, &mut map);
         let momentum = map.momentum(&velocity);
         let i = &map.locked_inertia_w;
@@ -51,6 +52,7 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             forces_w: node.forces_w,
             arms_w: limbs
                 .ends
+                .each_ref()
                 .map(|end| node.base.point(&end.position) - map.com_w),
         }
     }
@@ -82,6 +84,6 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             *entry = T::ONE;
         }
         let arm = self.arms_w.get(foot).copied().unwrap_or_default();
-        stack(&[unit / self.mass, arm.cross(&unit)])
+        stack([unit / self.mass, arm.cross(&unit)])
     }
 }

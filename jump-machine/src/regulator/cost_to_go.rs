@@ -1,7 +1,7 @@
 //! The least cost from an instant on, as a quadratic form of the body's error there, and Riccati's recursion in two steps: over time
 //! without feedback ([`CostToGo::before`]), and with one force that may answer ([`CostToGo::answered`]).
 
-use nalgebra::{ArrayStorage, Matrix3, SVector, Vector3};
+use nalgebra::{ArrayStorage, Matrix3, SMatrix, SVector, Vector3};
 use so3::Scalar;
 
 /// Rows of the error x = (δc, δθ, δv, δL): place of the centre of mass, m; rotation, rad; velocity of the centre of mass, m/s; angular
@@ -16,11 +16,6 @@ pub(super) const ROTATION: usize = 3;
 pub(super) const VELOCITY: usize = 6;
 pub(super) const ANGULAR: usize = 9;
 
-/// A column of S.
-type Column<T> = SVector<T, ERRORS>;
-/// The columns of a part of the error.
-type Part<T> = [Column<T>; 3];
-
 /// How an error goes on for a while if nothing answers it, A: δc + `dt` δv, `turned` δθ + `turns` δL, δv, δL + `pushed` δc.
 #[derive(Clone, Debug)]
 pub(super) struct Drift<T> {
@@ -34,20 +29,47 @@ pub(super) struct Drift<T> {
     pub(super) pushed: Matrix3<T>,
 }
 
-/// xᵀ S x, the least cost from an instant on: S by its columns.
+impl<T: Scalar> Drift<T> {
+    /// λ ← Aᵀ λ: the costate before, where it is λ after.
+    fn before(&self, costate: &mut [T; ERRORS]) {
+        let [px, py, pz, rx, ry, rz, vx, vy, vz, lx, ly, lz] = costate;
+        let (place, rotation) = ([*px, *py, *pz], [*rx, *ry, *rz]);
+        let pushed = transposed(&self.pushed, &[*lx, *ly, *lz]);
+        let turns = transposed(&self.turns, &rotation);
+        add([vx, vy, vz], place.map(|x| x * self.dt));
+        add([px, py, pz], pushed);
+        add([lx, ly, lz], turns);
+        [*rx, *ry, *rz] = transposed(&self.turned, &rotation);
+    }
+}
+
+/// mᵀ x.
+fn transposed<T: Scalar>(m: &Matrix3<T>, [x, y, z]: &[T; 3]) -> [T; 3] {
+    m.data.0.map(|[a, b, c]| a * *x + b * *y + c * *z)
+}
+
+/// Adds to three numbers.
+fn add<T: Scalar>([x, y, z]: [&mut T; 3], [dx, dy, dz]: [T; 3]) {
+    *x += dx;
+    *y += dy;
+    *z += dz;
+}
+
+/// xᵀ S x, the least cost from an instant on; S is symmetric.
 #[derive(Clone, Debug)]
-pub(super) struct CostToGo<T: Scalar>([Part<T>; 4]);
+pub(super) struct CostToGo<T: Scalar>(SMatrix<T, ERRORS, ERRORS>);
 
 impl<T: Scalar> CostToGo<T> {
     /// Nothing costs.
-    pub(super) const ZERO: Self =
-        Self([[Column::from_array_storage(ArrayStorage([[T::ZERO; ERRORS]])); 3]; 4]);
+    pub(super) const ZERO: Self = Self(SMatrix::from_array_storage(ArrayStorage(
+        [[T::ZERO; ERRORS]; ERRORS],
+    )));
 
     /// Adds yᵀ W y, where y are the three rows of the error from `first` on.
     pub(super) fn add(&mut self, first: usize, w: &Matrix3<T>) {
-        let columns = self.0.as_flattened_mut().iter_mut().skip(first);
-        for (to, w) in columns.zip(w.column_iter()) {
-            for (to, w) in to.iter_mut().skip(first).zip(&w) {
+        let columns = self.0.data.0.iter_mut().skip(first);
+        for (to, w) in columns.zip(&w.data.0) {
+            for (to, w) in to.iter_mut().skip(first).zip(w) {
                 *to += *w;
             }
         }
@@ -55,9 +77,12 @@ impl<T: Scalar> CostToGo<T> {
 
     /// The cost before an interval over which an error x becomes A x if nothing answers it: S ← Aᵀ S A.
     pub(super) fn before(&mut self, a: &Drift<T>) {
-        // (S A)ᵀ is Aᵀ S.
+        // Aᵀ S first; the transpose of that is Sᵀ A, which is S A.
         for _ in 0..2 {
-            self.0 = transposed(&after(&self.0, a));
+            for column in &mut self.0.data.0 {
+                a.before(column);
+            }
+            self.0.transpose_mut();
         }
     }
 
@@ -67,73 +92,37 @@ impl<T: Scalar> CostToGo<T> {
     /// Forces whose costs add up are taken one after the other, in any order: the least over all of them is the same. Nothing is inverted,
     /// and S stays positive.
     pub(super) fn answered(&mut self, b: &SVector<T, MOMENTA>, g: T) {
-        let sb = self
-            .momenta()
-            .zip(b)
-            .fold(Column::zeros(), |sum, (column, b)| sum + column * *b);
-        let along = sb
-            .iter()
-            .skip(MOMENTA)
-            .zip(b)
-            .fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
+        let mut sb = [T::ZERO; ERRORS];
+        for (column, b) in self.costate().zip(b) {
+            for (sb, s) in sb.iter_mut().zip(column) {
+                *sb += *s * *b;
+            }
+        }
+        let along = sb.iter().skip(MOMENTA).zip(b);
+        let along = along.fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
         let weight = g / (T::ONE + g * along);
-        for (column, x) in self.0.as_flattened_mut().iter_mut().zip(&sb) {
-            *column -= sb * (*x * weight);
+        for (column, x) in self.0.data.0.iter_mut().zip(&sb) {
+            let x = *x * weight;
+            for (s, sb) in column.iter_mut().zip(&sb) {
+                *s -= *sb * x;
+            }
         }
     }
 
-    /// Λ, the rows of S that belong to the momenta, S being symmetric: λ = Λ x is half of what a unit of each momentum costs.
-    pub(super) fn costate(&self) -> impl Iterator<Item = &Column<T>> {
-        self.momenta()
+    /// Λ by rows, those of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
+    pub(super) fn costate(&self) -> impl Iterator<Item = &[T; ERRORS]> {
+        self.0.data.0.iter().skip(MOMENTA)
     }
-
-    /// The columns of the momenta.
-    fn momenta(&self) -> impl Iterator<Item = &Column<T>> {
-        self.0.as_flattened().iter().skip(MOMENTA)
-    }
-}
-
-/// S A.
-fn after<T: Scalar>(
-    [place, rotation, velocity, angular]: &[Part<T>; 4],
-    a: &Drift<T>,
-) -> [Part<T>; 4] {
-    [
-        sum(place, &times(angular, &a.pushed)),
-        times(rotation, &a.turned),
-        sum(velocity, &place.map(|column| column * a.dt)),
-        sum(angular, &times(rotation, &a.turns)),
-    ]
-}
-
-/// The product of three columns and a matrix.
-fn times<T: Scalar>([x, y, z]: &Part<T>, m: &Matrix3<T>) -> Part<T> {
-    m.data.0.map(|[a, b, c]| x * a + y * b + z * c)
-}
-
-/// The sum of three columns each.
-fn sum<T: Scalar>([x, y, z]: &Part<T>, [dx, dy, dz]: &Part<T>) -> Part<T> {
-    [x + dx, y + dy, z + dz]
-}
-
-/// Rows for columns.
-fn transposed<T: Scalar>(parts: &[Part<T>; 4]) -> [Part<T>; 4] {
-    let mut to = CostToGo::ZERO.0;
-    for (row, to) in to.as_flattened_mut().iter_mut().enumerate() {
-        for (to, column) in to.iter_mut().zip(parts.as_flattened()) {
-            *to = column.get(row).copied().unwrap_or_default();
-        }
-    }
-    to
 }
 
 /// Vectors one under the other.
-pub(super) fn stack<T: Scalar, const R: usize, const P: usize>(
-    parts: &[Vector3<T>; P],
+pub(super) fn stack<T: Scalar, const P: usize, const R: usize>(
+    parts: [Vector3<T>; P],
 ) -> SVector<T, R> {
-    let mut to = SVector::<T, R>::zeros();
-    for (to, x) in to.iter_mut().zip(parts.iter().flatten()) {
+    let parts = parts.map(<[T; 3]>::from);
+    let mut to = [T::ZERO; R];
+    for (to, x) in to.iter_mut().zip(parts.as_flattened()) {
         *to = *x;
     }
-    to
+    to.into()
 }

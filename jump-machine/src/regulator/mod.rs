@@ -50,9 +50,9 @@ const GAINS: usize = 72;
 
 /// Nodes over which the recursion goes back in a tick of the hold.
 ///
-/// In double precision a node takes a Cortex-M7 some 4,400 instructions, and 5,300 where the plan is read from its bytes; four keep a tick of the hold
-/// below one of the landing, and are through a plan of 600 nodes in the 0.15 s in which A1 weighs itself.
-pub const NODES_PER_TICK: usize = 4;
+/// In double precision a node of A1's push-off takes a Cortex-M7 some 22,000 instructions, one of its flight 12,500, and the rest of the tick 15,600: with two
+/// a tick of the hold keeps within the budget of one of the landing, 80,000. They are through a plan of 300 nodes in the 0.15 s in which A1 weighs itself.
+pub const NODES_PER_TICK: usize = 2;
 
 /// Place, velocity and angular momentum of a plan's centre of mass, in single precision, as plans are stored.
 type State = [[f32; 3]; 3];
@@ -90,7 +90,7 @@ impl<T: Scalar> Regulator<T> {
         }
     }
 
-    /// Ticks of the hold in which the gains of a plan are computed, at most.
+    /// Ticks of the hold before the start in which the gains of a plan are computed, at most.
     #[must_use]
     pub const fn ticks<const N: usize, const F: usize>(plan: &Plan<'_, T, N, F>) -> usize {
         plan.count().div_ceil(NODES_PER_TICK)
@@ -126,12 +126,13 @@ impl<T: Scalar> Regulator<T> {
         self.left == 0
     }
 
-    /// Goes on with the recursion, for the plan, model and weights with which it was begun: over at most so many nodes.
+    /// Goes on with the recursion, for the plan, model and weights with which it was begun: over at most so many nodes. `limbs` is memory for the legs of a
+    /// node.
     pub fn advance<M: Tree<T, N>, const N: usize, const F: usize>(
         &mut self,
         (model, weights): (&M, &Weights<T>),
         plan: &Plan<'_, T, N, F>,
-        feet: &[Frame<T>; F],
+        (feet, limbs): (&[Frame<T>; F], &mut Limbs<T, N, F>),
         most: usize,
     ) {
         for _ in 0..most {
@@ -141,7 +142,7 @@ impl<T: Scalar> Regulator<T> {
             let (Some(node), Some(next)) = (plan.node(i), plan.time(i + 1)) else {
                 return;
             };
-            let body = Body::new(model, &node, feet);
+            let body = Body::new(model, &node, feet, limbs);
             if node.time < plan.touchdown {
                 self.cost.before(&body.drift(next - node.time));
             }
@@ -191,15 +192,15 @@ impl<T: Scalar> Regulator<T> {
             .filter(|_| left.is_multiple_of(gain.get()))
         {
             for (to, row) in to.iter_mut().zip(self.cost.costate()) {
-                *to = <[T; ERRORS]>::from(*row).map(single);
+                *to = row.map(single);
             }
         }
     }
 
     /// What the forces of the ground on the feet are to change by, world axes, N.
     ///
-    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. `planned_w` are the
-    /// planned forces, world axes. Zero before the plan's first node and from the take-off on.
+    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The planned rotation is
+    /// that of now, and `planned_w` are the planned forces, world axes. Zero from the take-off on.
     pub fn forces<M: Tree<T, N>, const N: usize, const F: usize>(
         &self,
         (model, weights): (&M, &Weights<T>),
@@ -207,12 +208,13 @@ impl<T: Scalar> Regulator<T> {
         moments: [(usize, T); 2],
         velocity: &Tangent<T, N>,
         limbs: &Limbs<T, N, F>,
-        planned_w: &[Vector3<T>; F],
+        (planned_rot_wb, planned_w): (&Rotation3<T>, &[Vector3<T>; F]),
     ) -> [Vector3<T>; F] {
         let mut changes = [Vector3::zeros(); F];
         let base = limbs.posture.base();
         let now = centroidal_state(model, &limbs.posture, velocity);
-        let Some(costate) = self.costate(plan, moments, &base.rotation, &now) else {
+        let turned = base.rotation * planned_rot_wb.inverse();
+        let Some(costate) = self.costate(plan, moments, &turned, &now) else {
             return changes;
         };
         let [x, y, z, roll, pitch, yaw] = costate.into();
@@ -221,10 +223,7 @@ impl<T: Scalar> Regulator<T> {
         for ((change, end), planned) in changes.iter_mut().zip(&limbs.ends).zip(planned_w) {
             let arm = base.point(&end.position) - now.com_w;
             let gradient: Vector3<T> = linear + angular.cross(&arm);
-            let wanted = Vector3::from_fn(|axis, _| {
-                let slope = gradient.get(axis).copied().unwrap_or_default();
-                -slope * weights.per_cost(planned.z, axis)
-            });
+            let wanted = -gradient.component_mul(&weights.per_cost(planned.z));
             *change = weights.within_cone(planned, &wanted) - planned;
         }
         changes
@@ -235,10 +234,14 @@ impl<T: Scalar> Regulator<T> {
         &self,
         plan: &Plan<'_, T, N, F>,
         [(node, time), (was, then)]: [(usize, T); 2],
-        rot_wb: &Rotation3<T>,
+        turned: &Rotation3<T>,
         now: &CentroidalState<T>,
     ) -> Option<SVector<T, MOMENTA>> {
-        let planned = plan.base((node, time)).filter(|_| node < self.nodes)?;
+        // Also false for NaN.
+        let pushes = node < self.nodes && time >= plan.time(node)?;
+        if !pushes {
+            return None;
+        }
         let [state, gain] = self.every;
         let at = |moment, k: usize| {
             let of = |state: &State| state.get(k).map_or_else(Vector3::zeros, vector);
@@ -249,10 +252,10 @@ impl<T: Scalar> Regulator<T> {
             (was, share(plan, was, then)?),
         );
         let place = now.com_w - at(here, 0)?;
-        let rotation = so3::log(&(rot_wb * planned.rot_wb.inverse()));
+        let rotation = so3::log(turned);
         let velocity = now.com_velocity_w - at(there, 1)?;
         let angular = now.momentum_w.angular - at(there, 2)?;
-        let error = stack(&[place, rotation, velocity, angular]);
+        let error = stack([place, rotation, velocity, angular]);
         // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
         match self.nodes.checked_sub(node + 2) {
             Some(left) => {
@@ -298,9 +301,12 @@ fn answer<T: Scalar, const F: usize>(
     dt: T,
 ) {
     for (foot, force) in body.forces_w.iter().enumerate() {
-        for axis in 0..3 {
-            let per_cost = weights.per_cost(force.z, axis) * dt;
-            cost.answered(&body.push(foot, axis), per_cost);
+        let per_cost = weights.per_cost(force.z) * dt;
+        for (axis, per_cost) in per_cost.iter().enumerate() {
+            // A foot that does not push changes nothing.
+            if *per_cost > T::ZERO {
+                cost.answered(&body.push(foot, axis), *per_cost);
+            }
         }
     }
 }

@@ -94,7 +94,7 @@ impl Dense {
             forced: SMatrix::zeros(),
         };
         for (i, node) in nodes::<f64>().iter().enumerate() {
-            let body = Body::new(&A1, node, &feet());
+            let body = Body::new(&A1, node, &feet(), &mut { Limbs::ZERO });
             let inverse = &body.inverse_inertia_w;
             if i == TAKEOFF {
                 dense.add_errors(&weights.takeoff, inverse, 1.0);
@@ -172,7 +172,7 @@ where
     regulator.begin(plan, &weights);
     let mut times = 0;
     while !regulator.is_ready() {
-        regulator.advance((&A1, &weights), plan, &feet(), most);
+        regulator.advance((&A1, &weights), plan, (&feet(), &mut { Limbs::ZERO }), most);
         times += 1;
     }
     times
@@ -189,16 +189,15 @@ fn prepared() -> Regulator<f64> {
 fn riccatis_recursion_solves_the_dense_problem() {
     let (weights, regulator) = (Weights::new(&BUILD), prepared());
     let nodes = nodes::<f64>();
-    let body = Body::new(&A1, &nodes[0], &feet());
+    let body = Body::new(&A1, &nodes[0], &feet(), &mut { Limbs::ZERO });
     for k in 0..ERRORS {
         let x = SVector::from_fn(|row, _| if row == k { 0.02 } else { 0.003 * row as f64 });
         let lambda = product(&regulator.gains[TAKEOFF - 1], &x);
         let dense = Dense::forces(&weights, &x);
         for (foot, wanted) in dense.iter().enumerate() {
-            let force = Vector3::from_fn(|axis, _| {
-                let slope = body.push(foot, axis).dot(&lambda);
-                -slope * weights.per_cost(nodes[0].forces_w[foot].z, axis)
-            });
+            let slope = Vector3::from_fn(|axis, _| body.push(foot, axis).dot(&lambda));
+            let per_cost = weights.per_cost(nodes[0].forces_w[foot].z);
+            let force = -slope.component_mul(&per_cost);
             let off = (force - wanted).norm();
             // Gains are kept in single precision.
             assert!(off < 1e-5 * wanted.norm().max(1.0), "{k}: {force} {wanted}");
@@ -222,7 +221,7 @@ fn a_recursion_in_parts_is_the_recursion_at_once() {
     for most in 1..NODES {
         let mut regulator = Regulator::new();
         regulator.begin(&plan, &weights);
-        regulator.advance((&A1, &weights), &plan, &feet(), 2);
+        regulator.advance((&A1, &weights), &plan, (&feet(), &mut { Limbs::ZERO }), 2);
         assert!(!regulator.is_ready());
         let times = prepare(&mut regulator, &plan, most);
         assert_eq!(times, (NODES - 1).div_ceil(most));
@@ -266,7 +265,7 @@ where
         moments,
         &velocity,
         &limbs,
-        &here.forces_w,
+        (&here.base.rotation, &here.forces_w),
     )
 }
 
