@@ -14,7 +14,8 @@
 //! force, so a foot that the plan does not push with is given none.
 //!
 //! Riccati's recursion runs backwards over the nodes once, a few in every tick of the hold ([`NODES_PER_TICK`]): all of them at once take longer than
-//! the joint loop waits for a tick. What is kept of it are the six rows Λ of the cost-to-go S that belong to the momenta; with the costates (λ_v, λ_L) = Λ x the best change of a foot's force is
+//! the joint loop waits for a tick. What is kept of it are the six rows Λ of the cost-to-go S that belong to the momenta; with the costates
+//! (λ_v, λ_L) = Λ x the best change of a foot's force is
 //!
 //! ```text
 //! δf_i = −σ_i² (λ_v / m + λ_L × r_i)
