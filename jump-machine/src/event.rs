@@ -4,7 +4,7 @@ use jump_control::{Event, Measurement, Phase};
 use rbd_core::Tree;
 use so3::Scalar;
 
-use crate::Machine;
+use crate::{Machine, Refusal};
 
 impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M, N, F> {
     /// The event of this tick, if any, at time `t` of the plan.
@@ -21,6 +21,9 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         };
         match (phase, &self.jump) {
             (Phase::Hold, Some(_)) if t < T::ZERO => None,
+            (Phase::Hold, _) if !self.workspace.regulator.is_ready() => {
+                Some(self.supervisor.refuse(Refusal::TooLate))
+            }
             (Phase::Hold, Some(jump)) => {
                 let (joints, tolerance) = (&measured.joints, settings.start_tolerance);
                 let first = jump.plan.start().unwrap_or(*joints);

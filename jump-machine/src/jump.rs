@@ -12,8 +12,6 @@ use so3::Scalar;
 pub struct Jump<'a, T: Scalar, const N: usize, const F: usize> {
     /// Push-off and flight. Its first node is held until the start: its torques should be those of standing still.
     pub plan: Plan<'a, T, N, F>,
-    /// Weight that was planned with, N.
-    pub weight: T,
     /// Orientation of the base at rest.
     pub rot_goal: Rotation3<T>,
     /// Joint positions in which the legs meet the ground, body level, rad.
@@ -29,7 +27,6 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Jump<'a, T, N, F> {
         let (header, number) = (container.header(), |x: f32| T::of(f64::from(x)));
         Ok(Self {
             plan: Plan::stored(container)?,
-            weight: number(header.margins.weight),
             rot_goal: so3::exp(&Vector3::new(T::ZERO, T::ZERO, number(header.heading))),
             landing_joints: header.landing_joints.map(number),
         })
@@ -42,7 +39,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Jump<'a, T, N, F> {
 pub enum Refusal {
     /// The robot does not stand: it holds for another jump, is under way, or has aborted.
     NotStanding,
-    /// The start is not a number, or leaves less time than holding still and weighing take.
+    /// The start is not a number, or leaves less time than holding still, weighing and the push-off's gains take.
     TooLate,
     /// At the start this joint was not where the plan begins.
     Posture(usize),

@@ -6,9 +6,10 @@ use jump_control::{
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use crate::push_off::predicted;
+use crate::regulator::{NODES_PER_TICK, Regulator};
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
 
@@ -91,18 +92,24 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     }
 
     /// Gives a standing robot a jump that begins at `start`, on the clock of [`Machine::tick`]; until then it holds the plan's
-    /// first node. The push-off's gains are computed here, which takes as long as some hundred ticks.
+    /// first node. The push-off's gains are not computed here but in the ticks of the hold, some nodes of the plan in each
+    /// ([`NODES_PER_TICK`](crate::regulator::NODES_PER_TICK)).
     ///
     /// # Errors
-    /// A robot that does not stand and a start that is too near are refused: nothing changes then.
+    /// A robot that does not stand and a start that is too near are refused: nothing changes then. Too near is one that leaves less time than
+    /// [`Settings::weighing`], or fewer ticks than the gains take. Where so many ticks are missed, or no tick has told the time yet, that shows only at
+    /// the start: the jump is not begun then, the robot goes on standing and the tick says [`Refusal::TooLate`].
     pub fn arm(&mut self, jump: Jump<'a, T, N, F>, start: T) -> Result<(), Refusal> {
-        self.supervisor.may_arm(start, self.settings.weighing)?;
+        let s = &self.settings;
+        // The tick at the start is too late for them.
+        let ticks = u32::try_from(Regulator::ticks(&jump.plan) + 1).unwrap_or(u32::MAX);
+        let gains = T::of(f64::from(ticks)) * s.period;
+        self.supervisor
+            .may_arm(start, math::max(s.weighing, gains))?;
         self.posture.joints = jump.landing_joints;
         self.level_feet = self.posture.level_feet(self.model);
         self.legs = jump.landing_joints;
-        let (weights, feet) = (&self.settings.regulator, &self.settings.pd.feet);
-        let regulator = &mut self.workspace.regulator;
-        regulator.prepare(self.model, &jump.plan, weights, feet);
+        self.workspace.regulator.begin(&jump.plan, &s.regulator);
         self.jump = Some(jump);
         (self.start, self.node) = (start, 0);
         self.shaping = T::ZERO;
@@ -116,8 +123,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
     /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
     pub fn tick(&mut self, now: T, heard: Option<&Observation<T, N, F>>) -> Tick {
-        let work = match self.supervisor.hear(now, heard) {
-            Ok((inputs, dt)) => self.act(now - self.start, &inputs, dt),
+        let work = match self.supervisor.hear(now, heard, &mut None) {
+            Ok((inputs, dt)) => self.act(now - self.start, inputs, dt),
             Err(fault) => self.abort(fault),
         };
         self.supervisor.ticked(work)
@@ -188,12 +195,22 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         if let Some(event) = self.event(t, measured) {
             self.supervisor.happened(event);
         }
-        let (command, work) = match (self.supervisor.phase, self.jump) {
+        // Made in its place.
+        let command;
+        let work = match (self.supervisor.phase, self.jump) {
             (Phase::Hold | Phase::Stance | Phase::Flight | Phase::PreLanding, Some(jump)) => {
-                (self.follow(&jump, t, inputs, dt), Work::Cartesian)
+                command = self.follow(&jump, t, inputs, &v, dt);
+                Work::Cartesian
             }
-            (Phase::Landing | Phase::Stand, _) => self.stand(&v),
-            _ => (self.supervisor.safe(), Work::Damping),
+            (Phase::Landing | Phase::Stand, _) => {
+                let work;
+                (command, work) = self.stand(&v);
+                work
+            }
+            _ => {
+                command = self.supervisor.safe();
+                Work::Damping
+            }
         };
         match self.supervisor.give(&command) {
             Ok(()) => work,
@@ -207,6 +224,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         jump: &Jump<'a, T, N, F>,
         t: T,
         inputs: &Observation<T, N, F>,
+        velocity: &Tangent<T, N>,
         dt: T,
     ) -> JointCommand<T, N> {
         let (s, measured) = (&self.settings, &inputs.measured);
@@ -215,9 +233,15 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         reference.torques = sample(&jump.plan, t + s.lookahead, self.node).torques;
         let moment = (reference.node, t);
         match self.supervisor.phase {
-            // It has come to rest by then.
-            Phase::Hold if t > -s.weighing => {
-                self.payload.add(&inputs.joint_torques, &reference.torques);
+            Phase::Hold => {
+                // It has come to rest by then.
+                if t > -s.weighing {
+                    self.payload.add(&inputs.joint_torques, &reference.torques);
+                }
+                let (body, plan) = ((self.model, &s.regulator), &jump.plan);
+                let regulator = &mut self.workspace.regulator;
+                let legs = (&s.pd.feet, &mut self.wanted);
+                regulator.advance(body, plan, legs, NODES_PER_TICK);
             }
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
@@ -243,7 +267,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
         if matches!(self.supervisor.phase, Phase::Stance) {
-            self.push_off(jump, t, measured, &mut reference);
+            self.push_off(jump, t, (measured, velocity), &mut reference);
         }
         let s = &self.settings;
         let speeds = &measured.joint_velocities;

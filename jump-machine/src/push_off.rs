@@ -14,13 +14,10 @@ const BEHIND: usize = 3;
 pub(crate) fn predicted<T: Scalar, const N: usize, const F: usize>(
     measured: &Measurement<T, N, F>,
 ) -> Configuration<T, N> {
-    let (velocity, age) = (measured.velocity(), measured.age);
-    let mut way = Tangent {
-        base: velocity.base * age,
-        joints: velocity.joints,
-    };
+    let mut way = measured.velocity();
+    way.base = way.base * measured.age;
     for joint in &mut way.joints {
-        *joint *= age;
+        *joint *= measured.age;
     }
     integrate(&measured.configuration(), &way)
 }
@@ -35,23 +32,28 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         &mut self,
         jump: &Jump<'a, T, N, F>,
         t: T,
-        measured: &Measurement<T, N, F>,
+        (measured, velocity): (&Measurement<T, N, F>, &Tangent<T, N>),
         reference: &mut Reference<T, N>,
     ) {
         let (s, node) = (&self.settings, reference.node);
         let hold = self.payload.factor(s.max_payload);
-        reference.torques = reference.torques.map(|torque| torque * hold);
+        for torque in &mut reference.torques {
+            *torque *= hold;
+        }
         let ahead = jump.plan.node_at(t + s.lookahead, node);
-        let (Some(forces_w), Some(base)) = (jump.plan.forces(ahead), jump.plan.base((node, t)))
+        let (Some(mut forces_w), Some(base)) = (jump.plan.forces(ahead), jump.plan.base((node, t)))
         else {
             return;
         };
-        let forces_w = forces_w.map(|force| force * hold);
+        for force in &mut forces_w {
+            *force *= hold;
+        }
         let rot_wb = self.limbs.posture.base().rotation;
+        let (rot_bw, planned_rot_bw) = (rot_wb.inverse(), base.rot_wb.inverse());
         let legs = self.limbs.ends.iter().zip(&self.wanted.ends);
         for ((now, planned), force) in legs.zip(&forces_w) {
-            now.add_tr_mul(&(rot_wb.inverse() * -*force), &mut reference.torques);
-            planned.add_tr_mul(&(base.rot_wb.inverse() * *force), &mut reference.torques);
+            now.add_tr_mul(&(rot_bw * -*force), &mut reference.torques);
+            planned.add_tr_mul(&(planned_rot_bw * *force), &mut reference.torques);
         }
         let then = t - measured.age;
         let was = jump.plan.node_at(then, node.saturating_sub(BEHIND));
@@ -59,12 +61,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             (self.model, &s.regulator),
             &jump.plan,
             [(node, t), (was, then)],
-            &measured.velocity(),
+            velocity,
             &self.limbs,
-            &forces_w,
+            (&base.rot_wb, &forces_w),
         );
         for (end, change) in self.limbs.ends.iter().zip(&changes) {
-            self.change(end, &(rot_wb.inverse() * *change), measured, reference);
+            self.change(end, &(rot_bw * *change), measured, reference);
         }
     }
 

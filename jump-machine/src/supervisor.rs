@@ -88,12 +88,14 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         Event::Misplaced
     }
 
-    /// The latest observation with its age now, and the time since the last tick.
-    pub(crate) fn hear(
+    /// The latest observation with its age now, and the time since the last tick. `old` is memory for an observation of an earlier tick, so that one of this
+    /// tick is not copied.
+    pub(crate) fn hear<'h>(
         &mut self,
         now: T,
-        heard: Option<&Observation<T, N, F>>,
-    ) -> Result<(Observation<T, N, F>, T), Fault> {
+        heard: Option<&'h Observation<T, N, F>>,
+        old: &'h mut Option<Observation<T, N, F>>,
+    ) -> Result<(&'h Observation<T, N, F>, T), Fault> {
         let s = &self.limits;
         let passed = self.last_tick.map_or(s.period, |last| now - last);
         // Also false for NaN.
@@ -111,14 +113,14 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
             passed
         };
         let observed = match (heard, self.heard) {
-            (Some(observed), _) => *observed,
-            (None, Some(mut old)) => {
-                old.measured.age += dt;
-                old
+            (Some(observed), _) => observed,
+            (None, Some(mut last)) => {
+                last.measured.age += dt;
+                old.insert(last)
             }
             (None, None) => return Err(Fault::Stale),
         };
-        self.heard = Some(observed);
+        self.heard = Some(*observed);
         let watch = Watch { max_age: s.max_age };
         watch
             .fault(&observed.measured)

@@ -11,7 +11,7 @@ pub struct Workspace<T: Scalar, const N: usize, const F: usize> {
     /// Of the landing's program.
     pub landing: Landing<T, N, F>,
     /// Gains of the push-off.
-    pub regulator: Regulator,
+    pub regulator: Regulator<T>,
 }
 
 impl<T: Scalar, const N: usize, const F: usize> Workspace<T, N, F> {

@@ -13,7 +13,6 @@ const TAKEOFF: f64 = 0.2;
 const TOUCHDOWN: f64 = 0.8;
 /// Time in the landing posture before the touchdown.
 const POSED: f64 = 0.05;
-const MASS: f64 = 13.741;
 
 fn crouch() -> [f64; 12] {
     core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3])
@@ -57,7 +56,6 @@ fn nodes(rate: f64) -> Vec<Node<f64, 12, 4>> {
 fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
     Jump {
         plan: Plan::new(nodes, TAKEOFF, TOUCHDOWN - POSED, TOUCHDOWN, Torques::Hold).unwrap(),
-        weight: MASS * 9.81,
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
     }

@@ -4,6 +4,7 @@
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Fault, Measurement, Node, Phase, Plan, Torques};
 use jump_machine::Workspace;
+use jump_machine::regulator::NODES_PER_TICK;
 use jump_machine::{Jump, Machine, Observation, Refusal, Settings, Work};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
@@ -30,7 +31,6 @@ fn jump<T: Scalar>(nodes: &[Node<T, 12, 4>]) -> Jump<'_, T, 12, 4> {
     let [takeoff, posing, touchdown] = [0.2, 0.35, 0.4].map(T::of);
     Jump {
         plan: Plan::new(nodes, takeoff, posing, touchdown, Torques::Hold).unwrap(),
-        weight: T::of(134.8),
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
     }
@@ -136,6 +136,39 @@ fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_o
         (Phase::Stand, Some(Refusal::Posture(7)))
     );
     assert_eq!(tick.fault, None);
+}
+
+/// The push-off begins with its gains or not at all: a start that leaves too few ticks for the nodes of the plan is refused, when it is armed if the time is
+/// known by then, else at the start.
+#[test]
+fn a_start_before_the_gains_are_computed_is_refused() {
+    let time = |k: i32| f64::from(k) * 1e-3;
+    let many: Vec<_> = (-1..1000)
+        .map(|k| Node {
+            time: time(k),
+            ..nodes()[0]
+        })
+        .collect();
+    let ticks = i32::try_from(1001_usize.div_ceil(NODES_PER_TICK)).unwrap();
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    // No tick has told the time yet.
+    m.arm(jump(&many), time(ticks - 2)).unwrap();
+    let tick = run(&mut m, 0, ticks - 1, &inputs()).unwrap();
+    assert_eq!(
+        (tick.phase, tick.refusal),
+        (Phase::Stand, Some(Refusal::TooLate))
+    );
+    let now = ticks - 2;
+    assert_eq!(m.arm(jump(&many), time(now + ticks)), Err(Refusal::TooLate));
+    let start = now + ticks + 2;
+    m.arm(jump(&many), time(start)).unwrap();
+    assert_eq!(
+        run(&mut m, now + 1, start, &inputs()).unwrap().phase,
+        Phase::Hold
+    );
+    let tick = run(&mut m, start, start + 2, &inputs()).unwrap();
+    assert_eq!((tick.phase, tick.refusal), (Phase::Stance, None));
 }
 
 #[test]

@@ -258,7 +258,6 @@ fn fly(
     let [takeoff, posing, touchdown] = [TAKEOFF, POSING, TOUCHDOWN].map(|t| t * size.time);
     let jump = Jump {
         plan: Plan::new(&nodes, takeoff, posing, touchdown, Torques::Hold).unwrap(),
-        weight: BUILD.mass * GRAVITY * size.mass,
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
     };

@@ -73,9 +73,10 @@ def test_silence_is_borne_for_ten_milliseconds(lateral: saltus.Plan) -> None:
 
 def test_machines_are_strangers_to_each_other(lateral: saltus.Plan) -> None:
     one, other = lateral.machine(), lateral.machine(start=1.0)
-    one.tick(0.0, standing(lateral))
+    # Without a tick before its start it has no gains for the push-off.
+    assert "too late" in one.tick(0.0, standing(lateral)).refusal
     other.tick(0.0, standing(lateral))
-    assert (one.phase, other.phase) == ("Stance", "Hold")
+    assert (one.phase, other.phase) == ("Stand", "Hold")
     del one
     assert other.tick(1e-3, standing(lateral)).phase == "Hold"
 

@@ -167,17 +167,20 @@ impl<T: Scalar, const N: usize> Posture<T, N> {
     #[inline]
     #[must_use]
     pub fn new<M: Tree<T, N>>(model: &M, configuration: &Configuration<T, N>) -> Self {
-        let mut q = configuration.joints;
-        for (x, body) in q.iter_mut().zip(model.bodies()) {
+        let mut posture = Self::ZERO;
+        posture.update(model, configuration);
+        posture
+    }
+
+    /// Overwrites with [`Posture::new`], in place.
+    #[inline]
+    pub(crate) fn update<M: Tree<T, N>>(&mut self, model: &M, configuration: &Configuration<T, N>) {
+        self.base = configuration.base;
+        self.q = configuration.joints;
+        for (x, body) in self.q.iter_mut().zip(model.bodies()) {
             *x *= body.sign;
         }
-        let (sin, cos) = math::sin_cos_array(&q);
-        Self {
-            base: configuration.base,
-            q,
-            sin,
-            cos,
-        }
+        math::sin_cos_into(&self.q, &mut self.sin, &mut self.cos);
     }
 
     /// Pose of the base in the world.

@@ -67,6 +67,13 @@ pub fn sin_cos<T: Scalar>(x: T) -> (T, T) {
 #[must_use]
 pub fn sin_cos_array<T: Scalar, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
     let (mut sin, mut cos) = ([T::ZERO; N], [T::ZERO; N]);
+    sin_cos_into(x, &mut sin, &mut cos);
+    (sin, cos)
+}
+
+/// As [`sin_cos_array`], written where they are to stand: a microcontroller copies no arrays.
+#[inline]
+pub fn sin_cos_into<T: Scalar, const N: usize>(x: &[T; N], sin: &mut [T; N], cos: &mut [T; N]) {
     let mut within_bound = true;
     for ((s, c), &x) in sin.iter_mut().zip(cos.iter_mut()).zip(x) {
         (*s, *c) = x.sin_cos_within_bound();
@@ -77,7 +84,6 @@ pub fn sin_cos_array<T: Scalar, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) 
             (*s, *c) = sin_cos(x);
         }
     }
-    (sin, cos)
 }
 
 /// a b + c.

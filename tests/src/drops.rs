@@ -225,7 +225,6 @@ pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
     let plan = Plan::new(&nodes, 0.0, POSING, touchdown, Torques::Hold);
     let jump = Jump {
         plan: plan.map_err(|error| error.to_string())?,
-        weight: robot.weight(),
         rot_goal: Rotation3::identity(),
         landing_joints: POSTURE,
     };

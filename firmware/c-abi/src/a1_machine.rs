@@ -105,7 +105,7 @@ pub extern "C" fn saltus_a1_plan_read(
             takeoff: jump.plan.takeoff,
             posing: jump.plan.posing,
             touchdown: jump.plan.touchdown,
-            weight: jump.weight,
+            weight: f64::from(header.margins.weight),
             goal_w: header.goal_w.map(f64::from),
             heading: f64::from(header.heading),
             start_position_w: start.base.translation.into(),
@@ -157,7 +157,8 @@ pub extern "C" fn saltus_a1_machine_init(
 }
 
 /// Gives a standing robot a plan that begins at `start`, s, on the clock of `saltus_a1_machine_tick`; until then it holds the plan's first
-/// node. The start must be at least 0.15 s after the last tick. The plan is what `saltus plan` writes as `plan.bin`; version,
+/// node. The start must be at least 0.15 s after the last tick, and more ticks than half of the plan's nodes: in these the gains of the push-off are
+/// computed. Where that shows only at the start, since ticks were missed or none had told the time, the robot goes on standing and the tick's refusal is `TooLate`. The plan is what `saltus plan` writes as `plan.bin`; version,
 /// checksum, robot and every number of it are looked at, which takes as long as thirty ticks for 624 nodes. It is followed where it is: its bytes must
 /// stay there, unchanged, until the machine has another plan or is initialised anew. If the status is not `Ok`, nothing changes; a culprit
 /// that is not null then says what is to blame.

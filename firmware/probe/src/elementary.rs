@@ -45,6 +45,11 @@ pub(crate) fn run<T: Real, R: Recorder>(on: &mut Subject<'_, T, R>) {
         functions(on, stream.next(2000.0));
         let angles = stream.array::<T, 12>(500.0);
         on.call("sin_cos_array", &angles, math::sin_cos_array);
+        on.call("sin_cos_into", &angles, |angles| {
+            let (mut sin, mut cos) = ([T::ZERO; 12], [T::ZERO; 12]);
+            math::sin_cos_into(angles, &mut sin, &mut cos);
+            (sin, cos)
+        });
         let (y, x): (T, T) = (stream.next(3.0), stream.next(3.0));
         on.call("atan2", (y, x), |(y, x)| math::atan2(y, x));
     }

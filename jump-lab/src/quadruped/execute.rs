@@ -5,10 +5,13 @@ use super::measure::Measure;
 use super::plant::plant;
 use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
 use crate::Sim;
-use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
+use crate::closed_loop::{
+    ClosedLoop, Drive, Feet, PERIOD, Recorder, Sensors, Setting, Step, stage,
+};
 use crate::lab::{Disturbance, Interface};
 use crate::verdict::{Hardware, Tick as HardwareTick};
 use jump_control::{Fault, Phase, Plan, sample};
+use jump_machine::regulator::Regulator;
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
@@ -349,8 +352,10 @@ pub fn run_watched(
         tamper,
         watch,
     };
+    // Of a long plan the push-off's gains take more ticks than that.
+    let gains = (Regulator::ticks(&jump.plan) + 1) as f64 * PERIOD;
     let end = reference.touchdown + SETTLE + 0.5;
-    closed.run((HOLD, end), &mut keeper, progress)?;
+    closed.run((HOLD.max(gains), end), &mut keeper, progress)?;
     let mut run = keeper.run;
     run.final_phase = closed.machine.phase();
     run.fault = closed.machine.fault();

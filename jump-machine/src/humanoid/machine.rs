@@ -135,8 +135,8 @@ impl<
     /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`]. So does a
     /// program without an answer; until then its last command stays.
     pub fn tick(&mut self, now: T, observed: Option<&Observation<T, N, F>>) -> Tick<Work<T>> {
-        let work = match self.supervisor.hear(now, observed) {
-            Ok((observed, dt)) => self.act(now - self.start, &observed, dt),
+        let work = match self.supervisor.hear(now, observed, &mut None) {
+            Ok((observed, dt)) => self.act(now - self.start, observed, dt),
             Err(fault) => self.abort(fault),
         };
         self.supervisor.ticked(work)

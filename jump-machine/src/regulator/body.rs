@@ -1,13 +1,11 @@
 //! The single rigid body at a node of the plan, and how an error of it goes on until the next.
 
 use jump_control::Node;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use rbd_core::{
-    CentroidalMap, Configuration, Frame, Limbs, Posture, Tangent, Tree, centroidal_map,
-};
+use nalgebra::{Matrix3, SVector, Vector3};
+use rbd_core::{CentroidalMap, Configuration, Frame, Limbs, Tangent, Tree, centroidal_map};
 use so3::Scalar;
 
-use super::cost_to_go::{ANGULAR, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, put, stack};
+use super::cost_to_go::{Drift, MOMENTA, stack};
 
 /// The robot of a node as one body, with its legs as they are there.
 pub(super) struct Body<T: Scalar, const F: usize> {
@@ -24,11 +22,12 @@ pub(super) struct Body<T: Scalar, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize> Body<T, F> {
-    /// The body of `node`.
+    /// The body of `node`; `limbs` is memory for its legs.
     pub(super) fn new<M: Tree<T, N>, const N: usize>(
         model: &M,
         node: &Node<T, N, F>,
         feet: &[Frame<T>; F],
+        limbs: &mut Limbs<T, N, F>,
     ) -> Self {
         let q = Configuration {
             base: node.base,
@@ -39,9 +38,9 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             joints: node.joint_velocities,
         };
         let mut map = CentroidalMap::ZERO;
-        centroidal_map(model, &Posture::new(model, &q), &mut map);
+        limbs.update(model, &q, feet);
+        centroidal_map(model, &limbs.posture, &mut map);
         let momentum = map.momentum(&velocity);
-        let limbs = Limbs::<T, N, F>::new(model, &q, feet);
         let i = &map.locked_inertia_w;
         let inertia = Matrix3::new(i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz);
         Self {
@@ -53,6 +52,7 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             forces_w: node.forces_w,
             arms_w: limbs
                 .ends
+                .each_ref()
                 .map(|end| node.base.point(&end.position) - map.com_w),
         }
     }
@@ -62,19 +62,19 @@ impl<T: Scalar, const F: usize> Body<T, F> {
     ///
     /// The body turns with ω = I⁻¹ (L − L_legs), and a rotation δθ of it turns I and the momentum L_legs of its legs; what is left of both is
     /// L × δθ. The feet stand where they stand, so a body that is aside has the planned force F on another arm.
-    pub(super) fn drift(&self, dt: T) -> SMatrix<T, ERRORS, ERRORS> {
+    pub(super) fn drift(&self, dt: T) -> Drift<T> {
         let one = Matrix3::identity();
         let turning = self.inverse_inertia_w * so3::hat(&self.angular_w) * dt;
         // Second order: in flight the error goes around with the body.
         let turned = one + turning + turning * turning * T::HALF;
         let turns = (one + turning * T::HALF) * self.inverse_inertia_w * dt;
         let total: Vector3<T> = self.forces_w.iter().sum();
-        let mut a = SMatrix::<T, ERRORS, ERRORS>::identity();
-        put(&mut a, (PLACE, VELOCITY), &(one * dt));
-        put(&mut a, (ROTATION, ROTATION), &turned);
-        put(&mut a, (ROTATION, ANGULAR), &turns);
-        put(&mut a, (ANGULAR, PLACE), &(so3::hat(&total) * dt));
-        a
+        Drift {
+            dt,
+            turned,
+            turns,
+            pushed: so3::hat(&total) * dt,
+        }
     }
 
     /// What a unit of force on a foot along a world axis does to the momenta in a unit of time: (e/m, r × e).
@@ -84,6 +84,6 @@ impl<T: Scalar, const F: usize> Body<T, F> {
             *entry = T::ONE;
         }
         let arm = self.arms_w.get(foot).copied().unwrap_or_default();
-        stack(&[unit / self.mass, arm.cross(&unit)])
+        stack([unit / self.mass, arm.cross(&unit)])
     }
 }

@@ -1,7 +1,7 @@
 //! The least cost from an instant on, as a quadratic form of the body's error there, and Riccati's recursion in two steps: over time
 //! without feedback ([`CostToGo::before`]), and with one force that may answer ([`CostToGo::answered`]).
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{ArrayStorage, Matrix3, SMatrix, SVector, Vector3};
 use so3::Scalar;
 
 /// Rows of the error x = (δc, δθ, δv, δL): place of the centre of mass, m; rotation, rad; velocity of the centre of mass, m/s; angular
@@ -16,32 +16,74 @@ pub(super) const ROTATION: usize = 3;
 pub(super) const VELOCITY: usize = 6;
 pub(super) const ANGULAR: usize = 9;
 
-/// xᵀ S x, the least cost from an instant on.
+/// How an error goes on for a while if nothing answers it, A: δc + `dt` δv, `turned` δθ + `turns` δL, δv, δL + `pushed` δc.
+#[derive(Clone, Debug)]
+pub(super) struct Drift<T> {
+    /// Time, s.
+    pub(super) dt: T,
+    /// What becomes of a rotation.
+    pub(super) turned: Matrix3<T>,
+    /// What an angular momentum turns.
+    pub(super) turns: Matrix3<T>,
+    /// The angular momentum that the planned forces give to a body that is aside.
+    pub(super) pushed: Matrix3<T>,
+}
+
+impl<T: Scalar> Drift<T> {
+    /// λ ← Aᵀ λ: the costate before, where it is λ after.
+    fn before(&self, costate: &mut [T; ERRORS]) {
+        let [px, py, pz, rx, ry, rz, vx, vy, vz, lx, ly, lz] = costate;
+        let (place, rotation) = ([*px, *py, *pz], [*rx, *ry, *rz]);
+        let pushed = transposed(&self.pushed, &[*lx, *ly, *lz]);
+        let turns = transposed(&self.turns, &rotation);
+        add([vx, vy, vz], place.map(|x| x * self.dt));
+        add([px, py, pz], pushed);
+        add([lx, ly, lz], turns);
+        [*rx, *ry, *rz] = transposed(&self.turned, &rotation);
+    }
+}
+
+/// mᵀ x.
+fn transposed<T: Scalar>(m: &Matrix3<T>, [x, y, z]: &[T; 3]) -> [T; 3] {
+    m.data.0.map(|[a, b, c]| a * *x + b * *y + c * *z)
+}
+
+/// Adds to three numbers.
+fn add<T: Scalar>([x, y, z]: [&mut T; 3], [dx, dy, dz]: [T; 3]) {
+    *x += dx;
+    *y += dy;
+    *z += dz;
+}
+
+/// xᵀ S x, the least cost from an instant on; S is symmetric.
 #[derive(Clone, Debug)]
 pub(super) struct CostToGo<T: Scalar>(SMatrix<T, ERRORS, ERRORS>);
 
 impl<T: Scalar> CostToGo<T> {
     /// Nothing costs.
-    pub(super) fn zero() -> Self {
-        Self(SMatrix::zeros())
-    }
+    pub(super) const ZERO: Self = Self(SMatrix::from_array_storage(ArrayStorage(
+        [[T::ZERO; ERRORS]; ERRORS],
+    )));
 
     /// Adds yᵀ W y, where y are the three rows of the error from `first` on.
     pub(super) fn add(&mut self, first: usize, w: &Matrix3<T>) {
-        for column in 0..3 {
-            for row in 0..3 {
-                let to = self.0.get_mut((first + row, first + column));
-                if let (Some(to), Some(w)) = (to, w.get((row, column))) {
-                    *to += *w;
-                }
+        let columns = self.0.data.0.iter_mut().skip(first);
+        for (to, w) in columns.zip(&w.data.0) {
+            for (to, w) in to.iter_mut().skip(first).zip(w) {
+                *to += *w;
             }
         }
     }
 
     /// The cost before an interval over which an error x becomes A x if nothing answers it: S ← Aᵀ S A.
-    pub(super) fn before(&mut self, a: &SMatrix<T, ERRORS, ERRORS>) {
-        let ahead = product(&self.0, a);
-        self.0 = product(&a.transpose(), &ahead);
+    pub(super) fn before(&mut self, a: &Drift<T>) {
+        // Aᵀ S first; the transpose of that is Sᵀ A, which is S A.
+        for _ in 0..2 {
+            for column in &mut self.0.data.0 {
+                a.before(column);
+            }
+            self.0.transpose_mut();
+        }
     }
 
     /// The cost where a force u may answer, which changes the momenta by b u and costs u²/g: the least over u of
@@ -50,69 +92,37 @@ impl<T: Scalar> CostToGo<T> {
     /// Forces whose costs add up are taken one after the other, in any order: the least over all of them is the same. Nothing is inverted,
     /// and S stays positive.
     pub(super) fn answered(&mut self, b: &SVector<T, MOMENTA>, g: T) {
-        let sb: SVector<T, ERRORS> = SVector::from_fn(|row, _| {
-            let terms = b.iter().enumerate();
-            terms.fold(T::ZERO, |sum, (k, b)| {
-                sum + at(&self.0, row, MOMENTA + k) * *b
-            })
-        });
-        let along = (0..MOMENTA).fold(T::ZERO, |sum, k| {
-            sum + at(&sb, MOMENTA + k, 0) * at(b, k, 0)
-        });
+        let mut sb = [T::ZERO; ERRORS];
+        for (column, b) in self.costate().zip(b) {
+            for (sb, s) in sb.iter_mut().zip(column) {
+                *sb += *s * *b;
+            }
+        }
+        let along = sb.iter().skip(MOMENTA).zip(b);
+        let along = along.fold(T::ZERO, |sum, (sb, b)| sum + *sb * *b);
         let weight = g / (T::ONE + g * along);
-        self.0 = SMatrix::from_fn(|row, column| {
-            at(&self.0, row, column) - at(&sb, row, 0) * (at(&sb, column, 0) * weight)
-        });
-    }
-
-    /// Λ, the rows of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
-    pub(super) fn costate(&self) -> SMatrix<T, MOMENTA, ERRORS> {
-        SMatrix::from_fn(|row, column| at(&self.0, MOMENTA + row, column))
-    }
-}
-
-/// An entry; 0 outside, since the compiler does not see that no index is.
-pub(super) fn at<T: Scalar, const R: usize, const C: usize>(
-    m: &SMatrix<T, R, C>,
-    row: usize,
-    column: usize,
-) -> T {
-    m.get((row, column)).copied().unwrap_or_default()
-}
-
-/// The product of two matrices, without a bound to check: the link proves that nothing here panics.
-pub(super) fn product<T: Scalar, const R: usize, const C: usize>(
-    left: &SMatrix<T, R, ERRORS>,
-    right: &SMatrix<T, ERRORS, C>,
-) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|row, column| {
-        (0..ERRORS).fold(T::ZERO, |sum, k| {
-            sum + at(left, row, k) * at(right, k, column)
-        })
-    })
-}
-
-/// Vectors one under the other.
-pub(super) fn stack<T: Scalar, const R: usize, const P: usize>(
-    parts: &[Vector3<T>; P],
-) -> SVector<T, R> {
-    SVector::from_fn(|row, _| {
-        let part = parts.get(row / 3);
-        part.map_or(T::ZERO, |part| at(part, row % 3, 0))
-    })
-}
-
-/// Writes a block into the rows and columns from `row` and `column` on.
-pub(super) fn put<T: Scalar>(
-    to: &mut SMatrix<T, ERRORS, ERRORS>,
-    (row, column): (usize, usize),
-    block: &Matrix3<T>,
-) {
-    for j in 0..3 {
-        for i in 0..3 {
-            if let Some(entry) = to.get_mut((row + i, column + j)) {
-                *entry = at(block, i, j);
+        for (column, x) in self.0.data.0.iter_mut().zip(&sb) {
+            let x = *x * weight;
+            for (s, sb) in column.iter_mut().zip(&sb) {
+                *s -= *sb * x;
             }
         }
     }
+
+    /// Λ by rows, those of S that belong to the momenta: λ = Λ x is half of what a unit of each momentum costs.
+    pub(super) fn costate(&self) -> impl Iterator<Item = &[T; ERRORS]> {
+        self.0.data.0.iter().skip(MOMENTA)
+    }
+}
+
+/// Vectors one under the other.
+pub(super) fn stack<T: Scalar, const P: usize, const R: usize>(
+    parts: [Vector3<T>; P],
+) -> SVector<T, R> {
+    let parts = parts.map(<[T; 3]>::from);
+    let mut to = [T::ZERO; R];
+    for (to, x) in to.iter_mut().zip(parts.as_flattened()) {
+        *to = *x;
+    }
+    to.into()
 }

@@ -13,8 +13,9 @@
 //! without feedback until there, and at take-off, and Σ (error/σ)² + Σ (δf_i/σ_i)² over the push-off ([`Weights`]). A foot's σ_i is a share of its planned
 //! force, so a foot that the plan does not push with is given none.
 //!
-//! Riccati's recursion runs backwards over the nodes once, when a jump is armed. What is kept of it are the six rows Λ of the cost-to-go S that
-//! belong to the momenta; with the costates (λ_v, λ_L) = Λ x the best change of a foot's force is
+//! Riccati's recursion runs backwards over the nodes once, a few in every tick of the hold ([`NODES_PER_TICK`]): all of them at once take longer than
+//! the joint loop waits for a tick. What is kept of it are the six rows Λ of the cost-to-go S that belong to the momenta; with the costates
+//! (λ_v, λ_L) = Λ x the best change of a foot's force is
 //!
 //! ```text
 //! δf_i = −σ_i² (λ_v / m + λ_L × r_i)
@@ -34,57 +35,73 @@ mod weights;
 use core::num::NonZeroUsize;
 
 use jump_control::Plan;
-use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Rotation3, SVector, Vector3};
 use rbd_core::{CentroidalState, Frame, Limbs, Tangent, Tree, centroidal_state};
 use so3::{Scalar, math};
 
 pub use weights::Weights;
 
 use body::Body;
-use cost_to_go::{
-    ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, at, product, stack,
-};
+use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, stack};
 
 /// Most states that are kept of a plan's push-off: 0.95 s of nodes that are 5 ms apart; of a longer one every second, and so on.
 const STATES: usize = 192;
 /// Most gains that are kept: they change more slowly, one in 10 ms is enough.
 const GAINS: usize = 72;
 
+/// Nodes over which the recursion goes back in a tick of the hold.
+///
+/// In double precision a node of A1's push-off takes a Cortex-M7 some 22,000 instructions, one of its flight 12,500, and the rest of the tick 15,600: with two
+/// a tick of the hold keeps within the budget of one of the landing, 80,000. They are through a plan of 300 nodes in the 0.15 s in which A1 weighs itself.
+pub const NODES_PER_TICK: usize = 2;
+
 /// Place, velocity and angular momentum of a plan's centre of mass, in single precision, as plans are stored.
 type State = [[f32; 3]; 3];
-/// Λ by columns.
-type Gain = [[f32; MOMENTA]; ERRORS];
+/// Λ by rows.
+type Gain = [[f32; ERRORS]; MOMENTA];
 
-/// The gains of one jump, and the motion that they are for: 27.7 kB.
+/// The gains of one jump, and the motion that they are for: 27.7 kB, and the recursion that computes them.
+///
+/// Armed is what [`Regulator::begin`] was called for and [`Regulator::advance`] has not yet gone through; a push-off may begin when
+/// [`Regulator::is_ready`].
 #[derive(Clone, Debug)]
-pub struct Regulator {
+pub struct Regulator<T: Scalar> {
     states: [State; STATES],
     gains: [Gain; GAINS],
     /// Nodes from one state, and one gain, to the next; states are counted from the first node on, gains back from the last before the take-off.
     every: [NonZeroUsize; 2],
     /// Number of nodes before the take-off.
     nodes: usize,
+    /// The recursion: the cost from node `left` on, which is the last that it has gone through.
+    cost: CostToGo<T>,
+    left: usize,
 }
 
-impl Regulator {
+impl<T: Scalar> Regulator<T> {
     /// Without a jump: forces are never changed.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             states: [[[0.0; 3]; 3]; STATES],
-            gains: [[[0.0; MOMENTA]; ERRORS]; GAINS],
+            gains: [[[0.0; ERRORS]; MOMENTA]; GAINS],
             every: [NonZeroUsize::MIN; 2],
             nodes: 0,
+            cost: CostToGo::ZERO,
+            left: 0,
         }
     }
 
-    /// Computes the gains for a plan. This takes as long as some hundred ticks: it is done when a jump is armed.
-    pub fn prepare<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize>(
+    /// Ticks of the hold before the start in which the gains of a plan are computed, at most.
+    #[must_use]
+    pub const fn ticks<const N: usize, const F: usize>(plan: &Plan<'_, T, N, F>) -> usize {
+        plan.count().div_ceil(NODES_PER_TICK)
+    }
+
+    /// Begins the recursion for a plan at its end. One without a push-off is ready at once.
+    pub fn begin<const N: usize, const F: usize>(
         &mut self,
-        model: &M,
         plan: &Plan<'_, T, N, F>,
         weights: &Weights<T>,
-        feet: &[Frame<T>; F],
     ) {
         let time = |i| plan.time(i).unwrap_or(T::INFINITY);
         let mut nodes = 0;
@@ -95,30 +112,68 @@ impl Regulator {
         self.nodes = nodes;
         let more = [nodes / (STATES - 1), nodes / (GAINS - 1)];
         self.every = more.map(|more| NonZeroUsize::MIN.saturating_add(more));
-        let mut cost = CostToGo::zero();
-        cost.add(PLACE, &per_variance(weights.touchdown[0]));
-        cost.add(ROTATION, &per_variance(weights.touchdown[1]));
-        for i in (0..plan.count().saturating_sub(1)).rev() {
-            let Some(node) = plan.node(i) else { return };
-            let (body, dt) = (Body::new(model, &node, feet), time(i + 1) - node.time);
+        self.cost = CostToGo::ZERO;
+        self.cost.add(PLACE, &per_variance(weights.touchdown[0]));
+        self.cost.add(ROTATION, &per_variance(weights.touchdown[1]));
+        self.left = match nodes {
+            0 => 0,
+            _ => plan.count().saturating_sub(1),
+        };
+    }
+
+    /// Whether the gains of the plan are computed.
+    #[must_use]
+    pub const fn is_ready(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Goes on with the recursion, for the plan, model and weights with which it was begun: over at most so many nodes. `limbs` is memory for the legs of a
+    /// node.
+    pub fn advance<M: Tree<T, N>, const N: usize, const F: usize>(
+        &mut self,
+        (model, weights): (&M, &Weights<T>),
+        plan: &Plan<'_, T, N, F>,
+        (feet, limbs): (&[Frame<T>; F], &mut Limbs<T, N, F>),
+        most: usize,
+    ) {
+        for _ in 0..most {
+            let Some(i) = self.left.checked_sub(1) else {
+                return;
+            };
+            let (Some(node), Some(next)) = (plan.node(i), plan.time(i + 1)) else {
+                return;
+            };
+            let body = Body::new(model, &node, feet, limbs);
             if node.time < plan.touchdown {
-                cost.before(&body.drift(dt));
+                self.cost.before(&body.drift(next - node.time));
             }
-            if i == nodes {
-                add_errors(&mut cost, &weights.takeoff, &body, T::ONE);
-            }
-            if i < nodes {
-                answer(&mut cost, weights, &body, dt);
-            }
-            if i <= nodes {
-                self.keep(i, &body, &cost);
-                add_errors(&mut cost, &weights.running, &body, dt / weights.time);
-            }
+            self.back_to(i, weights, &body, next - node.time);
+            self.left = i;
         }
     }
 
+    /// What is added to the cost at node `i`, `dt` before the next.
+    fn back_to<const F: usize>(
+        &mut self,
+        i: usize,
+        weights: &Weights<T>,
+        body: &Body<T, F>,
+        dt: T,
+    ) {
+        if i > self.nodes {
+            return;
+        }
+        if i == self.nodes {
+            add_errors(&mut self.cost, &weights.takeoff, body, T::ONE);
+        } else {
+            answer(&mut self.cost, weights, body, dt);
+        }
+        self.keep(i, body);
+        add_errors(&mut self.cost, &weights.running, body, dt / weights.time);
+    }
+
     /// Keeps state and gain of a node.
-    fn keep<T: Scalar, const F: usize>(&mut self, i: usize, body: &Body<T, F>, cost: &CostToGo<T>) {
+    fn keep<const F: usize>(&mut self, i: usize, body: &Body<T, F>) {
         let [state, gain] = self.every;
         let single = |x: T| x.to_f64() as f32;
         if let Some(to) = self
@@ -137,52 +192,57 @@ impl Regulator {
             .get_mut(left / gain)
             .filter(|_| left.is_multiple_of(gain.get()))
         {
-            *to = <[[T; MOMENTA]; ERRORS]>::from(cost.costate()).map(|column| column.map(single));
+            for (to, row) in to.iter_mut().zip(self.cost.costate()) {
+                *to = row.map(single);
+            }
         }
     }
 
     /// What the forces of the ground on the feet are to change by, world axes, N.
     ///
-    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. `planned_w` are the
-    /// planned forces, world axes. Zero before the plan's first node and from the take-off on.
-    pub fn forces<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize>(
+    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The planned rotation is
+    /// that of now, and `planned_w` are the planned forces, world axes. Zero from the take-off on.
+    pub fn forces<M: Tree<T, N>, const N: usize, const F: usize>(
         &self,
         (model, weights): (&M, &Weights<T>),
         plan: &Plan<'_, T, N, F>,
         moments: [(usize, T); 2],
         velocity: &Tangent<T, N>,
         limbs: &Limbs<T, N, F>,
-        planned_w: &[Vector3<T>; F],
+        (planned_rot_wb, planned_w): (&Rotation3<T>, &[Vector3<T>; F]),
     ) -> [Vector3<T>; F] {
         let mut changes = [Vector3::zeros(); F];
         let base = limbs.posture.base();
         let now = centroidal_state(model, &limbs.posture, velocity);
-        let Some(costate) = self.costate(plan, moments, &base.rotation, &now) else {
+        let turned = base.rotation * planned_rot_wb.inverse();
+        let Some(costate) = self.costate(plan, moments, &turned, &now) else {
             return changes;
         };
-        let linear = Vector3::from_fn(|row, _| at(&costate, row, 0)) / now.mass;
-        let angular = Vector3::from_fn(|row, _| at(&costate, 3 + row, 0));
+        let [x, y, z, roll, pitch, yaw] = costate.into();
+        let linear = Vector3::new(x, y, z) / now.mass;
+        let angular = Vector3::new(roll, pitch, yaw);
         for ((change, end), planned) in changes.iter_mut().zip(&limbs.ends).zip(planned_w) {
             let arm = base.point(&end.position) - now.com_w;
             let gradient: Vector3<T> = linear + angular.cross(&arm);
-            let wanted = Vector3::from_fn(|axis, _| {
-                let slope = gradient.get(axis).copied().unwrap_or_default();
-                -slope * weights.per_cost(planned.z, axis)
-            });
+            let wanted = -gradient.component_mul(&weights.per_cost(planned.z));
             *change = weights.within_cone(planned, &wanted) - planned;
         }
         changes
     }
 
     /// Λ x; none outside the push-off.
-    fn costate<T: Scalar, const N: usize, const F: usize>(
+    fn costate<const N: usize, const F: usize>(
         &self,
         plan: &Plan<'_, T, N, F>,
         [(node, time), (was, then)]: [(usize, T); 2],
-        rot_wb: &Rotation3<T>,
+        turned: &Rotation3<T>,
         now: &CentroidalState<T>,
     ) -> Option<SVector<T, MOMENTA>> {
-        let planned = plan.base((node, time)).filter(|_| node < self.nodes)?;
+        // Also false for NaN.
+        let pushes = node < self.nodes && time >= plan.time(node)?;
+        if !pushes {
+            return None;
+        }
         let [state, gain] = self.every;
         let at = |moment, k: usize| {
             let of = |state: &State| state.get(k).map_or_else(Vector3::zeros, vector);
@@ -193,20 +253,22 @@ impl Regulator {
             (was, share(plan, was, then)?),
         );
         let place = now.com_w - at(here, 0)?;
-        let rotation = so3::log(&(rot_wb * planned.rot_wb.inverse()));
+        let rotation = so3::log(turned);
         let velocity = now.com_velocity_w - at(there, 1)?;
         let angular = now.momentum_w.angular - at(there, 2)?;
-        let error = stack(&[place, rotation, velocity, angular]);
+        let error = stack([place, rotation, velocity, angular]);
         // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
-        let gain = match self.nodes.checked_sub(node + 2) {
-            Some(left) => between(&self.gains, gain, (left, T::ONE - here.1), matrix)?,
-            None => matrix(self.gains.first()?),
-        };
-        Some(product(&gain, &error))
+        match self.nodes.checked_sub(node + 2) {
+            Some(left) => {
+                let of = |gain: &Gain| product(gain, &error);
+                between(&self.gains, gain, (left, T::ONE - here.1), of)
+            }
+            None => self.gains.first().map(|gain| product(gain, &error)),
+        }
     }
 }
 
-impl Default for Regulator {
+impl<T: Scalar> Default for Regulator<T> {
     fn default() -> Self {
         Self::new()
     }
@@ -240,9 +302,12 @@ fn answer<T: Scalar, const F: usize>(
     dt: T,
 ) {
     for (foot, force) in body.forces_w.iter().enumerate() {
-        for axis in 0..3 {
-            let per_cost = weights.per_cost(force.z, axis) * dt;
-            cost.answered(&body.push(foot, axis), per_cost);
+        let per_cost = weights.per_cost(force.z) * dt;
+        for (axis, per_cost) in per_cost.iter().enumerate() {
+            // A foot that does not push changes nothing.
+            if *per_cost > T::ZERO {
+                cost.answered(&body.push(foot, axis), *per_cost);
+            }
         }
     }
 }
@@ -279,7 +344,12 @@ fn vector<T: Scalar>(kept: &[f32; 3]) -> Vector3<T> {
     Vector3::from(kept.map(|x| T::of(f64::from(x))))
 }
 
-/// A gain that was kept in single precision.
-fn matrix<T: Scalar>(kept: &Gain) -> SMatrix<T, MOMENTA, ERRORS> {
-    SMatrix::from(kept.map(|column| column.map(|x| T::of(f64::from(x)))))
+/// Λ x of a gain that was kept in single precision.
+fn product<T: Scalar>(gain: &Gain, error: &SVector<T, ERRORS>) -> SVector<T, MOMENTA> {
+    SVector::from(gain.map(|row| {
+        let terms = row.iter().zip(error);
+        terms.fold(T::ZERO, |sum, (gain, error)| {
+            sum + T::of(f64::from(*gain)) * *error
+        })
+    }))
 }

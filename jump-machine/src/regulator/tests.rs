@@ -8,8 +8,8 @@ use rbd_core::{Configuration, Frame, Limbs, Motion, Tangent, Transform, Tree};
 use so3::Scalar;
 
 use super::body::Body;
-use super::cost_to_go::{ANGULAR, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
-use super::{Regulator, Weights, matrix};
+use super::cost_to_go::{ANGULAR, Drift, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
+use super::{NODES_PER_TICK, Regulator, Weights, product};
 
 const NODES: usize = 8;
 const DT: f64 = 0.005;
@@ -94,7 +94,7 @@ impl Dense {
             forced: SMatrix::zeros(),
         };
         for (i, node) in nodes::<f64>().iter().enumerate() {
-            let body = Body::new(&A1, node, &feet());
+            let body = Body::new(&A1, node, &feet(), &mut { Limbs::ZERO });
             let inverse = &body.inverse_inertia_w;
             if i == TAKEOFF {
                 dense.add_errors(&weights.takeoff, inverse, 1.0);
@@ -109,7 +109,7 @@ impl Dense {
             if i < TAKEOFF {
                 dense.push(i, node, &body, weights);
             }
-            let a = body.drift(DT);
+            let a = whole(&body.drift(DT));
             (dense.free, dense.forced) = (a * dense.free, a * dense.forced);
         }
         let u = dense.normal.cholesky().unwrap().solve(&dense.side);
@@ -146,13 +146,41 @@ impl Dense {
     }
 }
 
+/// A as one matrix.
+fn whole(drift: &Drift<f64>) -> SMatrix<f64, ERRORS, ERRORS> {
+    let mut a = SMatrix::<f64, ERRORS, ERRORS>::identity();
+    let mut put = |row, column, block: &Matrix3<f64>| {
+        a.fixed_view_mut::<3, 3>(row, column).copy_from(block);
+    };
+    put(PLACE, VELOCITY, &Matrix3::from_diagonal_element(drift.dt));
+    put(ROTATION, ROTATION, &drift.turned);
+    put(ROTATION, ANGULAR, &drift.turns);
+    put(ANGULAR, PLACE, &drift.pushed);
+    a
+}
+
 fn square(x: f64) -> f64 {
     x * x
 }
 
-fn prepared() -> Regulator {
+/// Gains for a plan, over so many nodes at a time; the number of times.
+fn prepare<T: Scalar>(regulator: &mut Regulator<T>, plan: &Plan<'_, T, 12, 4>, most: usize) -> usize
+where
+    A1: Tree<T, 12>,
+{
+    let weights = Weights::new(&BUILD.cast());
+    regulator.begin(plan, &weights);
+    let mut times = 0;
+    while !regulator.is_ready() {
+        regulator.advance((&A1, &weights), plan, (&feet(), &mut { Limbs::ZERO }), most);
+        times += 1;
+    }
+    times
+}
+
+fn prepared() -> Regulator<f64> {
     let (nodes, mut regulator) = (nodes(), Regulator::new());
-    regulator.prepare(&A1, &plan(&nodes), &Weights::new(&BUILD), &feet());
+    prepare(&mut regulator, &plan(&nodes), usize::MAX);
     regulator
 }
 
@@ -161,21 +189,45 @@ fn prepared() -> Regulator {
 fn riccatis_recursion_solves_the_dense_problem() {
     let (weights, regulator) = (Weights::new(&BUILD), prepared());
     let nodes = nodes::<f64>();
-    let body = Body::new(&A1, &nodes[0], &feet());
+    let body = Body::new(&A1, &nodes[0], &feet(), &mut { Limbs::ZERO });
     for k in 0..ERRORS {
         let x = SVector::from_fn(|row, _| if row == k { 0.02 } else { 0.003 * row as f64 });
-        let lambda = matrix::<f64>(&regulator.gains[TAKEOFF - 1]) * x;
+        let lambda = product(&regulator.gains[TAKEOFF - 1], &x);
         let dense = Dense::forces(&weights, &x);
         for (foot, wanted) in dense.iter().enumerate() {
-            let force = Vector3::from_fn(|axis, _| {
-                let slope = body.push(foot, axis).dot(&lambda);
-                -slope * weights.per_cost(nodes[0].forces_w[foot].z, axis)
-            });
+            let slope = Vector3::from_fn(|axis, _| body.push(foot, axis).dot(&lambda));
+            let per_cost = weights.per_cost(nodes[0].forces_w[foot].z);
+            let force = -slope.component_mul(&per_cost);
             let off = (force - wanted).norm();
             // Gains are kept in single precision.
             assert!(off < 1e-5 * wanted.norm().max(1.0), "{k}: {force} {wanted}");
         }
     }
+}
+
+/// The bits of what is kept of a plan.
+fn kept(regulator: &Regulator<f64>) -> impl Iterator<Item = u32> {
+    let states = regulator.states.as_flattened().as_flattened();
+    let gains = regulator.gains.as_flattened().as_flattened();
+    states.iter().chain(gains).map(|x| x.to_bits())
+}
+
+/// Over however many nodes at a time, and after another plan was given up on the way, the same bits are kept.
+#[test]
+fn a_recursion_in_parts_is_the_recursion_at_once() {
+    let (nodes, whole) = (nodes::<f64>(), prepared());
+    let (plan, weights) = (plan(&nodes), Weights::new(&BUILD));
+    assert!(kept(&whole).any(|bits| bits != 0));
+    for most in 1..NODES {
+        let mut regulator = Regulator::new();
+        regulator.begin(&plan, &weights);
+        regulator.advance((&A1, &weights), &plan, (&feet(), &mut { Limbs::ZERO }), 2);
+        assert!(!regulator.is_ready());
+        let times = prepare(&mut regulator, &plan, most);
+        assert_eq!(times, (NODES - 1).div_ceil(most));
+        assert!(kept(&regulator).eq(kept(&whole)), "{most} at a time");
+    }
+    assert!(Regulator::ticks(&plan) >= (NODES - 1).div_ceil(NODES_PER_TICK));
 }
 
 /// Forces that are wanted at `time` of the plan for a robot that is there but turned and moved.
@@ -186,7 +238,7 @@ where
     let nodes = nodes::<T>();
     let (plan, mut regulator) = (plan(&nodes), Regulator::new());
     let weights = Weights::new(&BUILD.cast());
-    regulator.prepare(&A1, &plan, &weights, &feet());
+    prepare(&mut regulator, &plan, NODES_PER_TICK);
     let time = T::of(time);
     let node = plan.node_at(time, 0);
     let here = nodes[node];
@@ -213,7 +265,7 @@ where
         moments,
         &velocity,
         &limbs,
-        &here.forces_w,
+        (&here.base.rotation, &here.forces_w),
     )
 }
 

@@ -58,15 +58,11 @@ impl<T: Scalar> Weights<T> {
         }
     }
 
-    /// g of a foot with this planned normal force, along a world axis, N² s: a force u costs u²/g per second. None for a foot that does not push.
-    pub(super) fn per_cost(&self, normal: T, axis: usize) -> T {
-        let share = if axis == 2 {
-            self.normal
-        } else {
-            self.tangential
-        };
-        let sigma = share * math::max(normal, T::ZERO);
-        sigma * sigma * self.time
+    /// g of a foot with this planned normal force, along the world's axes, N² s: a force u costs u²/g per second. None for a foot that does not push.
+    pub(super) fn per_cost(&self, normal: T) -> Vector3<T> {
+        let shares = Vector3::new(self.tangential, self.tangential, self.normal);
+        let sigma = shares * math::max(normal, T::ZERO);
+        sigma.component_mul(&sigma) * self.time
     }
 
     /// The force that is nearest to `planned` + `change` in what a foot may be asked for: its normal force not below the least share of the planned
@@ -76,13 +72,18 @@ impl<T: Scalar> Weights<T> {
         if !pushing {
             return *planned;
         }
-        let ratio = math::max(self.friction, math::hypot(planned.x, planned.y) / planned.z);
+        let squared = |force: &Vector3<T>| force.x * force.x + force.y * force.y;
+        let ratio = math::max(
+            self.friction * self.friction,
+            squared(planned) / (planned.z * planned.z),
+        );
         let mut force = planned + change;
         force.z = math::max(force.z, planned.z * self.least_normal);
-        let (size, most) = (math::hypot(force.x, force.y), ratio * force.z);
+        let (size, most) = (squared(&force), ratio * force.z * force.z);
         if size > most {
-            force.x *= most / size;
-            force.y *= most / size;
+            let share = math::sqrt(most / size);
+            force.x *= share;
+            force.y *= share;
         }
         force
     }

@@ -97,7 +97,7 @@ impl<T: Scalar, const N: usize, const K: usize> Limbs<T, N, K> {
         configuration: &Configuration<T, N>,
         frames: &[Frame<T>; K],
     ) {
-        self.posture = Posture::new(model, configuration);
+        self.posture.update(model, configuration);
         let base = (Matrix3::identity(), Vector3::zeros());
         chain(model, &self.posture, &base, &mut self.bodies);
         for (end, frame) in self.ends.iter_mut().zip(frames) {

@@ -2,7 +2,7 @@
 
 use a1_model::{A1Geared, BUILD};
 use contact_sim::{Block, NativeSimulator, Settings, Shape, Terrain};
-use jump_control::{Measurement, Plan};
+use jump_control::{Measurement, Phase, Plan};
 use jump_machine::{Jump, Machine, Observation, Tick, Work};
 use landing::{Landing, Outcome, Target, Workspace};
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use super::closed_loop::{Flown, Simulated, told};
 use super::digested;
 use super::plan::{self, Planned};
 use crate::inputs::Stream;
-use crate::{Numbers, Real, Recorder};
+use crate::{Label, Numbers, Real, Recorder};
 
 const SUBJECT: &str = "a1-jump";
 /// Time of standing before the jump, s.
@@ -116,15 +116,15 @@ pub fn jump<T: Planned>() -> Option<Jump<'static, T, 12, 4>> {
     let torques = plan::PLAN.header().torques;
     Some(Jump {
         plan: Plan::new(T::nodes(), takeoff, posing, touchdown, torques).ok()?,
-        weight: T::of(plan::WEIGHT),
         rot_goal: so3::exp(&Vector3::new(T::ZERO, T::ZERO, T::of(plan::HEADING))),
         landing_joints: landing_joints(),
     })
 }
 
 /// What a tick of the machine is called in a jump, and in states that no jump visits.
-const fn name(work: &Work, wild: bool) -> &'static str {
-    match (work, wild) {
+const fn name(tick: &Tick, wild: bool) -> &'static str {
+    match (&tick.work, wild) {
+        (Work::Cartesian, _) if matches!(tick.phase, Phase::Hold) => "hold tick",
         (Work::Cartesian, _) => "Cartesian PD tick",
         (Work::Landing(Outcome::Failed(_)), true) => "capped machine tick",
         (Work::Landing(_), true) => "wild machine tick",
@@ -133,17 +133,22 @@ const fn name(work: &Work, wild: bool) -> &'static str {
     }
 }
 
-/// Flies the double backflip and lands it, then tries machine and landing where no jump comes.
+/// Arms and flies the double backflip and lands it, then tries machine and landing where no jump comes.
 pub fn a1<T: Planned, R: Recorder>(recorder: &mut R)
 where
     A1Geared: Model<T, 12>,
 {
     let mut workspace = jump_machine::Workspace::new();
     let mut machine = Machine::<T, _, 12, 4>::new(&A1Geared, settings(), &mut workspace);
-    let Some(jump) = jump() else { return };
-    if machine.arm(jump, T::of(HOLD)).is_err() {
-        return;
-    }
+    let label = Label {
+        subject: SUBJECT,
+        scalar: T::NAME,
+        algorithm: "arming",
+    };
+    let armed = recorder.call(label, &mut machine, |machine| {
+        jump().map(|jump| machine.arm(jump, T::of(HOLD)))
+    });
+    let Some(Ok(())) = armed else { return };
     let mut flown = Flown::new(machine, SUBJECT, name, false);
     flown.fly(recorder, Flight::new());
     wild_machine(recorder, &mut flown);

@@ -125,8 +125,8 @@ pub(super) struct Flown<M, W> {
     pub(super) machine: M,
     /// The name of its calls.
     pub(super) subject: &'static str,
-    /// What a tick is called that did this work: in a jump, or in a state that no jump visits.
-    pub(super) name: fn(&W, wild: bool) -> &'static str,
+    /// What a tick is called: in a jump, or in a state that no jump visits.
+    pub(super) name: fn(&Tick<W>, wild: bool) -> &'static str,
     /// Whether the command of every tick is recorded too.
     pub(super) commands: bool,
     /// Ticks so far.
@@ -138,7 +138,7 @@ impl<M, W> Flown<M, W> {
     pub(super) const fn new(
         machine: M,
         subject: &'static str,
-        name: fn(&W, wild: bool) -> &'static str,
+        name: fn(&Tick<W>, wild: bool) -> &'static str,
         commands: bool,
     ) -> Self {
         Self {
@@ -168,7 +168,7 @@ impl<M, W> Flown<M, W> {
             self.subject,
             (&mut self.machine, now, heard),
             |(machine, now, heard)| machine.tick(now, Some(heard)),
-            |tick| name(&tick.work, wild),
+            |tick| name(tick, wild),
         );
         if self.commands {
             recorder.value(digest(self.machine.command()));

@@ -115,8 +115,8 @@ impl Numbers for Tick<Work<f64>> {
 }
 
 /// What a tick of the machine is called in a jump, and in states that no jump visits.
-const fn name(work: &Work<f64>, wild: bool) -> &'static str {
-    match (work, wild) {
+const fn name(tick: &Tick<Work<f64>>, wild: bool) -> &'static str {
+    match (&tick.work, wild) {
         (Work::PushOff(Ok(solved)), _) if solved.capped => "capped push-off tick",
         (Work::PushOff(_), _) => "push-off tick",
         (Work::Landing(Ok(solved)), true) if solved.capped => "capped machine tick",

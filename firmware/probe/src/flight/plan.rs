@@ -16,8 +16,6 @@ pub(super) const TIMES: [f64; 3] = {
     let h = PLAN.header();
     [h.takeoff as f64, h.posing as f64, h.touchdown as f64]
 };
-/// Weight that was planned with, N.
-pub(super) const WEIGHT: f64 = PLAN.header().margins.weight as f64;
 /// Wanted heading at the end, rad.
 pub(super) const HEADING: f64 = PLAN.header().heading as f64;
 /// Joint positions before touchdown, rad.
