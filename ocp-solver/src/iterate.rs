@@ -86,6 +86,9 @@ pub(crate) fn evaluate<
 }
 
 /// Derivatives of every node at the current iterate, and the residuals of the optimality conditions there.
+///
+/// Not inlined: its scratch is not to lie on the stack while the other passes have theirs.
+#[inline(never)]
 pub(crate) fn differentiate<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,

@@ -43,6 +43,7 @@ pub(crate) struct Direction<T> {
 /// Backward recursion with `shift` added to the diagonal of every stage Hessian.
 ///
 /// Returns false if the reduced Hessian is not positive definite.
+#[inline(never)]
 #[must_use]
 pub(crate) fn factorise<T, P, K, const NX: usize, const NU: usize, const NI: usize>(
     problem: &P,
