@@ -6,10 +6,10 @@ use jump_control::{
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
-use so3::{Scalar, math};
+use so3::Scalar;
 
 use crate::push_off::predicted;
-use crate::regulator::{NODES_PER_TICK, Regulator};
+use crate::regulator::NODES_PER_TICK;
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
 
@@ -97,15 +97,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     ///
     /// # Errors
     /// A robot that does not stand and a start that is too near are refused: nothing changes then. Too near is one that leaves less time than
-    /// [`Settings::weighing`], or fewer ticks than the gains take. Where so many ticks are missed, or no tick has told the time yet, that shows only at
+    /// [`Settings::least_hold`]. Where so many ticks are missed, or no tick has told the time yet, that shows only at
     /// the start: the jump is not begun then, the robot goes on standing and the tick says [`Refusal::TooLate`].
     pub fn arm(&mut self, jump: Jump<'a, T, N, F>, start: T) -> Result<(), Refusal> {
         let s = &self.settings;
-        // The tick at the start is too late for them.
-        let ticks = u32::try_from(Regulator::ticks(&jump.plan) + 1).unwrap_or(u32::MAX);
-        let gains = T::of(f64::from(ticks)) * s.period;
-        self.supervisor
-            .may_arm(start, math::max(s.weighing, gains))?;
+        self.supervisor.may_arm(start, s.least_hold(&jump.plan))?;
         self.posture.joints = jump.landing_joints;
         self.level_feet = self.posture.level_feet(self.model);
         self.legs = jump.landing_joints;

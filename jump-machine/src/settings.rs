@@ -1,12 +1,12 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
-use jump_control::CartesianPd;
+use jump_control::{CartesianPd, Plan};
 use landing::{Detector, InertiaShaping, PreLanding};
 use rbd_core::{Build, Frame, Motor};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use crate::Unloading;
-use crate::regulator::Weights;
+use crate::regulator::{Regulator, Weights};
 
 /// Periods, limits and gains of a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,14 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
+    /// Least time for which a robot holds before the start of a plan, s: it weighs itself, and computes the push-off's gains, for which the tick at the
+    /// start is too late.
+    #[must_use]
+    pub fn least_hold(&self, plan: &Plan<'_, T, N, F>) -> T {
+        let ticks = u32::try_from(Regulator::ticks(plan) + 1).unwrap_or(u32::MAX);
+        math::max(self.weighing, T::of(f64::from(ticks)) * self.period)
+    }
+
     /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
     /// 0.4 m, with which `saltus run` executes; `saltus verdicts` measures them.
     ///

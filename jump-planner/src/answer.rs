@@ -88,14 +88,13 @@ impl Answer {
         Self {
             status: "OutOfTime",
             because: format!("after {} s {}", within.as_secs_f64(), self.because),
-            relaxations: Vec::new(),
+            ..self
         }
     }
 
-    /// From a rigid-body plan that was not found. `observe` hears every iteration of the easier tasks, and stops by `Break`: what was
-    /// found until then is told.
+    /// From a rigid-body plan that was not found: what blocks.
     #[must_use]
-    pub fn no_body_plan(task: &Task, plan: &SrbPlan, observe: impl Observer) -> Self {
+    pub fn no_body_plan(task: &Task, plan: &SrbPlan) -> Self {
         let rows = blocking_rows::<4, _, _, _, _, _, _>(&plan.stages);
         let worst = rows[0].map_or(0.0, |row| row.violation.abs());
         let counts = |violation: f64| violation.abs() >= 0.05 * worst && violation.abs() > 1e-4;
@@ -112,18 +111,13 @@ impl Answer {
                 plan.max_violation,
                 rows.collect(),
             ),
-            relaxations: relaxations(task, observe),
+            relaxations: Vec::new(),
         }
     }
 
-    /// From a whole-body plan that was not found; `observe` as in [`Answer::no_body_plan`].
+    /// From a whole-body plan that was not found: what blocks.
     #[must_use]
-    pub fn no_whole_body_plan(
-        task: &Task,
-        srb: &SrbPlan,
-        plan: &WholeBodyPlan,
-        observe: impl Observer,
-    ) -> Self {
+    pub fn no_whole_body_plan(task: &Task, plan: &WholeBodyPlan) -> Self {
         let rows = plan
             .blocked
             .iter()
@@ -137,7 +131,26 @@ impl Answer {
         Self {
             status: "NotFound",
             because,
+            relaxations: Vec::new(),
+        }
+    }
+
+    /// With the changes of the task that give the rigid body a plan. `observe` hears every iteration of the easier tasks, and stops by
+    /// `Break`: what was found until then is told.
+    #[must_use]
+    pub fn with_easier_tasks(self, task: &Task, observe: impl Observer) -> Self {
+        Self {
+            relaxations: relaxations(task, observe),
+            ..self
+        }
+    }
+
+    /// With the joints that would give the whole body a plan; `observe` as in [`Answer::with_easier_tasks`].
+    #[must_use]
+    pub fn with_stronger_joints(self, task: &Task, srb: &SrbPlan, observe: impl Observer) -> Self {
+        Self {
             relaxations: stronger(task, srb, observe).into_iter().collect(),
+            ..self
         }
     }
 }

@@ -60,12 +60,12 @@ pub fn plan(
     options: &Options,
     mut observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
 ) -> Result<Outcome, String> {
+    let clock = Instant::now();
     let mut out = Outcome::default();
     if let Some(proof) = impossible(task) {
         out.answer = Some(Answer::proven(proof));
         return Ok(out);
     }
-    let clock = Instant::now();
     let late = Cell::new(None);
     let mut observe = |step, progress: Option<&Progress<f64>>| {
         late.set(options.within.filter(|within| clock.elapsed() >= *within));
@@ -85,10 +85,14 @@ pub fn plan(
             let found = task.attempt(&Settings::new(), |p| observe(Step::Body, Some(p)))?;
             let srb = &*out.srb.insert(found);
             if srb.status != Status::Solved {
-                let end = End::of(srb.status, &late, &mut observe);
-                out.answer = Some(end.answer(|| {
-                    Answer::no_body_plan(task, srb, |p| observe(Step::Relaxations, Some(p)))
-                }));
+                let blocked = Answer::no_body_plan(task, srb);
+                out.answer = Some(match End::of(srb.status, &late, &mut observe) {
+                    End::Itself => {
+                        blocked.with_easier_tasks(task, |p| observe(Step::Relaxations, Some(p)))
+                    }
+                    End::Cancelled => Answer::cancelled(),
+                    End::Late(within) => blocked.out_of_time(within),
+                });
                 return Ok(out);
             }
             srb
@@ -101,12 +105,15 @@ pub fn plan(
         Some(audit) if audit.passes() => None,
         Some(audit) => Some(Answer::failed(audit)),
         None => {
-            let end = End::of(whole.plan.outcome.status, &late, &mut observe);
-            Some(end.answer(|| {
-                Answer::no_whole_body_plan(task, srb, &whole.plan, |p| {
-                    observe(Step::Relaxations, Some(p))
-                })
-            }))
+            let blocked = Answer::no_whole_body_plan(task, &whole.plan);
+            Some(
+                match End::of(whole.plan.outcome.status, &late, &mut observe) {
+                    End::Itself => blocked
+                        .with_stronger_joints(task, srb, |p| observe(Step::Relaxations, Some(p))),
+                    End::Cancelled => Answer::cancelled(),
+                    End::Late(within) => blocked.out_of_time(within),
+                },
+            )
         }
     };
     (out.wall_ms, out.bytes, out.audit) = (whole.wall_ms, whole.bytes, whole.audit);
@@ -138,15 +145,6 @@ impl End {
             Self::Cancelled
         } else {
             Self::Itself
-        }
-    }
-
-    /// What to tell, from what `found` tells of where the solver stands.
-    fn answer(self, found: impl FnOnce() -> Answer) -> Answer {
-        match self {
-            Self::Itself => found(),
-            Self::Cancelled => Answer::cancelled(),
-            Self::Late(within) => found().out_of_time(within),
         }
     }
 }

@@ -143,9 +143,7 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
             .zip(places.unwrap_or_default())
             .map(|(value, place)| (usize::from(*place), *value))
     }
-}
 
-impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
     /// `out +=` the vectors as columns times `x`.
     #[inline(always)]
     fn add_product(&self, x: &[T; C], out: &mut [T; R]) {
@@ -198,18 +196,16 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Packed<T, NX,
     #[inline(never)]
     pub(crate) fn pack(&mut self, d: &Derivatives<T, NX, NU, NI>, dims: Dims) {
         let (rows, controls) = (dims.rows(), dims.controls);
-        let before_mixed = dims.state_rows.saturating_add(dims.control_rows);
         (self.cost_x, self.cost_u) = (d.cost_x, d.cost_u);
         self.dynamics_x.fill(whole(&d.dynamics_x, NX));
         self.dynamics_u.fill(whole(&d.dynamics_u, controls));
-        let in_state = |i: usize| i < dims.state_rows || i >= before_mixed;
         let from = |on: bool, end: usize| if on { 0 } else { end };
         let x = d.rows_x.iter().enumerate().take(rows);
         self.rows_x
-            .fill(x.map(|(i, row)| (row, from(in_state(i), NX))));
+            .fill(x.map(|(i, row)| (row, from(dims.parts(i).state, NX))));
         let u = d.rows_u.iter().enumerate().take(rows);
         self.rows_u
-            .fill(u.map(|(i, row)| (row, from(i >= dims.state_rows, NU))));
+            .fill(u.map(|(i, row)| (row, from(dims.parts(i).control, NU))));
         self.hessian_xx
             .fill(d.hessian_xx.iter().enumerate().map(|(j, x)| (x, j)));
         self.hessian_xu.fill(whole(&d.hessian_xu, controls));

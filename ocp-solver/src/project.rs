@@ -18,6 +18,8 @@ use crate::eliminate::{Elimination, entry};
 use crate::kernel::{
     add_outer_products, add_scaled, factor, largest, solve_lower, solve_upper, transpose,
 };
+use crate::linearised::Quadratic;
+use crate::stage::Riccati;
 use so3::Scalar;
 use so3::math::{abs, max, sqrt};
 
@@ -193,6 +195,21 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
                 gain: [[T::ZERO; NX]; NU],
                 feedforward: [[T::ZERO; 1]; NU],
             },
+        }
+    }
+
+    /// The quadratic of a stage: what is kept with it, and what is here.
+    #[inline(always)]
+    pub(crate) const fn with<'a>(
+        &'a mut self,
+        kept: &'a mut Riccati<T, NX, NU>,
+    ) -> Quadratic<'a, T, NX, NU> {
+        Quadratic {
+            xx: &mut kept.hessian,
+            xu: &mut self.xu,
+            uu: &mut self.uu,
+            x: &mut kept.gradient,
+            u: &mut self.u,
         }
     }
 

@@ -21,7 +21,7 @@
 
 use crate::keep::Keep;
 use crate::kernel::{add_product, add_scaled, dot, mirror_lower, transpose};
-use crate::linearised::{Linearised, Quadratic};
+use crate::linearised::Linearised;
 use crate::problem::{Derivatives, Problem};
 use crate::project::Work;
 use crate::rows::RowBarrier;
@@ -85,13 +85,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         shift: T,
     ) -> bool {
         let n = self.dims.controls.min(NU);
-        let mut q = Quadratic {
-            xx: &mut self.riccati.hessian,
-            xu: &mut work.xu,
-            uu: &mut work.uu,
-            x: &mut self.riccati.gradient,
-            u: &mut work.u,
-        };
+        let mut q = work.with(&mut self.riccati);
         d.write(n, &mut q);
         for (i, column) in q.xx.iter_mut().enumerate() {
             column[i] += shift;
@@ -142,20 +136,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
     /// Adds the condensed rows to the stage Hessian, of whose diagonal blocks only the lower triangles count, and gradient.
     #[inline(never)]
-    fn add_rows(&mut self, d: &impl Linearised<T, NX, NU>, q: &mut Work<T, NX, NU>, mu: T) {
+    fn add_rows(&mut self, d: &impl Linearised<T, NX, NU>, work: &mut Work<T, NX, NU>, mu: T) {
         for i in 0..self.row_count() {
             if self.rows.is_equality(i) && self.elastic == T::ZERO {
                 continue;
             }
             let condensed = self.condensed(i, mu);
-            let mut quadratic = Quadratic {
-                xx: &mut self.riccati.hessian,
-                xu: &mut q.xu,
-                uu: &mut q.uu,
-                x: &mut self.riccati.gradient,
-                u: &mut q.u,
-            };
-            d.condense(i, self.dims.parts(i), condensed, &mut quadratic);
+            let mut q = work.with(&mut self.riccati);
+            d.condense(i, self.dims.parts(i), condensed, &mut q);
         }
     }
 }

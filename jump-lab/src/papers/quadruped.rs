@@ -237,14 +237,16 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
         let srb = task.attempt(&ocp_solver::Settings::new(), |_| ControlFlow::Continue(()))?;
         if srb.status != Status::Solved {
             return Ok(Some((
-                Answer::no_body_plan(&task, &srb, |_| ControlFlow::Continue(())),
+                Answer::no_body_plan(&task, &srb)
+                    .with_easier_tasks(&task, |_| ControlFlow::Continue(())),
                 false,
             )));
         }
         let plan = whole_body::plan(&task, &srb, Timing::Given, |_| ControlFlow::Continue(()))?;
         Ok((plan.outcome.status != Status::Solved).then(|| {
             (
-                Answer::no_whole_body_plan(&task, &srb, &plan, |_| ControlFlow::Continue(())),
+                Answer::no_whole_body_plan(&task, &plan)
+                    .with_stronger_joints(&task, &srb, |_| ControlFlow::Continue(())),
                 false,
             )
         }))

@@ -5,13 +5,10 @@ use super::measure::Measure;
 use super::plant::plant;
 use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
 use crate::Sim;
-use crate::closed_loop::{
-    ClosedLoop, Drive, Feet, PERIOD, Recorder, Sensors, Setting, Step, stage,
-};
+use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::lab::{Disturbance, Interface};
 use crate::verdict::{Hardware, Tick as HardwareTick};
 use jump_control::{Fault, Phase, Plan, sample};
-use jump_machine::regulator::Regulator;
 use jump_machine::{Jump, Machine, Settings, Tick, Work};
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
@@ -335,6 +332,7 @@ pub fn run_watched(
     }
     let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
     let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
+    let hold = HOLD.max(settings.least_hold(&jump.plan));
     let mut workspace = jump_machine::Workspace::new();
     let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
     let armed = machine.arm(jump, 0.0);
@@ -352,10 +350,8 @@ pub fn run_watched(
         tamper,
         watch,
     };
-    // Of a long plan the push-off's gains take more ticks than that.
-    let gains = (Regulator::ticks(&jump.plan) + 1) as f64 * PERIOD;
     let end = reference.touchdown + SETTLE + 0.5;
-    closed.run((HOLD.max(gains), end), &mut keeper, progress)?;
+    closed.run((hold, end), &mut keeper, progress)?;
     let mut run = keeper.run;
     run.final_phase = closed.machine.phase();
     run.fault = closed.machine.fault();

@@ -5,7 +5,7 @@
 
 use super::failure::{Failure, brief};
 use super::folder::{check_new, describe};
-use super::output::Output;
+use super::output::{Output, number};
 use jump_planner::range::Range;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "free", value_parser = ["free", "lock", "refuse"])]
     mimic: String,
     /// Largest deviation of a joint axis from a coordinate axis that is taken for rounding; aligned joints compute faster.
-    #[arg(long, default_value_t = AXIS_EXACT, allow_negative_numbers = true, value_parser = rounding)]
+    #[arg(long, default_value_t = AXIS_EXACT, allow_negative_numbers = true, value_parser = number(Range::From(0.0, 0.1)))]
     axis_rounding: f64,
     /// Whether moments of inertia that no body has are an error or kept.
     #[arg(long, default_value = "physical", value_parser = ["physical", "as-written"])]
@@ -56,11 +56,6 @@ pub(crate) struct Args {
     licence: String,
     #[command(flatten)]
     pub(crate) output: Output,
-}
-
-fn rounding(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
-    Range::From(0.0, 0.1).check(number).map(|()| number)
 }
 
 /// Runs the command.

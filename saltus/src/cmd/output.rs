@@ -9,6 +9,7 @@ use jump_lab::Sim;
 use jump_lab::humanoid::Landing;
 use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
+use jump_planner::range::Range;
 use jump_planner::robot::Quadruped;
 
 /// Options of every command that prints a result.
@@ -67,6 +68,16 @@ pub(crate) fn whole(
         let number = text.parse().ok().filter(|x| range.contains(x));
         let (low, high) = (range.start(), range.end());
         number.ok_or_else(|| format!("a whole number from {low} to {high} is needed"))
+    }
+}
+
+/// A number in a range; what it must be is said where it is something else.
+pub(crate) fn number(
+    range: Range,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse::<f64>().map_err(|error| error.to_string())?;
+        range.check(number).map(|()| number)
     }
 }
 

@@ -6,7 +6,7 @@ mod task;
 
 use super::failure::Failure;
 use super::folder::check_file;
-use super::output::{Output, whole};
+use super::output::{Output, number, whole};
 use core::ops::ControlFlow;
 use jump_planner::range::Range;
 use ocp_solver::Progress;
@@ -39,7 +39,7 @@ pub(crate) struct Args {
         requires = "task",
         conflicts_with_all = ["reference", "problem"],
         allow_negative_numbers = true,
-        value_parser = seconds
+        value_parser = number(Range::From(0.0, 1e6))
     )]
     within: Option<f64>,
     /// Plan for the quadruped of this URDF, or of a profile (TOML beside a URDF), instead of the task's robot: twelve joints, four legs of three below a floating base, one per
@@ -71,7 +71,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) output: Output,
     /// Reference problems: standard deviation of the noise added to the initial guess.
-    #[arg(long, default_value_t = 0.0, conflicts_with = "task", value_parser = noise)]
+    #[arg(long, default_value_t = 0.0, conflicts_with = "task", value_parser = number(Range::From(0.0, 10.0)))]
     guess_noise: f64,
     /// Reference problems: seed of the guess noise.
     #[arg(long, default_value_t = 1, conflicts_with = "task", allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
@@ -88,16 +88,6 @@ pub(crate) struct Args {
     /// Reference problems: barrier rule.
     #[arg(long, default_value = "portfolio", value_parser = ["adaptive", "monotone", "portfolio"], conflicts_with = "task")]
     barrier: String,
-}
-
-fn noise(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
-    Range::From(0.0, 10.0).check(number).map(|()| number)
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().map_err(|error| error.to_string())?;
-    Range::From(0.0, 1e6).check(number).map(|()| number)
 }
 
 /// Runs the command.
