@@ -60,7 +60,7 @@ impl Answer {
     pub fn proven(proof: Impossible) -> Self {
         Self {
             status: "Infeasible",
-            because: format!("{} ({} bound)", proof.because, proof.bound),
+            because: proof.to_string(),
             relaxations: vec![proof.relaxation],
         }
     }

@@ -3,11 +3,14 @@
 use crate::answer::Answer;
 use crate::file::{FEET, File};
 use core::ops::ControlFlow;
+use jump_planner::bounds::{Impossible, rigid_body};
 use ocp_solver::{Barrier, Progress, Settings, Stage};
 use serde_json::{Value, json};
 use srb_opt::{Problem, State};
 use std::time::Instant;
 
+/// Legs in the file's order.
+const LEGS: [&str; FEET] = ["FL", "FR", "RL", "RR"];
 /// Controls of four feet, and rows.
 const NU: usize = 3 * FEET;
 const NI: usize = 40;
@@ -15,6 +18,17 @@ const NI: usize = 40;
 type Stages<const PHASES: usize, const NX: usize> = Vec<Stage<f64, State<f64, PHASES>, NX, NU, NI>>;
 
 impl File {
+    /// The closed-form bound that shows that a task has no solution on the single rigid body, if there is one.
+    ///
+    /// # Errors
+    /// No such task, or what `srb-opt` says of it.
+    pub fn impossible(&self, name: &str) -> Result<Option<Impossible>, String> {
+        Ok(match self.task(name)?.phase_count() {
+            0..=4 => rigid_body(&self.problem::<4>(name)?, LEGS),
+            _ => rigid_body(&self.problem::<12>(name)?, LEGS),
+        })
+    }
+
     /// Solves the problem of a task on the single rigid body from its cold guess. Each number of the guess has a number of `noise` added;
     /// `observe` sees every iteration and may stop there.
     ///

@@ -9,3 +9,4 @@ pub mod everything;
 pub mod golden;
 #[cfg(doctest)]
 pub mod guide;
+pub mod random_tasks;

@@ -51,6 +51,16 @@ fn the_solver_agrees_with_every_bound() {
             task("a1/lateral", |task| task.problem.clearance = 0.3),
         ),
         (
+            "reach",
+            task("a1/lateral", |task| task.problem.start_w.z += 0.2),
+        ),
+        (
+            "hanging",
+            task("a1/lateral", |task| {
+                task.fix_timing(&[0.5, 2.0]).unwrap();
+            }),
+        ),
+        (
             "goal",
             task("a1/lateral", |task| task.problem.goal_w.z = 0.05),
         ),

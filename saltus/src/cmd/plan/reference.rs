@@ -1,12 +1,13 @@
 //! A reference problem, or one of a problem file, solved as it is stated: no limits of the product, no audit.
 //!
-//! Exit code 0 for a solution, 2 for none.
+//! Exit code 0 for a solution, 2 for none, be that proven or not.
 
 use super::Args;
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{describe, write_file};
 use core::ops::ControlFlow;
 use jump_lab::noise::Noise;
+use jump_planner::bounds::Impossible;
 use ocp_solver::{Barrier, Progress, Status};
 use reference_problems::{Answer, File, SHIPPED, SrbMotion, shipped};
 use serde_json::{Value, json};
@@ -31,6 +32,11 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let file = File::parse(&text).map_err(|error| shown(format!("{error}: {like}")))?;
     let name = file.pick(args.reference.as_deref()).map_err(shown)?;
     let mut report = json!({ "task": name });
+    // The whole body follows a motion that is given, or one that is found here first.
+    let given = on_legs && (args.srb.is_some() || args.problem.is_none());
+    if let Some(proof) = file.impossible(name).map_err(shown)?.filter(|_| !given) {
+        return Ok(proven(args, name, report, &proof));
+    }
     let answer = if on_legs {
         let motion = motion(args, &file, name, &mut report)?;
         args.timed(|noise, observe| {
@@ -67,6 +73,19 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     } else {
         ExitCode::from(2)
     })
+}
+
+/// Tells that there is no solution, and why.
+fn proven(args: &Args, name: &str, mut report: Value, proof: &Impossible) -> ExitCode {
+    if args.output.json {
+        report["status"] = json!("Infeasible");
+        report["because"] = json!(proof.to_string());
+        report["relaxations"] = json!([proof.relaxation]);
+        say!("{report}");
+    } else if !args.output.quiet {
+        say!("{name}: infeasible: {proof}\n  {}", proof.relaxation);
+    }
+    ExitCode::from(2)
 }
 
 /// The motion that the whole body follows: the one that was given, the shipped one, or one that is solved first and told in the report.
