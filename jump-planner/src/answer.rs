@@ -364,7 +364,7 @@ fn stronger(task: &Task, srb: &SrbPlan, observe: impl Observer) -> Option<String
     let mut strong = task.clone();
     strong.limits.torque_shares = [10.0; 3];
     strong.limits.speed_share *= 10.0;
-    let plan = whole_body::plan(&strong, srb, Timing::Given, observe).ok()?;
+    let plan = whole_body::roughly(&strong, srb, Timing::Given, observe).ok()?;
     if plan.outcome.status != Status::Solved {
         return None;
     }

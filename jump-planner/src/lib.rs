@@ -4,6 +4,7 @@ pub mod answer;
 pub mod audit;
 pub mod bounds;
 pub mod file;
+mod grid;
 mod pace;
 mod plan;
 pub mod planned;

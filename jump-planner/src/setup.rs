@@ -59,6 +59,8 @@ pub(crate) struct Setup<'a> {
     clearances: Vec<Clearance<f64>>,
     goal: Pose<f64, N>,
     landing_intervals: usize,
+    /// Length of the intervals over the usual one.
+    lengths: f64,
 }
 
 fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
@@ -83,10 +85,9 @@ pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
 }
 
 impl<'a> Setup<'a> {
-    /// On intervals of a share of their usual length.
-    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, share: f64) -> Result<Self, String> {
+    /// On intervals of this many usual lengths.
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, lengths: f64) -> Result<Self, String> {
         let rigid = &task.problem;
-        let landing_joints = task.robot.landing_joints(&task.start)?;
         let mut phases = Vec::new();
         for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
             let longest = if phase.contacts.contains(&true) {
@@ -94,13 +95,41 @@ impl<'a> Setup<'a> {
             } else {
                 FLIGHT_DT
             };
-            let intervals = (duration / (share * longest)).ceil().max(1.0);
+            let intervals = (duration / (lengths * longest)).ceil().max(1.0);
             phases.push(Phase {
                 contacts: phase.contacts,
                 intervals: intervals as usize,
                 dt: duration / intervals,
             });
         }
+        Self::along(task, srb, phases, lengths)
+    }
+
+    /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.
+    pub(crate) fn split(&self, parts: usize, durations: &[f64]) -> Result<Self, String> {
+        let shorter = |phase: &Phase<f64, FOOT_COUNT>| Phase {
+            intervals: parts * phase.intervals,
+            dt: phase.dt / parts as f64,
+            ..*phase
+        };
+        let phases = self.phases.iter().map(shorter).collect();
+        let lengths = self.lengths / parts as f64;
+        let mut split = Self::along(self.task, self.srb, phases, lengths)?;
+        for (phase, duration) in split.phases.iter_mut().zip(durations) {
+            phase.dt = duration / phase.intervals as f64;
+        }
+        Ok(split)
+    }
+
+    /// Along the motion of the rigid body, on the intervals of these phases, of so many usual lengths.
+    fn along(
+        task: &'a Task,
+        srb: &'a SrbPlan,
+        phases: Vec<Phase<f64, FOOT_COUNT>>,
+        lengths: f64,
+    ) -> Result<Self, String> {
+        let rigid = &task.problem;
+        let landing_joints = task.robot.landing_joints(&task.start)?;
         let track = track(task, srb);
         let times = times(&phases);
         let flight = phases.last().map_or(0, |phase| phase.intervals);
@@ -136,7 +165,8 @@ impl<'a> Setup<'a> {
             nodes,
             clearances: clearances(task),
             goal: pose(&goal, &landing_joints),
-            landing_intervals: (POSED / (share * FLIGHT_DT)) as usize,
+            landing_intervals: (POSED / (lengths * FLIGHT_DT)) as usize,
+            lengths,
         })
     }
 

@@ -1,25 +1,22 @@
 //! The whole-body plan of a task as it is to be executed: timings from the single rigid body, or found on the whole body itself.
 
 use super::FOOT_COUNT;
-use super::pace::Pace;
 pub use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
-use super::setup::{NI, NU, NX, Setup, times};
 use super::stored::{open, store};
-use super::task::{PHASES, SrbPlan, Task};
+use super::task::{SrbPlan, Task};
 use crate::audit::Audit;
+use crate::grid::Grid;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
-use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_rows};
+use ocp_solver::{Progress, Solution, Status};
 use serde_json::{Value, json};
 use std::time::Instant;
-use wb_opt::{BASE, FreeTiming, Gains, Judgement, Phase, Problem, Row, Sample, State, TimedState};
+use wb_opt::{Gains, Judgement, Phase, Row, Sample, State};
 
-/// Most iterations; tasks that are solved take 15 to 130.
-const PATIENCE: usize = 150;
+/// Lengths of intervals on which a motion is searched for that the first try did not find.
+const LONG: usize = 4;
 /// How often limits are drawn in at most.
 const TIGHTENINGS: usize = 3;
-/// Barrier to begin with where a plan is made again.
-const WARM_MU: f64 = 1e-3;
 
 /// Where the durations of the phases come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,31 +103,15 @@ pub struct Audited {
     pub wall_ms: f64,
 }
 
-impl Audited {
-    /// Whether the solver ended without a plan, and was not told to.
-    fn is_missing(&self) -> bool {
-        self.audit.is_none() && self.plan.outcome.status != Status::Cancelled
-    }
-
-    /// Takes over what was found in another way. A plan that fails its audit says more than none.
-    fn replace_with(&mut self, other: Self) {
-        let path = core::mem::take(&mut self.path);
-        let wall_ms = self.wall_ms + other.wall_ms;
-        let more = other.path.clone();
-        if other.audit.is_some() {
-            *self = other;
-        }
-        self.wall_ms = wall_ms;
-        self.path = path.into_iter().chain(more).collect();
-    }
-}
-
 /// Plans the whole body and audits the plan.
+///
+/// First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long
+/// intervals, which cost a quarter: with all the torque there is and then with less, in the given durations and then in others, for what a
+/// rigid body can do in a time, legs with motors may not. What is found there is the guess on the short ones.
 ///
 /// Where the audit finds limits exceeded between nodes, they are drawn in by that much and the plan is made again from where it is
 /// ([`Tightening`]). Where that is no remedy, or the flight is not true to the dynamics, the intervals were too long for this robot: they are
-/// halved, once. Where legs have no motion in the given durations, they are found on the whole body: what a rigid body can do in a time,
-/// legs with motors may not.
+/// halved, once.
 ///
 /// # Errors
 /// A problem that cannot be begun with, or a plan that cannot be stored.
@@ -140,38 +121,82 @@ pub fn audited(
     timing: Timing,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
-    let mut told = on_grids(task, srb, timing, &mut observer)?;
-    let may_differ = timing == Timing::Given && !task.has_given_durations();
-    if may_differ && told.is_missing() {
-        told.replace_with(on_grids(task, srb, Timing::Free, &mut observer)?);
+    let clock = Instant::now();
+    let observer = &mut observer;
+    let (mut grid, plan) = searched(task, srb, timing, observer)?;
+    let mut told = tightened(task, &mut grid, plan, observer)?;
+    // Shorter intervals make no link thinner.
+    if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
+        let mut halves = grid.split(2)?;
+        let plan = halves.from_split(observer)?;
+        let fine = tightened(task, &mut halves, plan, observer)?;
+        if fine.audit.is_some() {
+            told = fine;
+        }
+        grid.path.extend(halves.path);
     }
+    told.path = grid.path;
+    told.wall_ms = clock.elapsed().as_secs_f64() * 1e3;
     Ok(told)
 }
 
-/// On the usual intervals, then on halves.
-fn on_grids(
+/// Plans on intervals too long to execute, with all the torque there is or as much less as has a motion: whether there is one.
+///
+/// # Errors
+/// A problem that cannot be begun with.
+pub(crate) fn roughly(
     task: &Task,
     srb: &SrbPlan,
     timing: Timing,
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-) -> Result<Audited, String> {
-    let mut told = tightened(task, Grid::new(task, srb, timing, 1.0)?, observer)?;
-    // Shorter intervals make no link thinner.
-    if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
-        let fine = tightened(task, Grid::new(task, srb, timing, 0.5)?, observer)?;
-        told.replace_with(fine);
-    }
-    Ok(told)
+    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<WholeBodyPlan, String> {
+    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(&mut observer)
 }
 
-/// Plans on a grid, and again within limits drawn in as long as that is what the audit asks for, a few times.
+/// A plan on short intervals, or how far the search came; on the last grid that was tried.
+fn searched<'a>(
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    timing: Timing,
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<(Grid<'a>, WholeBodyPlan), String> {
+    let mut grid = Grid::new(task, srb, timing, 1.0)?;
+    let (plan, cancelled) = grid.with_least_torque(observer)?;
+    let mut found = (grid, plan);
+    if cancelled {
+        return Ok(found);
+    }
+    let free = (timing == Timing::Given && !task.has_given_durations()).then_some(Timing::Free);
+    for timing in [Some(timing), free].into_iter().flatten() {
+        if found.1.outcome.status == Status::Solved {
+            break;
+        }
+        let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
+        grid.path = found.0.path;
+        let mut plan = grid.with_most_torque(observer)?;
+        if plan.outcome.status == Status::Solved {
+            let path = core::mem::take(&mut grid.path);
+            grid = grid.split(LONG)?;
+            grid.path = path;
+            plan = grid.from_split(observer)?;
+        }
+        let cancelled = plan.outcome.status == Status::Cancelled;
+        found = (grid, plan);
+        if cancelled {
+            break;
+        }
+    }
+    Ok(found)
+}
+
+/// Audits a plan on a grid, and plans again within limits drawn in as long as that is what the audit asks for, a few times.
 fn tightened(
     task: &Task,
-    mut grid: Grid<'_>,
+    grid: &mut Grid<'_>,
+    plan: WholeBodyPlan,
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
-    let clock = Instant::now();
-    let mut told = grid.search(observer)?.audited(task)?;
+    let mut told = plan.audited(task)?;
     let mut drawn = Tightening::default();
     for _ in 0..TIGHTENINGS {
         let Some(next) = told.audit.as_ref().and_then(|audit| drawn.after(audit)) else {
@@ -184,8 +209,6 @@ fn tightened(
         }
         told = again;
     }
-    told.path = grid.path;
-    told.wall_ms = clock.elapsed().as_secs_f64() * 1e3;
     Ok(told)
 }
 
@@ -208,7 +231,7 @@ impl WholeBodyPlan {
     }
 }
 
-/// Plans the whole body along a single-rigid-body plan.
+/// Plans the whole body along a single-rigid-body plan, without an audit.
 ///
 /// # Errors
 /// A problem that cannot be begun with.
@@ -218,234 +241,7 @@ pub fn plan(
     timing: Timing,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
-    Grid::new(task, srb, timing, 1.0)?.search(&mut observer)
-}
-
-/// Coordinates of a state with durations.
-const TIMED: usize = NX + PHASES;
-
-/// A task's problem on its intervals, and the solver's storage: of the two kinds of stages the one that the timing asks for is solved.
-struct Grid<'a> {
-    task: &'a Task,
-    timing: Timing,
-    setup: Setup<'a>,
-    stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
-    timed: Vec<SparseStage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
-    /// Share of the torque limits of the last solve.
-    torque_share: f64,
-    path: Vec<Attempt>,
-}
-
-impl<'a> Grid<'a> {
-    /// With intervals of a share of their usual length.
-    fn new(
-        task: &'a Task,
-        srb: &'a SrbPlan,
-        timing: Timing,
-        length_share: f64,
-    ) -> Result<Self, String> {
-        let setup = Setup::new(task, srb, length_share)?;
-        let problem = setup.problem(&Tightening::default());
-        let start = State::at_rest(problem.start);
-        let nodes = problem.intervals() + 1;
-        let timed = TimedState {
-            state: start,
-            durations: [0.0; PHASES],
-        };
-        Ok(Self {
-            task,
-            timing,
-            stages: vec![SparseStage::sparse(start); nodes],
-            timed: match timing {
-                Timing::Given => Vec::new(),
-                Timing::Free => vec![SparseStage::sparse(timed); nodes],
-            },
-            torque_share: 0.0,
-            path: Vec::new(),
-            setup,
-        })
-    }
-
-    /// Plans from the rigid body's motion, with as little torque as it takes.
-    fn search(
-        &mut self,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        let shares = self.task.limits.torque_shares;
-        let mut found = None;
-        for (i, share) in shares.into_iter().enumerate() {
-            self.torque_share = share;
-            let setup = &self.setup;
-            setup.problem(&Tightening::default()).write_guess(
-                &mut self.stages,
-                &setup.nodes,
-                |k, foot| setup.force(k, foot),
-                || 0.0,
-            );
-            let (mut pace, mut cancelled) = (Pace::default(), false);
-            // With the most torque there is nothing to save time for.
-            let last = i + 1 == shares.len();
-            let watch = |progress: &Progress<f64>| {
-                cancelled = observer(progress).is_break();
-                let violation = progress.residual.primal;
-                if !cancelled && (last || pace.keeps_up(progress.attempt, violation, PATIENCE)) {
-                    ControlFlow::Continue(())
-                } else {
-                    ControlFlow::Break(())
-                }
-            };
-            let plan = self.solve(&Tightening::default(), &settings(), watch)?;
-            let solved = plan.outcome.status == Status::Solved;
-            found = Some(plan);
-            if cancelled || solved {
-                break;
-            }
-        }
-        found.ok_or_else(|| "no torque to plan with".to_owned())
-    }
-
-    /// Plans again from where the last solve ended, with its torque.
-    fn again(
-        &mut self,
-        drawn: &Tightening,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        let mut settings = settings();
-        (settings.warm_start, settings.initial_mu) = (true, WARM_MU);
-        self.solve(drawn, &settings, observer)
-    }
-
-    /// Solves from what the stages hold, and keeps a note of it.
-    fn solve(
-        &mut self,
-        drawn: &Tightening,
-        settings: &Settings<f64>,
-        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        let clock = Instant::now();
-        let plan = self.solved(drawn, settings, watch)?;
-        self.path.push(Attempt {
-            timing: self.timing,
-            intervals: plan.intervals.len(),
-            torque_share: self.torque_share,
-            drawn: *drawn,
-            status: plan.outcome.status,
-            iterations: plan.outcome.iterations,
-            wall_ms: clock.elapsed().as_secs_f64() * 1e3,
-        });
-        Ok(plan)
-    }
-
-    fn solved(
-        &mut self,
-        drawn: &Tightening,
-        settings: &Settings<f64>,
-        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        let mut problem = self.setup.problem(drawn);
-        for limit in problem.robot.limits.iter_mut().skip(BASE) {
-            limit.effort *= self.torque_share;
-        }
-        let told = |error| format!("task {}: {error}", self.task.name);
-        if self.timing == Timing::Given {
-            let outcome = problem.plan(settings, &mut self.stages, watch);
-            let outcome = (outcome.map_err(told)?, self.torque_share);
-            return finish(&problem, outcome, &self.stages, |state| state);
-        }
-        let free = free_timing(self.task, problem);
-        if !settings.warm_start {
-            free.write_guess(&self.stages, &mut self.timed);
-        }
-        let outcome = free.plan(settings, &mut self.timed, watch);
-        let outcome = (outcome.map_err(told)?, self.torque_share);
-        let found = self.timed.first();
-        let found = found.map_or([0.0; PHASES], |stage| stage.state.durations);
-        let mut phases = self.setup.phases.clone();
-        for (phase, duration) in phases.iter_mut().zip(found) {
-            phase.dt = duration / phase.intervals as f64;
-        }
-        let problem = Problem {
-            phases: &phases,
-            ..problem
-        };
-        finish(&problem, outcome, &self.timed, |state| &state.state)
-    }
-}
-
-/// Ends with a cost within 1e-4 of the least: the last digits of a plan take iterations, and no robot has them.
-fn settings() -> Settings<f64> {
-    let mut settings = wb_opt::settings();
-    (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
-    settings.dual_tolerance = 1e-3;
-    settings.complementarity_tolerance = 1e-5;
-    settings
-}
-
-/// The problem with the task's bounds on its durations.
-fn free_timing<'a>(
-    task: &Task,
-    problem: Problem<'a, f64, N, FOOT_COUNT>,
-) -> FreeTiming<'a, f64, N, FOOT_COUNT, PHASES> {
-    let rigid = &task.problem;
-    FreeTiming {
-        problem,
-        durations: rigid
-            .phases
-            .map(|phase| [phase.min_duration, phase.max_duration]),
-        total: [rigid.min_total, rigid.max_total],
-    }
-}
-
-/// What the stages hold, in physical units.
-fn finish<S: Copy, const X: usize>(
-    problem: &Problem<'_, f64, N, FOOT_COUNT>,
-    (outcome, torque_share): (Solution<f64>, f64),
-    stages: &[SparseStage<f64, S, X, NU, NI>],
-    state: impl Fn(&S) -> &State<f64, N>,
-) -> Result<WholeBodyPlan, String> {
-    let strongest = problem
-        .robot
-        .limits
-        .iter()
-        .skip(BASE)
-        .map(|limit| limit.effort);
-    let nodes = stages
-        .iter()
-        .map(|stage| (state(&stage.state), &stage.control));
-    let starts = times(problem.phases);
-    let intervals = stages[..problem.intervals()]
-        .iter()
-        .zip(&starts)
-        .enumerate();
-    let intervals = intervals.map(|(k, (stage, start))| {
-        let at = state(&stage.state);
-        Interval {
-            start: *start,
-            dt: problem.dt(k),
-            state: *at,
-            sample: problem.sample(k, at, &stage.control),
-            gains: problem.gains(k, at, &stage.control, stage.gain()),
-        }
-    });
-    let blocking = blocking_rows::<4, _, _, _, _, _, _>(stages);
-    let blocked = blocking.iter().flatten().filter_map(|found| {
-        let (row, unit) = problem.row(found.stage, found.row)?;
-        let violation = (found.violation * unit).abs();
-        Some(Blocked { row, violation })
-    });
-    Ok(WholeBodyPlan {
-        end: *state(&stages.last().ok_or("no nodes")?.state),
-        torque_share,
-        blocked: match outcome.status {
-            Status::Solved => Vec::new(),
-            _ => blocked.collect(),
-        },
-        outcome,
-        judged: problem.judge(nodes),
-        torque_limit: strongest.fold(0.0, f64::max),
-        intervals: intervals.collect(),
-        phases: problem.phases.to_vec(),
-    })
+    Ok(searched(task, srb, timing, &mut observer)?.1)
 }
 
 impl Attempt {

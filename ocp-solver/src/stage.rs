@@ -246,6 +246,18 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         (&self.state, &self.control) == (&self.guess.0, &self.guess.1)
     }
 
+    /// Takes over the multipliers of a solved stage with the same rows, those of the dynamics times `scale`, for a warm start on
+    /// intervals of another length: where each interval has its cost whatever its length, on halves twice as many costs add up in
+    /// the multipliers of the dynamics, and those of the rows stay.
+    pub fn resume_from(&mut self, other: &Self, scale: T)
+    where
+        T: Scalar,
+    {
+        self.node.costate = other.node.costate.map(|y| scale * y);
+        self.node.rows.below = other.node.rows.below;
+        self.node.rows.above = other.node.rows.above;
+    }
+
     /// Keeps state and control beside, for a caller that tries another guess; solves leave them alone.
     pub const fn keep(&mut self) {
         self.spare = (self.state, self.control);

@@ -2,6 +2,7 @@
 
 use crate::problem::Problem;
 use crate::robot::{BASE, TURN};
+use crate::rotation::{set_triple, triple};
 use crate::state::{Layout, Pose, State, Units};
 use nalgebra::Vector3;
 use ocp_solver::SparseStage;
@@ -67,5 +68,53 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 *u += perturb();
             }
         }
+    }
+
+    /// Writes a motion whose intervals are `parts` times as long into the stages: its nodes, with their controls. Accelerations and
+    /// forces are held over an interval, so it is nearly the same motion; a base on SO(3) turns otherwise in the third order of an
+    /// interval.
+    pub fn write_split<const NX: usize, const NU: usize, const NI: usize>(
+        &self,
+        stages: &mut [SparseStage<T, State<T, N>, NX, NU, NI>],
+        nodes: &[(State<T, N>, [T; NU])],
+        parts: usize,
+    ) {
+        let parts = parts.max(1);
+        for (k, stage) in stages.iter_mut().enumerate() {
+            let Some((state, control)) = nodes.get(k / parts) else {
+                break;
+            };
+            let time = self.dt(k) * T::of((k % parts) as f64);
+            stage.state = self.held(k, state, control, time);
+            stage.control = *control;
+        }
+    }
+
+    /// The state that accelerations held from a node on lead to.
+    fn held<const NU: usize>(
+        &self,
+        k: usize,
+        state: &State<T, N>,
+        control: &[T; NU],
+        time: T,
+    ) -> State<T, N> {
+        let units = Units::<T>::new();
+        let layout = Layout {
+            joints: N.saturating_sub(BASE),
+            ..self.layout(k)
+        };
+        let mut out = *state;
+        for (i, (q, v)) in out.q.iter_mut().zip(&mut out.v).enumerate() {
+            let u = layout.acceleration(i).and_then(|u| control.get(u));
+            let gained = time * units.acceleration * u.copied().unwrap_or(T::ZERO);
+            *q += time * (*v + T::HALF * gained);
+            *v += gained;
+        }
+        if self.robot.turns_freely() {
+            // The angles would have come from zero to the angular velocity of the middle, times the time.
+            out.rot_wc = state.rot_wc * so3::exp(&triple(&out.q, TURN));
+            set_triple(&mut out.q, TURN, &Vector3::zeros());
+        }
+        out
     }
 }

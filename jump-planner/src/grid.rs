@@ -1,0 +1,315 @@
+//! A task's whole-body problem on a grid of intervals, and the ways in which it is solved there.
+
+use super::FOOT_COUNT;
+use super::pace::Pace;
+use super::setup::{N, NI, NU, NX, Setup, times};
+use super::task::{PHASES, SrbPlan, Task};
+use crate::tightening::Tightening;
+use crate::whole_body::{Attempt, Blocked, Interval, Timing, WholeBodyPlan};
+use core::ops::ControlFlow;
+use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_rows};
+use std::time::Instant;
+use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
+
+/// Most iterations; tasks that are solved take 15 to 130.
+const PATIENCE: usize = 150;
+/// Barrier to begin with where a plan is made again.
+const WARM_MU: f64 = 1e-3;
+/// Barrier to begin with on intervals that were split: it is the same problem.
+const SPLIT_MU: f64 = 1e-4;
+
+/// Coordinates of a state with durations.
+const TIMED: usize = NX + PHASES;
+
+/// A task's problem on its intervals, and the solver's storage: of the two kinds of stages the one that the timing asks for is solved.
+pub(crate) struct Grid<'a> {
+    task: &'a Task,
+    timing: Timing,
+    setup: Setup<'a>,
+    stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
+    timed: Vec<SparseStage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
+    /// Share of the torque limits of the last solve.
+    torque_share: f64,
+    /// All solves, in order.
+    pub(crate) path: Vec<Attempt>,
+}
+
+impl<'a> Grid<'a> {
+    /// On intervals of this many usual lengths, with the motion of the rigid body as the guess.
+    pub(crate) fn new(
+        task: &'a Task,
+        srb: &'a SrbPlan,
+        timing: Timing,
+        lengths: f64,
+    ) -> Result<Self, String> {
+        let mut grid = Self::of(task, timing, Setup::new(task, srb, lengths)?);
+        grid.guess();
+        Ok(grid)
+    }
+
+    fn of(task: &'a Task, timing: Timing, setup: Setup<'a>) -> Self {
+        let problem = setup.problem(&Tightening::default());
+        let start = State::at_rest(problem.start);
+        let nodes = problem.intervals() + 1;
+        let timed = TimedState {
+            state: start,
+            durations: [0.0; PHASES],
+        };
+        Self {
+            task,
+            timing,
+            stages: vec![SparseStage::sparse(start); nodes],
+            timed: match timing {
+                Timing::Given => Vec::new(),
+                Timing::Free => vec![SparseStage::sparse(timed); nodes],
+            },
+            torque_share: 0.0,
+            path: Vec::new(),
+            setup,
+        }
+    }
+
+    /// The motion of the rigid body.
+    fn guess(&mut self) {
+        let setup = &self.setup;
+        let problem = setup.problem(&Tightening::default());
+        let force = |k, foot| setup.force(k, foot);
+        problem.write_guess(&mut self.stages, &setup.nodes, force, || 0.0);
+        free_timing(self.task, problem).write_guess(&self.stages, &mut self.timed);
+    }
+
+    /// The grid with each interval split into equal parts, from the motion that was found on this one.
+    pub(crate) fn split(&self, parts: usize) -> Result<Self, String> {
+        let motion: Vec<_> = match self.timing {
+            Timing::Given => self.stages.iter().map(|s| (s.state, s.control)).collect(),
+            Timing::Free => (self.timed.iter().map(|s| (s.state.state, s.control))).collect(),
+        };
+        let setup = self.setup.split(parts, &self.durations())?;
+        let mut fine = Self::of(self.task, self.timing, setup);
+        fine.torque_share = self.torque_share;
+        let problem = fine.setup.problem(&Tightening::default());
+        problem.write_split(&mut fine.stages, &motion, parts);
+        free_timing(self.task, problem).write_guess(&fine.stages, &mut fine.timed);
+        resume(&mut fine.stages, &self.stages, parts);
+        resume(&mut fine.timed, &self.timed, parts);
+        Ok(fine)
+    }
+
+    /// Durations of the phases in the last solve, s.
+    fn durations(&self) -> Vec<f64> {
+        match self.timed.first() {
+            Some(stage) => stage.state.durations.to_vec(),
+            None => (self.setup.phases.iter())
+                .map(|phase| phase.dt * phase.intervals as f64)
+                .collect(),
+        }
+    }
+
+    /// Plans with the least torque, from the guess, as long as the solver keeps up.
+    pub(crate) fn with_least_torque(
+        &mut self,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<(WholeBodyPlan, bool), String> {
+        self.torque_share = self.task.limits.torque_shares[0];
+        let (mut pace, mut cancelled) = (Pace::default(), false);
+        let watch = |progress: &Progress<f64>| {
+            cancelled = observer(progress).is_break();
+            let violation = progress.residual.primal;
+            if !cancelled && pace.keeps_up(progress.attempt, violation, PATIENCE) {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let plan = self.solve(&Tightening::default(), &settings(), watch)?;
+        Ok((plan, cancelled))
+    }
+
+    /// Plans with the most torque, from the guess, and then with as much less as still has a motion.
+    pub(crate) fn with_most_torque(
+        &mut self,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        let [least, middle, most] = self.task.limits.torque_shares;
+        self.torque_share = most;
+        let mut plan = self.solve(&Tightening::default(), &settings(), &mut *observer)?;
+        for share in [middle, least] {
+            if plan.outcome.status != Status::Solved || share >= self.torque_share {
+                break;
+            }
+            let before = (self.torque_share, self.stages.clone(), self.timed.clone());
+            self.torque_share = share;
+            let less = self.again(&Tightening::default(), observer)?;
+            if less.outcome.status != Status::Solved {
+                (self.torque_share, self.stages, self.timed) = before;
+                break;
+            }
+            plan = less;
+        }
+        Ok(plan)
+    }
+
+    /// Plans from the motion of the grid that this one was split from, with its torque.
+    pub(crate) fn from_split(
+        &mut self,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        self.solve(&Tightening::default(), &warm(SPLIT_MU), observer)
+    }
+
+    /// Plans again from where the last solve ended, with its torque.
+    pub(crate) fn again(
+        &mut self,
+        drawn: &Tightening,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        self.solve(drawn, &warm(WARM_MU), observer)
+    }
+
+    /// Solves from what the stages hold, and keeps a note of it.
+    fn solve(
+        &mut self,
+        drawn: &Tightening,
+        settings: &Settings<f64>,
+        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        let clock = Instant::now();
+        let plan = self.solved(drawn, settings, watch)?;
+        self.path.push(Attempt {
+            timing: self.timing,
+            intervals: plan.intervals.len(),
+            torque_share: self.torque_share,
+            drawn: *drawn,
+            status: plan.outcome.status,
+            iterations: plan.outcome.iterations,
+            wall_ms: clock.elapsed().as_secs_f64() * 1e3,
+        });
+        Ok(plan)
+    }
+
+    fn solved(
+        &mut self,
+        drawn: &Tightening,
+        settings: &Settings<f64>,
+        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        let mut problem = self.setup.problem(drawn);
+        for limit in problem.robot.limits.iter_mut().skip(BASE) {
+            limit.effort *= self.torque_share;
+        }
+        let told = |error| format!("task {}: {error}", self.task.name);
+        if self.timing == Timing::Given {
+            let outcome = problem.plan(settings, &mut self.stages, watch);
+            let outcome = (outcome.map_err(told)?, self.torque_share);
+            return finish(&problem, outcome, &self.stages, |state| state);
+        }
+        let free = free_timing(self.task, problem);
+        let outcome = free.plan(settings, &mut self.timed, watch);
+        let outcome = (outcome.map_err(told)?, self.torque_share);
+        let mut phases = self.setup.phases.clone();
+        for (phase, duration) in phases.iter_mut().zip(self.durations()) {
+            phase.dt = duration / phase.intervals as f64;
+        }
+        let problem = Problem {
+            phases: &phases,
+            ..problem
+        };
+        finish(&problem, outcome, &self.timed, |state| &state.state)
+    }
+}
+
+/// Takes over the multipliers of stages whose intervals are `parts` times as long.
+fn resume<S: Copy, const X: usize>(
+    fine: &mut [SparseStage<f64, S, X, NU, NI>],
+    long: &[SparseStage<f64, S, X, NU, NI>],
+    parts: usize,
+) {
+    for (k, stage) in fine.iter_mut().enumerate() {
+        if let Some(from) = long.get(k / parts) {
+            stage.resume_from(from, parts as f64);
+        }
+    }
+}
+
+/// Ends with a cost within 1e-4 of the least: the last digits of a plan take iterations, and no robot has them.
+fn settings() -> Settings<f64> {
+    let mut settings = wb_opt::settings();
+    (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
+    settings.dual_tolerance = 1e-3;
+    settings.complementarity_tolerance = 1e-5;
+    settings
+}
+
+/// As [`settings`], from the multipliers that are there.
+fn warm(initial_mu: f64) -> Settings<f64> {
+    let mut settings = settings();
+    (settings.warm_start, settings.initial_mu) = (true, initial_mu);
+    settings
+}
+
+/// The problem with the task's bounds on its durations.
+fn free_timing<'a>(
+    task: &Task,
+    problem: Problem<'a, f64, N, FOOT_COUNT>,
+) -> FreeTiming<'a, f64, N, FOOT_COUNT, PHASES> {
+    let rigid = &task.problem;
+    FreeTiming {
+        problem,
+        durations: rigid
+            .phases
+            .map(|phase| [phase.min_duration, phase.max_duration]),
+        total: [rigid.min_total, rigid.max_total],
+    }
+}
+
+/// What the stages hold, in physical units.
+fn finish<S: Copy, const X: usize>(
+    problem: &Problem<'_, f64, N, FOOT_COUNT>,
+    (outcome, torque_share): (Solution<f64>, f64),
+    stages: &[SparseStage<f64, S, X, NU, NI>],
+    state: impl Fn(&S) -> &State<f64, N>,
+) -> Result<WholeBodyPlan, String> {
+    let strongest = problem
+        .robot
+        .limits
+        .iter()
+        .skip(BASE)
+        .map(|limit| limit.effort);
+    let nodes = stages
+        .iter()
+        .map(|stage| (state(&stage.state), &stage.control));
+    let starts = times(problem.phases);
+    let intervals = stages[..problem.intervals()]
+        .iter()
+        .zip(&starts)
+        .enumerate();
+    let intervals = intervals.map(|(k, (stage, start))| {
+        let at = state(&stage.state);
+        Interval {
+            start: *start,
+            dt: problem.dt(k),
+            state: *at,
+            sample: problem.sample(k, at, &stage.control),
+            gains: problem.gains(k, at, &stage.control, stage.gain()),
+        }
+    });
+    let blocking = blocking_rows::<4, _, _, _, _, _, _>(stages);
+    let blocked = blocking.iter().flatten().filter_map(|found| {
+        let (row, unit) = problem.row(found.stage, found.row)?;
+        let violation = (found.violation * unit).abs();
+        Some(Blocked { row, violation })
+    });
+    Ok(WholeBodyPlan {
+        end: *state(&stages.last().ok_or("no nodes")?.state),
+        torque_share,
+        blocked: match outcome.status {
+            Status::Solved => Vec::new(),
+            _ => blocked.collect(),
+        },
+        outcome,
+        judged: problem.judge(nodes),
+        torque_limit: strongest.fold(0.0, f64::max),
+        intervals: intervals.collect(),
+        phases: problem.phases.to_vec(),
+    })
+}
