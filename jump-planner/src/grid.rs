@@ -13,6 +13,8 @@ use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
 
 /// Most iterations; tasks that are solved take 15 to 130.
 const PATIENCE: usize = 150;
+/// Iterations in which the first try has to arrive: a search on long intervals, with what follows it, costs as much.
+const FIRST_PATIENCE: usize = 100;
 /// Barrier to begin with where a plan is made again.
 const WARM_MU: f64 = 1e-3;
 /// Barrier to begin with on intervals that were split: it is the same problem.
@@ -115,7 +117,7 @@ impl<'a> Grid<'a> {
         let watch = |progress: &Progress<f64>| {
             cancelled = observer(progress).is_break();
             let violation = progress.residual.primal;
-            if !cancelled && pace.keeps_up(progress.attempt, violation, PATIENCE) {
+            if !cancelled && pace.keeps_up(progress.attempt, violation, FIRST_PATIENCE) {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())

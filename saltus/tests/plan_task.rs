@@ -106,8 +106,9 @@ fn turns_about_mixed_axes_are_planned() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Two jumps that a solve alone does not find. Where the audit finds friction exceeded between nodes, it is drawn in; where no motion of
-/// the legs has the rigid body's durations, they are found on the whole body.
+/// Three jumps that a solve alone does not find. Where the audit finds friction exceeded between nodes, it is drawn in; where the first try
+/// finds no motion, the search goes on on long intervals, and comes back to the short ones with as little torque as the task asks for;
+/// where no motion of the legs has the rigid body's durations, they are found on the whole body.
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn plans_are_made_again_where_the_first_way_ends() {
@@ -119,11 +120,35 @@ fn plans_are_made_again_where_the_first_way_ends() {
     let down = down.replace("drop_m = 0.3", "drop_m = 0.6");
     let down = down.replace("max_s = 0.9", "max_s = 1.2");
     let half_turn = "\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = 180.0\n";
+    let far = built_in("a1/lateral-down").replace("[0.0, 0.5, -0.3]", "[0.79, 0.04, -0.93]");
+    let far = far.replace("axis = \"y\"", "axis = \"x\"");
+    let far = far.replace("drop_m = 0.3", "drop_m = 0.93");
+    let far = far.replace("max_s = 0.9", "max_s = 1.5");
+    // Whose durations, whether friction is drawn in, and whether it takes the search.
     let cases = [
-        ("spin-270", longer.replace("90.0", "270.0"), "whole body"),
-        ("down-turned", format!("{down}{half_turn}"), "rigid body"),
+        (
+            "spin-270",
+            longer.replace("90.0", "270.0"),
+            "whole body",
+            true,
+            true,
+        ),
+        (
+            "down-turned",
+            format!("{down}{half_turn}"),
+            "rigid body",
+            true,
+            false,
+        ),
+        (
+            "far-down",
+            format!("{far}\n[limits]\nfriction = 0.74\n"),
+            "rigid body",
+            false,
+            true,
+        ),
     ];
-    for (name, text, durations) in cases {
+    for (name, text, durations, drawn, searched) in cases {
         let path = folder.join(name).with_extension("toml");
         std::fs::write(&path, text).unwrap();
         let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
@@ -133,10 +158,17 @@ fn plans_are_made_again_where_the_first_way_ends() {
         assert!(path.len() > 1, "{name}: {report}");
         let last = path.last().unwrap();
         assert_eq!(last["durations"], durations, "{name}: {report}");
-        assert!(
-            last["drawn_in"]["friction"].as_f64().unwrap() > 0.0,
-            "{report}"
-        );
+        let friction = last["drawn_in"]["friction"].as_f64().unwrap();
+        assert_eq!(friction > 0.0, drawn, "{name}: {report}");
+        // As little torque as the task asks for, however much the search began with.
+        let torque = |solve: &Value| solve["torque_share"].as_f64().unwrap();
+        assert_eq!(torque(last), torque(&path[0]), "{name}: {report}");
+        let long = path.iter().find(|solve| torque(solve) > torque(last));
+        assert_eq!(long.is_some(), searched, "{name}: {report}");
+        let intervals = |solve: &Value| solve["intervals"].as_u64().unwrap();
+        if let Some(long) = long {
+            assert_eq!(4 * intervals(long), intervals(last), "{name}: {report}");
+        }
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
@@ -262,7 +294,7 @@ fn impossible_tasks_are_answered() {
             lateral
                 .replace("max_s = 0.8", "max_s = 0.5")
                 .replace("guess_s = 0.5", "guess_s = 0.5\nmin_s = 0.4"),
-            "total.max_s",
+            "longest total duration",
         ),
     ];
     for (name, text, told) in cases {

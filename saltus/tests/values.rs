@@ -273,7 +273,10 @@ fn problems_that_a_bound_refuses_are_told_why() {
             let told: Value = serde_json::from_slice(&output.stdout).unwrap();
             assert_eq!(told["status"], "Infeasible", "{name}");
             let because = told["because"].as_str().unwrap();
-            assert!(words.iter().all(|w| because.contains(w)), "{name}: {because}");
+            assert!(
+                words.iter().all(|w| because.contains(w)),
+                "{name}: {because}"
+            );
             assert_eq!(told["relaxations"].as_array().unwrap().len(), 1, "{name}");
             assert!(!folder.join("s.json").exists(), "{name}");
         }

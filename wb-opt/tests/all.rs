@@ -5,5 +5,6 @@ mod apex;
 mod common;
 mod derivatives;
 mod gains;
+mod split;
 mod swing;
 mod timing;

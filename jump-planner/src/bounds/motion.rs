@@ -18,7 +18,7 @@ pub(super) fn durations<const P: usize>(problem: &Body<P>, _: &Facts) -> Option<
                 "the phases take at least {shortest:.3} s together, the whole may take {:.3} s",
                 problem.max_total
             ),
-            format!("the whole would have to be allowed at least {shortest:.3} s"),
+            format!("the longest total duration would have to be at least {shortest:.3} s"),
         ));
     }
     (longest < problem.min_total).then(|| {
@@ -27,7 +27,7 @@ pub(super) fn durations<const P: usize>(problem: &Body<P>, _: &Facts) -> Option<
                 "the phases take at most {longest:.3} s together, the whole must take {:.3} s",
                 problem.min_total
             ),
-            format!("the whole would have to be allowed to take only {longest:.3} s"),
+            format!("the shortest total duration would have to be at most {longest:.3} s"),
         )
     })
 }
