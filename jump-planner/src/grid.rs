@@ -81,14 +81,14 @@ impl<'a> Grid<'a> {
     }
 
     /// The grid with each interval split into equal parts, from the motion that was found on this one.
-    pub(crate) fn split(&self, parts: usize) -> Result<Self, String> {
+    pub(crate) fn split(self, parts: usize) -> Result<Self, String> {
         let motion: Vec<_> = match self.timing {
             Timing::Given => self.stages.iter().map(|s| (s.state, s.control)).collect(),
             Timing::Free => (self.timed.iter().map(|s| (s.state.state, s.control))).collect(),
         };
         let setup = self.setup.split(parts, &self.durations())?;
         let mut fine = Self::of(self.task, self.timing, setup);
-        fine.torque_share = self.torque_share;
+        (fine.torque_share, fine.path) = (self.torque_share, self.path);
         let problem = fine.setup.problem(&Tightening::default());
         problem.write_split(&mut fine.stages, &motion, parts);
         free_timing(self.task, problem).write_guess(&fine.stages, &mut fine.timed);

@@ -127,13 +127,12 @@ pub fn audited(
     let mut told = tightened(task, &mut grid, plan, observer)?;
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
-        let mut halves = grid.split(2)?;
-        let plan = halves.from_split(observer)?;
-        let fine = tightened(task, &mut halves, plan, observer)?;
+        grid = grid.split(2)?;
+        let plan = grid.from_split(observer)?;
+        let fine = tightened(task, &mut grid, plan, observer)?;
         if fine.audit.is_some() {
             told = fine;
         }
-        grid.path.extend(halves.path);
     }
     told.path = grid.path;
     told.wall_ms = clock.elapsed().as_secs_f64() * 1e3;
@@ -175,9 +174,7 @@ fn searched<'a>(
         grid.path = found.0.path;
         let mut plan = grid.with_most_torque(observer)?;
         if plan.outcome.status == Status::Solved {
-            let path = core::mem::take(&mut grid.path);
             grid = grid.split(LONG)?;
-            grid.path = path;
             plan = grid.from_split(observer)?;
         }
         let cancelled = plan.outcome.status == Status::Cancelled;

@@ -157,7 +157,7 @@ pub struct LimitsTable {
     pub force_weights: f64,
     /// Least height of the trunk over the ground, m.
     pub clearance_m: f64,
-    /// Shares of the joints' torque limits: the first with which the task is solved.
+    /// Shares of the joints' torque limits, rising: the least with which the task is solved.
     pub torque_shares: [f64; 3],
     /// Share of the motors' speeds.
     pub speed_share: f64,
