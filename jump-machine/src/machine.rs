@@ -8,8 +8,10 @@ use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
 use so3::Scalar;
 
+use crate::balance::Balance;
+use crate::ballast::Ballasted;
+use crate::centring::Centred;
 use crate::push_off::predicted;
-use crate::regulator::NODES_PER_TICK;
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
 
@@ -36,17 +38,21 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     /// Time at rest so far, s.
     pub(crate) calm: T,
     pub(crate) model: &'a M,
+    /// The model with the centre of mass that was found in the hold.
+    pub(crate) robot: Ballasted<'a, T, M>,
     landing: Landing<T, N, F>,
     pub(crate) workspace: &'a mut Workspace<T, N, F>,
     posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
-    level_feet: [Vector3<T>; F],
+    pub(crate) level_feet: [Vector3<T>; F],
     /// The landing posture as it follows the body.
     legs: [T; N],
     /// The legs as measured, and as they should be: kept so that a tick copies nothing.
     pub(crate) limbs: Limbs<T, N, F>,
     pub(crate) wanted: Limbs<T, N, F>,
     pub(crate) payload: PayloadEstimate<T>,
+    pub(crate) balance: Balance<T, N, F>,
+    pub(crate) centred: Centred<T, N>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
     /// Node of the plan's last sample.
@@ -76,6 +82,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             contact: DetectorState::new(),
             calm: T::ZERO,
             model,
+            robot: Ballasted::new(model),
             landing: Landing::new(settings.pd.feet, settings.landing, torques),
             workspace,
             level_feet: settings.posture.level_feet(model),
@@ -84,6 +91,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             wanted: Limbs::ZERO,
             posture: settings.posture,
             payload: PayloadEstimate::new(),
+            balance: Balance::new(),
+            centred: Centred::new(),
             start: T::ZERO,
             node: 0,
             shaping: T::ZERO,
@@ -110,6 +119,9 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         (self.start, self.node) = (start, 0);
         self.shaping = T::ZERO;
         self.payload = PayloadEstimate::new();
+        self.balance = Balance::new();
+        self.centred = Centred::new();
+        self.robot = Ballasted::new(self.model);
         self.supervisor.armed();
         Ok(())
     }
@@ -228,17 +240,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.node = reference.node;
         reference.torques = sample(&jump.plan, t + s.lookahead, self.node).torques;
         let moment = (reference.node, t);
-        match self.supervisor.phase {
-            Phase::Hold => {
-                // It has come to rest by then.
-                if t > -s.weighing {
-                    self.payload.add(&inputs.joint_torques, &reference.torques);
-                }
-                let (body, plan) = ((self.model, &s.regulator), &jump.plan);
-                let regulator = &mut self.workspace.regulator;
-                let legs = (&s.pd.feet, &mut self.wanted);
-                regulator.advance(body, plan, legs, NODES_PER_TICK);
-            }
+        let phase = self.supervisor.phase;
+        let levelled = phase == Phase::PreLanding && t > jump.plan.touchdown - s.levelling;
+        match phase {
+            Phase::Hold => self.hold(jump, t, inputs, &reference.torques),
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);
@@ -250,7 +255,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                     }
                 }
             }
-            Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
+            Phase::PreLanding if levelled => {
                 self.level(measured);
                 reference.joints = self.legs;
             }
@@ -262,14 +267,30 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
-        if matches!(self.supervisor.phase, Phase::Stance) {
-            self.push_off(jump, t, (measured, velocity), &mut reference);
+        let shift = self.centre((t, dt), levelled, &mut reference.joints);
+        match phase {
+            Phase::Stance => self.push_off(jump, t, (measured, velocity), &mut reference),
+            Phase::Hold if shift.is_some() => {
+                let _ = self.as_it_stands(jump, t, &mut reference);
+            }
+            _ => {}
+        }
+        if let Some(shift) = &shift {
+            for end in &mut self.wanted.ends {
+                end.position += shift.way_b;
+            }
         }
         let s = &self.settings;
         let speeds = &measured.joint_velocities;
         let mut command =
             s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference);
-        if matches!(self.supervisor.phase, Phase::Flight) {
+        if let Some(shift) = &shift {
+            let more = &shift.joint_velocities;
+            for (velocity, more) in command.velocity.iter_mut().zip(more) {
+                *velocity += *more;
+            }
+        }
+        if phase == Phase::Flight {
             let up_b = measured.base.rotation.inverse() * Vector3::z();
             let (since, limbs) = (t - jump.plan.takeoff, (&self.limbs, &up_b));
             let foot_forces = &measured.foot_forces;
@@ -301,7 +322,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             target.rot_wb = jump.rot_goal;
         }
         let c = self.landing.step_at(
-            self.model,
+            &self.robot,
             &self.limbs,
             v,
             &self.contact.contacts,
