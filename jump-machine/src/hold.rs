@@ -20,12 +20,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
     ) {
         let s = &self.settings;
         let moving = -s.centring.before();
-        if t > moving {
+        if t >= moving {
             self.locate();
             return;
         }
         // It has come to rest by then.
-        if t > moving - s.weighing {
+        if t >= moving - s.weighing {
             self.payload.add(&inputs.joint_torques, planned);
             let (felt, sensed) = (self.contact.residual(), &inputs.measured.foot_forces);
             self.balance.add(felt, sensed);
