@@ -91,3 +91,6 @@ impl<T: Scalar, const N: usize, const F: usize> Balance<T, N, F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
