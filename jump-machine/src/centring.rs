@@ -6,7 +6,7 @@
 //! planned: from the hold on, in flight, and in the landing posture.
 
 use nalgebra::Vector3;
-use rbd_core::{Build, Limbs, Tree};
+use rbd_core::{Build, LimbEnd, Tree};
 use so3::{Scalar, math};
 
 use landing::solve_damped;
@@ -56,18 +56,20 @@ impl<T: Scalar> Centring<T> {
         let x = math::clamp((t + self.before()) / self.moving, T::ZERO, T::ONE);
         x * x * x * (T::of(10.0) - x * (T::of(15.0) - x * T::of(6.0)))
     }
+}
 
-    /// Joint displacements that move every foot by `way_b`, to first order, rad; `limbs` are the legs before.
-    fn joints<const N: usize, const F: usize>(
-        &self,
-        limbs: &Limbs<T, N, F>,
-        way_b: &Vector3<T>,
-    ) -> [T; N] {
-        let mut joints = [T::ZERO; N];
-        for end in &limbs.ends {
-            end.add_tr_mul(&solve_damped(end, self.damping, way_b), &mut joints);
+/// Joint displacements that move a foot by `way_b`, to first order, rad; those of other legs stay.
+fn move_foot<T: Scalar, const N: usize>(
+    end: &LimbEnd<T, N>,
+    damping: T,
+    way_b: &Vector3<T>,
+    joints: &mut [T; N],
+) {
+    let force = solve_damped(end, damping, way_b);
+    for (j, column) in end.columns() {
+        if let Some(q) = joints.get_mut(j) {
+            *q = column.dot(&force);
         }
-        joints
     }
 }
 
@@ -76,8 +78,10 @@ impl<T: Scalar> Centring<T> {
 pub(crate) struct Centred<T: Scalar, const N: usize> {
     /// How far it is from the model's, base axes, m; none before it is known, zero where that is not believed.
     pub(crate) offset_b: Option<Vector3<T>>,
-    /// Joint displacements of the last tick, rad.
+    /// Joint displacements, rad.
     pub(crate) joints: [T; N],
+    /// The foot for which they are computed next.
+    next: usize,
 }
 
 impl<T: Scalar, const N: usize> Centred<T, N> {
@@ -86,52 +90,45 @@ impl<T: Scalar, const N: usize> Centred<T, N> {
         Self {
             offset_b: None,
             joints: [T::ZERO; N],
+            next: 0,
         }
     }
 }
 
-/// Feet and joints of a tick beside those of the plan.
-pub(crate) struct Shift<T: Scalar, const N: usize> {
-    /// Way of the feet, base axes, m.
-    pub(crate) way_b: Vector3<T>,
-    /// Velocities of the joints, rad/s.
-    pub(crate) joint_velocities: [T; N],
-}
-
 impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M, N, F> {
-    /// Moves the joints of a reference at time `t` of the plan, whose legs are the wanted ones, `dt` after the last. Nothing is moved where the centre of mass is the model's, and where `levelled` joints follow
-    /// the body already. None where nothing moves.
+    /// Moves the joints of a reference at time `t` of the plan, whose legs are the wanted ones; the way of the feet, base axes, m. Nothing is moved where the centre of mass is the model's, and where `levelled` joints
+    /// follow the body already.
+    ///
+    /// One leg is computed in a tick, in turn: a displacement of 0.1 rad changes by a thousandth of a radian until it is its turn again.
     pub(crate) fn centre(
         &mut self,
-        (t, dt): (T, T),
+        t: T,
         levelled: bool,
         joints: &mut [T; N],
-    ) -> Option<Shift<T, N>> {
-        let offset_b = self
-            .centred
-            .offset_b
-            .filter(|offset_b| !levelled && *offset_b != Vector3::zeros())?;
+    ) -> Option<Vector3<T>> {
+        let found = self.centred.offset_b.filter(|_| !levelled);
+        let offset_b = found.filter(|offset_b| *offset_b != Vector3::zeros())?;
         let centring = &self.settings.centring;
         let way_b = offset_b * centring.share(t);
-        let moved = centring.joints(&self.wanted, &way_b);
-        let mut joint_velocities = [T::ZERO; N];
-        let before = core::mem::replace(&mut self.centred.joints, moved);
-        let now = moved.iter().zip(&before);
-        for ((q, velocity), (now, before)) in joints.iter_mut().zip(&mut joint_velocities).zip(now)
-        {
-            *q += *now;
-            *velocity = (*now - *before) / dt;
+        let Centred {
+            joints: moved,
+            next,
+            ..
+        } = &mut self.centred;
+        if let Some(end) = self.wanted.ends.get(*next) {
+            move_foot(end, centring.damping, &way_b, moved);
         }
-        Some(Shift {
-            way_b,
-            joint_velocities,
-        })
+        *next = if *next + 1 < F { *next + 1 } else { 0 };
+        for (q, moved) in joints.iter_mut().zip(moved) {
+            *q += *moved;
+        }
+        Some(way_b)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Centring;
+    use super::{Centring, move_foot};
     use a1_model::{A1Geared, BUILD, FEET};
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Limbs};
@@ -163,7 +160,10 @@ mod tests {
         };
         let crouch: [f64; 12] = core::array::from_fn(|i| [0.1, 0.8, -1.6][i % 3]);
         let (before, way_b) = (legs(crouch), Vector3::new(0.02, -0.01, 0.002));
-        let moved = centring.joints(&before, &way_b);
+        let mut moved = [f64::NAN; 12];
+        for end in &before.ends {
+            move_foot(end, centring.damping, &way_b, &mut moved);
+        }
         let after = legs(core::array::from_fn(|i| crouch[i] + moved[i]));
         for (after, before) in after.ends.iter().zip(&before.ends) {
             let way = after.position - before.position;

@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 use rbd_core::{GRAVITY, Tree, center_of_mass};
 use so3::Scalar;
 
-use crate::ballast::Ballasted;
 use crate::regulator::NODES_PER_TICK;
 use crate::{Jump, Machine, Observation};
 
@@ -36,7 +35,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         regulator.advance(body, plan, legs, NODES_PER_TICK);
     }
 
-    /// Once: where the centre of mass is. From then on the robot is one that has it there.
+    /// Once: where the centre of mass is.
     fn locate(&mut self) {
         if self.centred.offset_b.is_some() {
             return;
@@ -54,7 +53,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             .balance
             .offset(standing, (weight, &com_b), &self.settings.centring);
         let offset_b = found.unwrap_or_else(Vector3::zeros);
-        self.robot = Ballasted::new(self.model).with_moment(&(offset_b * com.mass));
         for foot in &mut self.level_feet {
             *foot += offset_b;
         }

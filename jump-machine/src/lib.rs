@@ -2,7 +2,6 @@
 #![no_std]
 
 mod balance;
-mod ballast;
 mod centring;
 mod event;
 mod hold;

@@ -9,7 +9,6 @@ use rbd_core::{Configuration, Limbs, Tangent, Tree};
 use so3::Scalar;
 
 use crate::balance::Balance;
-use crate::ballast::Ballasted;
 use crate::centring::Centred;
 use crate::push_off::predicted;
 use crate::supervisor::{Limits, Supervisor};
@@ -38,8 +37,6 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     /// Time at rest so far, s.
     pub(crate) calm: T,
     pub(crate) model: &'a M,
-    /// The model with the centre of mass that was found in the hold.
-    pub(crate) robot: Ballasted<'a, T, M>,
     landing: Landing<T, N, F>,
     pub(crate) workspace: &'a mut Workspace<T, N, F>,
     posture: PreLanding<T, N, F>,
@@ -82,7 +79,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             contact: DetectorState::new(),
             calm: T::ZERO,
             model,
-            robot: Ballasted::new(model),
             landing: Landing::new(settings.pd.feet, settings.landing, torques),
             workspace,
             level_feet: settings.posture.level_feet(model),
@@ -121,7 +117,6 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.payload = PayloadEstimate::new();
         self.balance = Balance::new();
         self.centred = Centred::new();
-        self.robot = Ballasted::new(self.model);
         self.supervisor.armed();
         Ok(())
     }
@@ -267,29 +262,23 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
-        let shift = self.centre((t, dt), levelled, &mut reference.joints);
+        let way_b = self.centre(t, levelled, &mut reference.joints);
         match phase {
             Phase::Stance => self.push_off(jump, t, (measured, velocity), &mut reference),
-            Phase::Hold if shift.is_some() => {
+            Phase::Hold if way_b.is_some() => {
                 let _ = self.as_it_stands(jump, t, &mut reference);
             }
             _ => {}
         }
-        if let Some(shift) = &shift {
+        if let Some(way_b) = &way_b {
             for end in &mut self.wanted.ends {
-                end.position += shift.way_b;
+                end.position += way_b;
             }
         }
         let s = &self.settings;
         let speeds = &measured.joint_velocities;
         let mut command =
             s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference);
-        if let Some(shift) = &shift {
-            let more = &shift.joint_velocities;
-            for (velocity, more) in command.velocity.iter_mut().zip(more) {
-                *velocity += *more;
-            }
-        }
         if phase == Phase::Flight {
             let up_b = measured.base.rotation.inverse() * Vector3::z();
             let (since, limbs) = (t - jump.plan.takeoff, (&self.limbs, &up_b));
@@ -322,7 +311,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             target.rot_wb = jump.rot_goal;
         }
         let c = self.landing.step_at(
-            &self.robot,
+            self.model,
             &self.limbs,
             v,
             &self.contact.contacts,

@@ -75,11 +75,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let then = t - measured.age;
         let was = jump.plan.node_at(then, node.saturating_sub(BEHIND));
         let changes = self.workspace.regulator.forces(
-            (&self.robot, &s.regulator),
+            (self.model, &s.regulator),
             &jump.plan,
             [(node, t), (was, then)],
             velocity,
-            &self.limbs,
+            (&self.limbs, &self.centred.offset_b.unwrap_or_default()),
             (&rot_planned, &forces_w),
         );
         for (end, change) in self.limbs.ends.iter().zip(&changes) {
