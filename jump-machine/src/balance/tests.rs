@@ -3,12 +3,14 @@
 
 use super::Balance;
 use crate::Centring;
-use crate::ballast::Ballasted;
 use a1_model::{A1Geared, BUILD, FEET};
 use landing::solve_damped;
 use nalgebra::{Matrix3x4, Vector3, Vector4};
 use proptest::prelude::{ProptestConfig, prop_assert, proptest};
-use rbd_core::{Configuration, GRAVITY, Limbs, Transform, center_of_mass, generalized_gravity};
+use rbd_core::{
+    BaseBody, BaseKind, Body, Configuration, GRAVITY, Limbs, TableModel, Transform, Tree,
+    center_of_mass, generalized_gravity,
+};
 
 type Legs = Limbs<f64, 12, 4>;
 
@@ -57,7 +59,10 @@ fn stand(lean: &Vector3<f64>, offset_b: &Vector3<f64>, squeeze: f64) -> Stance {
     let com = center_of_mass(&A1Geared, &limbs.posture);
     let com_b = base.rotation.inverse() * (com.position_w - base.translation);
     let weight = com.mass * -GRAVITY[2];
-    let robot = Ballasted::<f64, _>::new(&A1Geared).with_moment(&(offset_b * com.mass));
+    let mut trunk: BaseBody<f64> = *A1Geared.base();
+    trunk.first = (Vector3::from(trunk.first) + offset_b * com.mass).into();
+    let bodies: &[Body<f64>; 12] = A1Geared.bodies();
+    let robot = TableModel::with_any_inertia(BaseKind::Floating, trunk, bodies).unwrap();
     // Least forces along up with Σ φ = m g and Σ φ p = m g c across it.
     let across = base.rotation;
     let arms = limbs
