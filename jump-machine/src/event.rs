@@ -26,7 +26,10 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
             }
             (Phase::Hold, Some(jump)) => {
                 let (joints, tolerance) = (&measured.joints, settings.start_tolerance);
-                let first = jump.plan.start().unwrap_or(*joints);
+                let mut first = jump.plan.start().unwrap_or(*joints);
+                for (first, moved) in first.iter_mut().zip(&self.centred.joints) {
+                    *first += *moved;
+                }
                 Some(self.supervisor.begin(joints, &first, tolerance))
             }
             (Phase::Stance, Some(jump)) => (t >= jump.plan.takeoff).then_some(Event::Takeoff),

@@ -39,7 +39,7 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Jump<'a, T, N, F> {
 pub enum Refusal {
     /// The robot does not stand: it holds for another jump, is under way, or has aborted.
     NotStanding,
-    /// The start is not a number, or leaves less time than holding still, weighing and the push-off's gains take.
+    /// The start is not a number, or leaves less time than holding still, weighing, the push-off's gains and moving the trunk take.
     TooLate,
     /// At the start this joint was not where the plan begins.
     Posture(usize),

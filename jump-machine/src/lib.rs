@@ -1,7 +1,10 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod balance;
+mod centring;
 mod event;
+mod hold;
 pub mod humanoid;
 mod interface;
 mod jump;
@@ -14,6 +17,7 @@ mod supervisor;
 mod unloading;
 mod workspace;
 
+pub use centring::Centring;
 pub use interface::{JumpMachine, Tick};
 pub use jump::{Jump, Refusal};
 pub use machine::{Machine, Work};

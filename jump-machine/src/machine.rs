@@ -8,8 +8,9 @@ use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
 use so3::Scalar;
 
+use crate::balance::Balance;
+use crate::centring::Centred;
 use crate::push_off::predicted;
-use crate::regulator::NODES_PER_TICK;
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
 
@@ -40,13 +41,15 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) workspace: &'a mut Workspace<T, N, F>,
     posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
-    level_feet: [Vector3<T>; F],
+    pub(crate) level_feet: [Vector3<T>; F],
     /// The landing posture as it follows the body.
     legs: [T; N],
     /// The legs as measured, and as they should be: kept so that a tick copies nothing.
     pub(crate) limbs: Limbs<T, N, F>,
     pub(crate) wanted: Limbs<T, N, F>,
     pub(crate) payload: PayloadEstimate<T>,
+    pub(crate) balance: Balance<T, N, F>,
+    pub(crate) centred: Centred<T, N>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
     /// Node of the plan's last sample.
@@ -84,6 +87,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             wanted: Limbs::ZERO,
             posture: settings.posture,
             payload: PayloadEstimate::new(),
+            balance: Balance::new(),
+            centred: Centred::new(),
             start: T::ZERO,
             node: 0,
             shaping: T::ZERO,
@@ -110,6 +115,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         (self.start, self.node) = (start, 0);
         self.shaping = T::ZERO;
         self.payload = PayloadEstimate::new();
+        self.balance = Balance::new();
+        self.centred = Centred::new();
         self.supervisor.armed();
         Ok(())
     }
@@ -228,17 +235,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.node = reference.node;
         reference.torques = sample(&jump.plan, t + s.lookahead, self.node).torques;
         let moment = (reference.node, t);
-        match self.supervisor.phase {
-            Phase::Hold => {
-                // It has come to rest by then.
-                if t > -s.weighing {
-                    self.payload.add(&inputs.joint_torques, &reference.torques);
-                }
-                let (body, plan) = ((self.model, &s.regulator), &jump.plan);
-                let regulator = &mut self.workspace.regulator;
-                let legs = (&s.pd.feet, &mut self.wanted);
-                regulator.advance(body, plan, legs, NODES_PER_TICK);
-            }
+        let phase = self.supervisor.phase;
+        let levelled = phase == Phase::PreLanding && t > jump.plan.touchdown - s.levelling;
+        match phase {
+            Phase::Hold => self.hold(jump, t, inputs, &reference.torques),
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);
@@ -250,7 +250,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                     }
                 }
             }
-            Phase::PreLanding if t > jump.plan.touchdown - s.levelling => {
+            Phase::PreLanding if levelled => {
                 self.level(measured);
                 reference.joints = self.legs;
             }
@@ -262,14 +262,24 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
-        if matches!(self.supervisor.phase, Phase::Stance) {
-            self.push_off(jump, t, (measured, velocity), &mut reference);
+        let way_b = self.centre(t, levelled, &mut reference.joints);
+        match phase {
+            Phase::Stance => self.push_off(jump, t, (measured, velocity), &mut reference),
+            Phase::Hold if way_b.is_some() => {
+                let _ = self.as_it_stands(jump, t, &mut reference);
+            }
+            _ => {}
+        }
+        if let Some(way_b) = &way_b {
+            for end in &mut self.wanted.ends {
+                end.position += way_b;
+            }
         }
         let s = &self.settings;
         let speeds = &measured.joint_velocities;
         let mut command =
             s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference);
-        if matches!(self.supervisor.phase, Phase::Flight) {
+        if phase == Phase::Flight {
             let up_b = measured.base.rotation.inverse() * Vector3::z();
             let (since, limbs) = (t - jump.plan.takeoff, (&self.limbs, &up_b));
             let foot_forces = &measured.foot_forces;

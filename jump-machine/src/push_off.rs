@@ -1,7 +1,7 @@
 //! The push-off: the plan's torques as the robot and its legs are, its forces changed as the [regulator](crate::regulator) wants.
 
 use jump_control::{Measurement, Reference};
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, LimbEnd, Tangent, Tree, integrate};
 use so3::{Scalar, math};
 
@@ -23,28 +23,26 @@ pub(crate) fn predicted<T: Scalar, const N: usize, const F: usize>(
 }
 
 impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
-    /// The plan's torques at time `t` of the plan, in `reference`, become those of this robot.
+    /// The plan's torques at time `t` of the plan, in `reference`, become those of this robot as it weighs and stands; the planned rotation of the base and the forces that they are for,
+    /// world axes.
     ///
-    /// A planned force f needs −Jᵀ Rᵀ f of the legs as they are, not as planned: the difference is added. The legs, seen late, are those of
-    /// [`predicted`], and velocities are compared with those that were planned for the time of the measurement.
+    /// A planned force f needs −Jᵀ Rᵀ f of the legs as they are, not as planned: the difference is added.
     #[inline(always)]
-    pub(crate) fn push_off(
-        &mut self,
+    pub(crate) fn as_it_stands(
+        &self,
         jump: &Jump<'a, T, N, F>,
         t: T,
-        (measured, velocity): (&Measurement<T, N, F>, &Tangent<T, N>),
         reference: &mut Reference<T, N>,
-    ) {
+    ) -> Option<(Rotation3<T>, [Vector3<T>; F])> {
         let (s, node) = (&self.settings, reference.node);
         let hold = self.payload.factor(s.max_payload);
         for torque in &mut reference.torques {
             *torque *= hold;
         }
         let ahead = jump.plan.node_at(t + s.lookahead, node);
-        let (Some(mut forces_w), Some(base)) = (jump.plan.forces(ahead), jump.plan.base((node, t)))
-        else {
-            return;
-        };
+        let mut forces_w = jump.plan.forces(ahead)?;
+        // Before the start it stands as it does there.
+        let base = jump.plan.base((node, math::max(t, T::ZERO)))?;
         for force in &mut forces_w {
             *force *= hold;
         }
@@ -55,6 +53,25 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             now.add_tr_mul(&(rot_bw * -*force), &mut reference.torques);
             planned.add_tr_mul(&(planned_rot_bw * *force), &mut reference.torques);
         }
+        Some((base.rot_wb, forces_w))
+    }
+
+    /// The plan's torques at time `t` of the plan, in `reference`, become those with which this robot comes back to its plan.
+    ///
+    /// The legs, seen late, are those of [`predicted`], and velocities are compared with those that were planned for the time of the measurement.
+    #[inline(always)]
+    pub(crate) fn push_off(
+        &mut self,
+        jump: &Jump<'a, T, N, F>,
+        t: T,
+        (measured, velocity): (&Measurement<T, N, F>, &Tangent<T, N>),
+        reference: &mut Reference<T, N>,
+    ) {
+        let Some((rot_planned, forces_w)) = self.as_it_stands(jump, t, reference) else {
+            return;
+        };
+        let (s, node) = (&self.settings, reference.node);
+        let rot_bw = self.limbs.posture.base().rotation.inverse();
         let then = t - measured.age;
         let was = jump.plan.node_at(then, node.saturating_sub(BEHIND));
         let changes = self.workspace.regulator.forces(
@@ -62,8 +79,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             &jump.plan,
             [(node, t), (was, then)],
             velocity,
-            &self.limbs,
-            (&base.rot_wb, &forces_w),
+            (&self.limbs, &self.centred.offset_b.unwrap_or_default()),
+            (&rot_planned, &forces_w),
         );
         for (end, change) in self.limbs.ends.iter().zip(&changes) {
             self.change(end, &(rot_bw * *change), measured, reference);

@@ -5,8 +5,8 @@ use landing::{Detector, InertiaShaping, PreLanding};
 use rbd_core::{Build, Frame, Motor};
 use so3::{Scalar, math};
 
-use crate::Unloading;
 use crate::regulator::{Regulator, Weights};
+use crate::{Centring, Unloading};
 
 /// Periods, limits and gains of a robot with `N` joints and `F` feet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,10 +19,12 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_silence: T,
     /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
     pub lookahead: T,
-    /// Time before the start during which the robot weighs itself, s.
+    /// Time during which the robot weighs itself and finds its centre of mass, before its trunk moves, s.
     pub weighing: T,
     /// Largest share by which the robot may hold harder, or less hard, than planned: 15 % of payload over motors that are 10 % weak, and some.
     pub max_payload: T,
+    /// The centre of mass.
+    pub centring: Centring<T>,
     /// Farthest that a joint may be from the plan's first node at the start, rad.
     pub start_tolerance: T,
     /// Time before the touchdown from which the landing posture follows tilt and speed, s.
@@ -58,12 +60,12 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
-    /// Least time for which a robot holds before the start of a plan, s: it weighs itself, and computes the push-off's gains, for which the tick at the
-    /// start is too late.
+    /// Least time for which a robot holds before the start of a plan, s: it weighs itself and computes the push-off's gains, then it moves its trunk.
     #[must_use]
     pub fn least_hold(&self, plan: &Plan<'_, T, N, F>) -> T {
         let ticks = u32::try_from(Regulator::ticks(plan) + 1).unwrap_or(u32::MAX);
-        math::max(self.weighing, T::of(f64::from(ticks)) * self.period)
+        let gains = T::of(f64::from(ticks)) * self.period;
+        math::max(self.weighing, gains) + self.centring.before()
     }
 
     /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
@@ -89,6 +91,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             lookahead: of(0.001),
             weighing: build.time(0.15),
             max_payload: of(0.35),
+            centring: Centring::new(build),
             start_tolerance: of(0.15),
             levelling: build.time(0.12),
             patience: build.time(0.5),

@@ -92,7 +92,7 @@ fn fly<R>(
     let mut workspace = Workspace::new();
     let mut machine = Machine::new(&A1Geared, *settings, &mut workspace);
     machine.arm(jump(nodes), 0.0).unwrap();
-    for k in -300.. {
+    for k in -500.. {
         let t = f64::from(k) * 1e-3;
         if t > end {
             break;
@@ -145,7 +145,7 @@ proptest! {
         let mut workspace = Workspace::new();
         let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
         machine.arm(jump(&nodes), 0.0).unwrap();
-        let (mut k, mut time) = (-300_i32, -0.3_f64);
+        let (mut k, mut time) = (-500_i32, -0.5_f64);
         while time < TOUCHDOWN - 0.002 {
             let node = nodes.iter().rfind(|node| node.time <= time).unwrap_or(&nodes[0]);
             let ahead = time - node.time;

@@ -266,7 +266,7 @@ fn fly(
     let mut machine = Machine::new(&model, settings, &mut workspace);
     machine.arm(jump, 0.0).unwrap();
     let mut ticks = Vec::new();
-    for k in -300..1200 {
+    for k in -500..1200 {
         let inputs = size.inputs(&heard(k));
         let tick = machine.tick(f64::from(k) * 1e-3 * size.time, Some(&inputs));
         let (q, qd) = (&inputs.measured.joints, &inputs.measured.joint_velocities);
@@ -302,8 +302,19 @@ fn a_large_robot_jumps_as_a_small_one_does() {
 #[test]
 fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
     type Take = fn(&mut Settings<f64, 12, 4>, &Settings<f64, 12, 4>);
-    let takes: [(&str, Take); 29] = [
+    let takes: [(&str, Take); 34] = [
         ("weighing", |to, of| to.weighing = of.weighing),
+        ("moving", |to, of| to.centring.moving = of.centring.moving),
+        ("rest of the trunk", |to, of| {
+            to.centring.rest = of.centring.rest
+        }),
+        ("most", |to, of| to.centring.most = of.centring.most),
+        ("agreement", |to, of| {
+            to.centring.agreement = of.centring.agreement
+        }),
+        ("centring.damping", |to, of| {
+            to.centring.damping = of.centring.damping
+        }),
         ("levelling", |to, of| to.levelling = of.levelling),
         ("rest", |to, of| to.rest = of.rest),
         ("settling", |to, of| to.settling = of.settling),

@@ -55,6 +55,12 @@ impl<T: Scalar, const N: usize, const F: usize> DetectorState<T, N, F> {
         }
     }
 
+    /// Jᵀ f of the ground as the joints feel it, low-passed, N m.
+    #[must_use]
+    pub const fn residual(&self) -> &[T; N] {
+        self.observer.residual()
+    }
+
     /// Whether any foot is in contact.
     #[must_use]
     pub fn any(&self) -> bool {

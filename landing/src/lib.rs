@@ -19,6 +19,7 @@ pub use controller::{Command, Landing, Outcome, Workspace};
 pub use dense_qp::Status;
 pub use detector::{Detector, DetectorState};
 pub use inertia_shaping::{InertiaShaping, Turning};
+pub use least_squares::solve_damped;
 pub use observer::{ForceObserver, ObserverState};
 pub use posture::PreLanding;
 pub use program::Program;

@@ -32,6 +32,12 @@ pub struct ObserverState<T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> ObserverState<T, N> {
+    /// Jᵀ f of the ground as the joints feel it, low-passed, N m.
+    #[must_use]
+    pub const fn residual(&self) -> &[T; N] {
+        &self.residual
+    }
+
     /// Nothing seen yet.
     #[must_use]
     pub const fn new() -> Self {

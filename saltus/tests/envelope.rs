@@ -67,6 +67,7 @@ fn the_study_without_each_measure_is_one_table() {
         [
             "nothing",
             "weighing",
+            "centring",
             "drives",
             "margins",
             "lookahead",

@@ -235,11 +235,11 @@ static void walk(void) {
     double tau[12];
     begin();
     unsigned long since = begin_cost();
-    SaltusStatus status = saltus_a1_machine_arm(machine, plan_begin, length, 0.3, NULL);
+    SaltusStatus status = saltus_a1_machine_arm(machine, plan_begin, length, 0.6, NULL);
     end_cost(&arm, since);
     expect("arm", status, SALTUS_STATUS_OK);
     print_cost("A1", "arm", arm);
-    for (int k = 1; clock_now < 0.3 + about.touchdown + 0.2; ++k) {
+    for (int k = 1; clock_now < 0.6 + about.touchdown + 0.2; ++k) {
         clock_now = 1e-3 * k;
         Cost cost = {0, 0};
         since = begin_cost();

@@ -97,7 +97,7 @@ typedef enum SaltusStatus {
    */
   SALTUS_STATUS_NOT_STANDING = 16,
   /*
-   The start is not a number, or leaves less time than holding still and weighing take.
+   The start is not a number, or leaves less time than holding still, weighing and moving the trunk take.
    */
   SALTUS_STATUS_TOO_LATE = 17,
   /*

@@ -98,7 +98,7 @@ pub enum Status {
     PlanValue = 15,
     /// The robot does not stand: it holds for another jump, is under way, or has aborted.
     NotStanding = 16,
-    /// The start is not a number, or leaves less time than holding still and weighing take.
+    /// The start is not a number, or leaves less time than holding still, weighing and moving the trunk take.
     TooLate = 17,
     /// The machine has aborted, its fault says why; outputs damp the joints and nothing else.
     Aborted = 18,

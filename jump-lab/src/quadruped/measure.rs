@@ -15,6 +15,8 @@ use rbd_core::{Model, Tree, joint_friction};
 pub enum Measure {
     /// Weighing by the motors while the robot waits, and the plan's torques scaled by it.
     Weighing,
+    /// Finding the centre of mass while the robot waits, and a trunk that is moved until it is where the plan has it.
+    Centring,
     /// Rotor inertia and joint friction in the plan's torques.
     Drives,
     /// Plan forces that keep to a share of friction, torque and speed.
@@ -33,8 +35,9 @@ pub enum Measure {
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Weighing,
+        Self::Centring,
         Self::Drives,
         Self::Margins,
         Self::Lookahead,
@@ -49,6 +52,7 @@ impl Measure {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Weighing => "weighing",
+            Self::Centring => "centring",
             Self::Drives => "drives",
             Self::Margins => "margins",
             Self::Lookahead => "lookahead",
@@ -65,6 +69,9 @@ impl Measure {
         match self {
             Self::Weighing => {
                 "Weighing by the motors while the robot waits, and the plan's torques scaled by it"
+            }
+            Self::Centring => {
+                "Finding the centre of mass while the robot waits, and moving it to where the plan has it"
             }
             Self::Drives => "Rotor inertia and joint friction in the plan's torques",
             Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
@@ -114,6 +121,7 @@ impl Measure {
     pub fn leave(self, settings: &mut Settings<f64, JOINTS, FOOT_COUNT>) {
         match self {
             Self::Weighing => settings.max_payload = 0.0,
+            Self::Centring => settings.centring.most = 0.0,
             Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => settings.levelling = -f64::INFINITY,

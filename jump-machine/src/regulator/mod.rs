@@ -201,19 +201,21 @@ impl<T: Scalar> Regulator<T> {
     /// What the forces of the ground on the feet are to change by, world axes, N.
     ///
     /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The planned rotation is
-    /// that of now, and `planned_w` are the planned forces, world axes. Zero from the take-off on.
+    /// that of now, and `planned_w` are the planned forces, world axes. The centre of mass is `offset_b` from the model's, base axes, m. Zero from the take-off on.
     pub fn forces<M: Tree<T, N>, const N: usize, const F: usize>(
         &self,
         (model, weights): (&M, &Weights<T>),
         plan: &Plan<'_, T, N, F>,
         moments: [(usize, T); 2],
         velocity: &Tangent<T, N>,
-        limbs: &Limbs<T, N, F>,
+        (limbs, offset_b): (&Limbs<T, N, F>, &Vector3<T>),
         (planned_rot_wb, planned_w): (&Rotation3<T>, &[Vector3<T>; F]),
     ) -> [Vector3<T>; F] {
         let mut changes = [Vector3::zeros(); F];
         let base = limbs.posture.base();
-        let now = centroidal_state(model, &limbs.posture, velocity);
+        let mut now = centroidal_state(model, &limbs.posture, velocity);
+        now.com_w += base.rotation * offset_b;
+        now.com_velocity_w += base.rotation * velocity.base.angular.cross(offset_b);
         let turned = base.rotation * planned_rot_wb.inverse();
         let Some(costate) = self.costate(plan, moments, &turned, &now) else {
             return changes;

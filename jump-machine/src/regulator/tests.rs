@@ -264,7 +264,7 @@ where
         &plan,
         moments,
         &velocity,
-        &limbs,
+        (&limbs, &Vector3::zeros()),
         (&here.base.rotation, &here.forces_w),
     )
 }

@@ -1,0 +1,61 @@
+//! The hold before the jump: the robot weighs itself, finds its centre of mass, and computes the push-off's gains.
+
+use nalgebra::Vector3;
+use rbd_core::{GRAVITY, Tree, center_of_mass};
+use so3::Scalar;
+
+use crate::regulator::NODES_PER_TICK;
+use crate::{Jump, Machine, Observation};
+
+impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
+    /// A tick of the hold at time `t` of the plan, whose torques are `planned`. While the trunk moves no gains are computed: a tick has no time for both.
+    #[inline(always)]
+    pub(crate) fn hold(
+        &mut self,
+        jump: &Jump<'a, T, N, F>,
+        t: T,
+        inputs: &Observation<T, N, F>,
+        planned: &[T; N],
+    ) {
+        let s = &self.settings;
+        let moving = -s.centring.before();
+        if t >= moving {
+            self.locate();
+            return;
+        }
+        // It has come to rest by then.
+        if t >= moving - s.weighing {
+            self.payload.add(&inputs.joint_torques, planned);
+            let (felt, sensed) = (self.contact.residual(), &inputs.measured.foot_forces);
+            self.balance.add(felt, sensed);
+        }
+        let (body, plan) = ((self.model, &s.regulator), &jump.plan);
+        let regulator = &mut self.workspace.regulator;
+        let legs = (&s.pd.feet, &mut self.wanted);
+        regulator.advance(body, plan, legs, NODES_PER_TICK);
+    }
+
+    /// Once: where the centre of mass is.
+    fn locate(&mut self) {
+        if self.centred.offset_b.is_some() {
+            return;
+        }
+        let posture = &self.limbs.posture;
+        let (base, com) = (posture.base(), center_of_mass(self.model, posture));
+        let rot_bw = base.rotation.inverse();
+        let (up_b, com_b) = (
+            rot_bw * Vector3::z(),
+            rot_bw * (com.position_w - base.translation),
+        );
+        let weight = com.mass * T::of(-GRAVITY[2]);
+        let standing = (&self.limbs, &up_b);
+        let found = self
+            .balance
+            .offset(standing, (weight, &com_b), &self.settings.centring);
+        let offset_b = found.unwrap_or_else(Vector3::zeros);
+        for foot in &mut self.level_feet {
+            *foot += offset_b;
+        }
+        self.centred.offset_b = Some(offset_b);
+    }
+}
