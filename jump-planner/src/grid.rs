@@ -92,8 +92,8 @@ impl<'a> Grid<'a> {
         let problem = fine.setup.problem(&Tightening::default());
         problem.write_split(&mut fine.stages, &motion, parts);
         free_timing(self.task, problem).write_guess(&fine.stages, &mut fine.timed);
-        resume(&mut fine.stages, &self.stages, parts);
-        resume(&mut fine.timed, &self.timed, parts);
+        take_over(&mut fine.stages, &self.stages, parts);
+        take_over(&mut fine.timed, &self.timed, parts);
         Ok(fine)
     }
 
@@ -152,7 +152,7 @@ impl<'a> Grid<'a> {
     }
 
     /// Plans from the motion of the grid that this one was split from, with its torque.
-    pub(crate) fn from_split(
+    pub(crate) fn resume(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
@@ -221,7 +221,7 @@ impl<'a> Grid<'a> {
 }
 
 /// Takes over the multipliers of stages whose intervals are `parts` times as long.
-fn resume<S: Copy, const X: usize>(
+fn take_over<S: Copy, const X: usize>(
     fine: &mut [SparseStage<f64, S, X, NU, NI>],
     long: &[SparseStage<f64, S, X, NU, NI>],
     parts: usize,

@@ -128,7 +128,7 @@ pub fn audited(
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
         grid = grid.split(2)?;
-        let plan = grid.from_split(observer)?;
+        let plan = grid.resume(observer)?;
         let fine = tightened(task, &mut grid, plan, observer)?;
         if fine.audit.is_some() {
             told = fine;
@@ -175,7 +175,7 @@ fn searched<'a>(
         let mut plan = grid.with_most_torque(observer)?;
         if plan.outcome.status == Status::Solved {
             grid = grid.split(LONG)?;
-            plan = grid.from_split(observer)?;
+            plan = grid.resume(observer)?;
         }
         let cancelled = plan.outcome.status == Status::Cancelled;
         found = (grid, plan);

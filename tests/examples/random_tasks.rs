@@ -61,7 +61,7 @@ fn main() -> Result<(), String> {
             .new_tree(&mut runner)
             .map_err(|reason| reason.to_string())?
             .current();
-        let task = Task::from_file("random", &file, robot.clone())
+        let task = Task::from_file("random", &file, robot)
             .map_err(|error| format!("task {index}: {error}"))?;
         let clock = Instant::now();
         let found = plan(&task, &options, |_, _| ControlFlow::Continue(()))?;
