@@ -46,10 +46,10 @@ fn parts_of_an_interval_follow_from_each_other() {
                 }
                 // 12 is the Magnus expansion's; the time is that since the node.
                 let (state, control) = &nodes[k / parts];
-                let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let size = |x: &[f64]| so3::math::sqrt(x.iter().map(|x| x * x).sum::<f64>());
                 let (omega, alpha) = (size(&state.v[TURN]), 100.0 * size(&control[TURN]));
                 let time = 0.01 * parts as f64;
-                let most = (omega + alpha * time) * alpha * time.powi(3) / 12.0;
+                let most = (omega + alpha * time) * alpha * (time * time * time) / 12.0;
                 assert!(size(&gap[TURN]) < most, "{base:?} {parts} {k}");
             }
         }
