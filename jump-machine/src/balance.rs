@@ -7,12 +7,13 @@
 //! δ = (1 − u uᵀ) (Σ φ_i p_i / Σ φ_i − c)
 //! ```
 //!
-//! is by how much the centre of mass is farther across u than c, that of the model; all in base axes, so the trunk may be tilted. Along u nothing is known. Forces
-//! along the ground do not matter where the feet stand on one plane across u.
+//! is by how much the centre of mass is farther across u than c, that of the model; all in base axes, so the trunk may be tilted. Along u
+//! nothing is known. Forces along the ground do not matter where the feet stand on one plane across u.
 //!
-//! Two witnesses tell the φ_i: the joints, by f_i = J_i⁻ᵀ r_i with r = g(q) − τ, and the foot sensors. A gain that all motors, or all sensors, have in common drops out. What is left is
-//! Coulomb friction of the joints, which hides some of the offset, and biases of the sensors. In A1's lab, where offsets are 11 and 5 mm (standard deviation, x and y), the joints are wrong by 3.6 and
-//! 2.3 mm, the sensors by 2.9 and 2.1 mm and their mean by 2.4 and 2.0 mm (40 samples): they err apart and about as much, so the mean is the estimate.
+//! Two witnesses tell the φ_i: the joints, by f_i = J_i⁻ᵀ r_i with r = g(q) − τ, and the foot sensors. A gain that all motors, or all
+//! sensors, have in common drops out. What is left is Coulomb friction of the joints, which hides some of the offset, and biases of the
+//! sensors. In A1's lab, where offsets are 11 and 5 mm (standard deviation, x and y), the joints are wrong by 3.6 and 2.3 mm, the sensors
+//! by 2.9 and 2.1 mm and their mean by 2.4 and 2.0 mm (40 samples): they err apart and about as much, so the mean is the estimate.
 
 use landing::solve_damped;
 use nalgebra::Vector3;
@@ -56,7 +57,8 @@ impl<T: Scalar, const N: usize, const F: usize> Balance<T, N, F> {
 
     /// δ, base axes, m, of a robot with these `limbs` whose model weighs `weight`, N, with its centre of mass at `com_b`.
     ///
-    /// None where it is not believed: no witness carries about this weight on feet whose middle is within [`Centring::most`], or two that do contradict each other.
+    /// None where it is not believed: no witness carries about this weight on feet whose middle is within [`Centring::most`], or two that
+    /// do contradict each other.
     pub(crate) fn offset(
         &self,
         (limbs, up_b): (&Limbs<T, N, F>, &Vector3<T>),

@@ -1,9 +1,10 @@
 //! The plan's jump by the robot's own centre of mass: while it still holds, the robot moves its trunk until its centre of mass is where the plan's is.
 //!
-//! A payload or a battery that lies 2 cm aside gives the planned forces another arm: 500 N for 0.1 s on 2 cm are 1 N m s, which turn A1 by some rad/s. Other forces
-//! would make up for it, but the plan's are what friction and motors allow. A trunk that is farther back by as much as the centre of mass is too far forward ([`Balance`](crate::balance::Balance)) has
-//! it where the plan has it: the feet stand, seen from the centre of mass, as planned, and all planned forces are right. So every foot is, in base axes, δ farther than
-//! planned: from the hold on, in flight, and in the landing posture.
+//! A payload or a battery that lies 2 cm aside gives the planned forces another arm: 500 N for 0.1 s on 2 cm are 1 N m s, which turn A1 by
+//! some rad/s. Other forces would make up for it, but the plan's are what friction and motors allow. A trunk that is farther back by as
+//! much as the centre of mass is too far forward ([`Balance`](crate::balance::Balance)) has it where the plan has it: the feet stand, seen
+//! from the centre of mass, as planned, and all planned forces are right. So every foot is, in base axes, δ farther than planned: from the
+//! hold on, in flight, and in the landing posture.
 
 use nalgebra::Vector3;
 use rbd_core::{Build, LimbEnd, Tree};
@@ -31,8 +32,8 @@ pub struct Centring<T> {
 }
 
 impl<T: Scalar> Centring<T> {
-    /// For a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of 0.4 m: the lab's battery and payload are 2.7 cm aside at most, and its
-    /// joints and sensors 5 mm apart (standard deviation).
+    /// For a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of 0.4 m: the
+    /// lab's battery and payload are 2.7 cm aside at most, and its joints and sensors 5 mm apart (standard deviation).
     #[must_use]
     pub fn new(build: &Build<T>) -> Self {
         Self {
@@ -96,8 +97,8 @@ impl<T: Scalar, const N: usize> Centred<T, N> {
 }
 
 impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M, N, F> {
-    /// Moves the joints of a reference at time `t` of the plan, whose legs are the wanted ones; the way of the feet, base axes, m. Nothing is moved where the centre of mass is the model's, and where `levelled` joints
-    /// follow the body already.
+    /// Moves the joints of a reference at time `t` of the plan, whose legs are the wanted ones; the way of the feet, base axes, m. Nothing
+    /// is moved where the centre of mass is the model's, and where `levelled` joints follow the body already.
     ///
     /// One leg is computed in a tick, in turn: a displacement of 0.1 rad changes by a thousandth of a radian until it is its turn again.
     pub(crate) fn centre(

@@ -23,8 +23,8 @@ pub(crate) fn predicted<T: Scalar, const N: usize, const F: usize>(
 }
 
 impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
-    /// The plan's torques at time `t` of the plan, in `reference`, become those of this robot as it weighs and stands; the planned rotation of the base and the forces that they are for,
-    /// world axes.
+    /// The plan's torques at time `t` of the plan, in `reference`, become those of this robot as it weighs and stands; the planned
+    /// rotation of the base and the forces that they are for, world axes.
     ///
     /// A planned force f needs −Jᵀ Rᵀ f of the legs as they are, not as planned: the difference is added.
     #[inline(always)]

@@ -39,8 +39,8 @@ impl<T: Scalar> Ldl3<T> {
     }
 }
 
-/// (J Jᵀ + ε)⁻¹ b for the Jacobian of a limb's end; ε > 0 keeps it regular, without it a leg that is not stretched is needed. Numbers that are not finite come out where such
-/// go in.
+/// (J Jᵀ + ε)⁻¹ b for the Jacobian of a limb's end; ε > 0 keeps it regular, without it a leg that is not stretched is needed. Numbers that
+/// are not finite come out where such go in.
 #[must_use]
 pub fn solve_damped<T: Scalar, const N: usize>(
     end: &LimbEnd<T, N>,

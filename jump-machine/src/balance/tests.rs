@@ -123,7 +123,8 @@ impl Stance {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
-    /// Either witness alone, and both, see the offset across the vertical exactly; gains that all motors or all sensors have in common, and feet that push against each other, change nothing.
+    /// Either witness alone, and both, see the offset across the vertical exactly; gains that all motors or all sensors have in common,
+    /// and feet that push against each other, change nothing.
     #[test]
     fn what_stands_still_is_seen_as_it_is(
         roll in -0.2..0.2, pitch in -0.2..0.2, yaw in -3.0..3.0,

@@ -200,8 +200,9 @@ impl<T: Scalar> Regulator<T> {
 
     /// What the forces of the ground on the feet are to change by, world axes, N.
     ///
-    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The planned rotation is
-    /// that of now, and `planned_w` are the planned forces, world axes. The centre of mass is `offset_b` from the model's, base axes, m. Zero from the take-off on.
+    /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The
+    /// planned rotation is that of now, and `planned_w` are the planned forces, world axes. The centre of mass is `offset_b` from the
+    /// model's, base axes, m. Zero from the take-off on.
     pub fn forces<M: Tree<T, N>, const N: usize, const F: usize>(
         &self,
         (model, weights): (&M, &Weights<T>),
