@@ -91,12 +91,12 @@ fn a_jump_goes_through_its_phases_and_another_may_follow() {
     let mut m = machine(&mut workspace);
     let (ground, air) = (inputs(), in_air());
     assert_eq!(
-        run(&mut m, -600, -500, &ground).unwrap().phase,
+        run(&mut m, -1100, -1000, &ground).unwrap().phase,
         Phase::Stand
     );
     m.arm(jump(&nodes), 0.0).unwrap();
     assert_eq!(m.arm(jump(&nodes), 0.0), Err(Refusal::NotStanding));
-    assert_eq!(run(&mut m, -500, 0, &ground).unwrap().phase, Phase::Hold);
+    assert_eq!(run(&mut m, -1000, 0, &ground).unwrap().phase, Phase::Hold);
     assert_eq!(run(&mut m, 0, 200, &ground).unwrap().phase, Phase::Stance);
     assert_eq!(run(&mut m, 200, 350, &air).unwrap().phase, Phase::Flight);
     let waiting = run(&mut m, 350, 360, &air).unwrap();
@@ -111,9 +111,9 @@ fn a_jump_goes_through_its_phases_and_another_may_follow() {
         Work::Landing(landing::Outcome::Solved(_))
     ));
     assert_eq!(run(&mut m, 370, 700, &ground).unwrap().phase, Phase::Stand);
-    m.arm(jump(&nodes), 1.2).unwrap();
+    m.arm(jump(&nodes), 1.6).unwrap();
     assert_eq!(
-        run(&mut m, 700, 1201, &ground).unwrap().phase,
+        run(&mut m, 700, 1601, &ground).unwrap().phase,
         Phase::Stance
     );
 }
@@ -123,14 +123,14 @@ fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_o
     let (mut workspace, nodes) = (Workspace::new(), nodes());
     let mut m = machine(&mut workspace);
     run(&mut m, 0, 100, &inputs());
-    for start in [0.05, 0.45, f64::NAN, f64::INFINITY] {
+    for start in [0.05, 0.85, f64::NAN, f64::INFINITY] {
         assert_eq!(m.arm(jump(&nodes), start), Err(Refusal::TooLate));
         assert_eq!(m.phase(), Phase::Stand);
     }
     let mut elsewhere = nodes;
     elsewhere[0].joints[7] += 0.2;
-    m.arm(jump(&elsewhere), 0.6).unwrap();
-    let tick = run(&mut m, 100, 602, &inputs()).unwrap();
+    m.arm(jump(&elsewhere), 1.0).unwrap();
+    let tick = run(&mut m, 100, 1002, &inputs()).unwrap();
     assert_eq!(
         (tick.phase, tick.refusal),
         (Phase::Stand, Some(Refusal::Posture(7)))
@@ -143,14 +143,14 @@ fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_o
 #[test]
 fn a_start_before_the_gains_are_computed_is_refused() {
     let time = |k: i32| f64::from(k) * 1e-3;
-    let many: Vec<_> = (-1..1000)
+    let many: Vec<_> = (-1..2000)
         .map(|k| Node {
             time: time(k),
             ..nodes()[0]
         })
         .collect();
     // The trunk moves for the last 0.25 s, and no gains are computed then.
-    let ticks = 250 + i32::try_from(1001_usize.div_ceil(NODES_PER_TICK)).unwrap();
+    let ticks = 250 + i32::try_from(2001_usize.div_ceil(NODES_PER_TICK)).unwrap();
     let mut workspace = Workspace::new();
     let mut m = machine(&mut workspace);
     // No tick has told the time yet.
