@@ -143,7 +143,7 @@ fn plans_are_made_again_where_the_first_way_ends() {
         (
             "far-down",
             format!("{far}\n[limits]\nfriction = 0.74\n"),
-            "rigid body",
+            "whole body",
             false,
             true,
         ),
