@@ -5,7 +5,7 @@ use jump_control::container::{Container, model_hash};
 use jump_control::{Measurement, Node, Phase};
 use jump_machine::Workspace;
 use jump_machine::{Jump, Machine, Observation};
-use saltus_probe::flight::{BYTES, PLAN, Planned, jump, settings};
+use saltus_probe::flight::{BYTES, HOLD, PLAN, Planned, jump, settings};
 
 type A1<'a> = Container<'a, 12, 4>;
 
@@ -94,7 +94,7 @@ fn a_machine_follows_the_bytes_as_it_follows_the_nodes() {
     let mut machines =
         [(&mut here, stored), (&mut there, jump().unwrap())].map(|(memory, jump)| {
             let mut machine = Machine::<f64, _, 12, 4>::new(&A1Geared, settings(), memory);
-            machine.arm(jump, 0.3).unwrap();
+            machine.arm(jump, HOLD).unwrap();
             machine
         });
     let mut inputs = Observation {
@@ -109,7 +109,7 @@ fn a_machine_follows_the_bytes_as_it_follows_the_nodes() {
         joint_torques: first.torques,
     };
     let mut seen = Vec::new();
-    let end = ((0.3 + stored.plan.touchdown + 0.2) * 1e3) as u32;
+    let end = ((HOLD + stored.plan.touchdown + 0.2) * 1e3) as u32;
     for k in 0..end {
         inputs.measured.base.translation.z += 1e-5;
         inputs.measured.base_velocity.angular.y += 1e-3;
