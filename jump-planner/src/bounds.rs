@@ -15,7 +15,7 @@
 //! | *hanging* | after that, p_z ends at most as in free flight for the shortest time there is |
 //! | *impulse* | p̈_z ≤ a = n F/m − g while feet stand and −g after, from rest, so p_z rises by at most a T_s²/2 + a T_s T_f − g T_f²/2 in a stance of T_s and a flight of T_f |
 //! | *power* | the joints' work is at most the sum of their largest torque × speed times T_s; losses only take from it; it must lift m g Δz |
-//! | *start* | at the start the velocities vanish: the rotation stays over the first interval and p moves by at most (n F/m + g) dt²/2 |
+//! | *start* | at the start the velocities vanish: the rotation stays over the first interval and p moves by at most (max(μ, 1) n F/m + g) dt²/2 along an axis |
 //! | *reach* | neither then can a foot that the second node's stance needs come into its leg's box |
 //! | *goal* | position and rotation at the end are given: the trunk there must be over the ground |
 //! | *feet* | a foot that stands is on the ground |

@@ -11,6 +11,7 @@ mod kindness;
 mod one_plan;
 mod options;
 mod plan_task;
+mod proven;
 mod recording;
 mod reference;
 mod refusals;
