@@ -228,7 +228,7 @@ fn take_over<S: Copy, const X: usize>(
 ) {
     for (k, stage) in fine.iter_mut().enumerate() {
         if let Some(from) = long.get(k / parts) {
-            stage.resume_from(from, parts as f64);
+            stage.resume_part(from, long.get(k / parts + 1), k % parts, parts);
         }
     }
 }

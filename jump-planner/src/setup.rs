@@ -115,6 +115,7 @@ impl<'a> Setup<'a> {
         let phases = self.phases.iter().map(shorter).collect();
         let lengths = self.lengths / parts as f64;
         let mut split = Self::along(self.task, self.srb, phases, lengths)?;
+        split.landing_intervals = parts * self.landing_intervals;
         for (phase, duration) in split.phases.iter_mut().zip(durations) {
             phase.dt = duration / phase.intervals as f64;
         }
@@ -165,7 +166,7 @@ impl<'a> Setup<'a> {
             nodes,
             clearances: clearances(task),
             goal: pose(&goal, &landing_joints),
-            landing_intervals: (POSED / (lengths * FLIGHT_DT)) as usize,
+            landing_intervals: (POSED / (lengths * FLIGHT_DT)).ceil() as usize,
             lengths,
         })
     }
@@ -207,7 +208,8 @@ impl<'a> Setup<'a> {
             weights: Weights {
                 position: task.weights.position,
                 effort: task.weights.torque,
-                goal: task.weights.goal,
+                // Every interval costs the same, so that on long ones there is less cost before the goal.
+                goal: task.weights.goal / self.lengths,
             },
         };
         let robot = &mut problem.robot;

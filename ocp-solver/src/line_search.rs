@@ -99,7 +99,10 @@ impl<T: Scalar> Solver<T> {
         P: Problem<T, NX, NU, NI>,
         K: Keep<T, NX, NU, NI>,
     {
-        let mut step = step;
+        let (mut step, common) = (step, step.primal);
+        if run.uses_filter() {
+            step.primal = self.longest(&step);
+        }
         let mut trial = iterate::try_step(problem, stages, step.primal);
         if run.uses_filter() {
             if let Some(found) = self.filtered(problem, stages, run, from, step, trial) {
@@ -111,6 +114,7 @@ impl<T: Scalar> Solver<T> {
             if run.leaps > LEAPS {
                 return Err(Status::Stalled);
             }
+            step.primal = common;
             trial = iterate::try_step(problem, stages, step.primal);
         }
         let mut halvings = 0u8;
@@ -123,6 +127,15 @@ impl<T: Scalar> Solver<T> {
             trial = iterate::try_step(problem, stages, step.primal);
         }
         Ok((trial, step))
+    }
+
+    /// Length of the longest step under the filter.
+    fn longest(&self, step: &Direction<T>) -> T {
+        if self.settings.individual_steps {
+            T::ONE
+        } else {
+            step.primal
+        }
     }
 
     /// The longest of a few halvings that the filter takes. Where the whole step is refused because it raises the
@@ -152,9 +165,10 @@ impl<T: Scalar> Solver<T> {
             }
             if halvings == 0 && trial.is_finite() && trial.sum >= from.sum {
                 iterate::correct(problem, stages, step.primal);
-                if let Some(bent) =
+                if let Some(mut bent) =
                     self.direction(problem, stages, run, step.shift, Pass::Corrected)
                 {
+                    bent.primal = self.longest(&bent);
                     trial = iterate::try_step(problem, stages, bent.primal);
                     let there = trial.point(run.mu);
                     if trial.is_finite() && run.filter.accepts(here, there, step.primal, step.slope)

@@ -23,6 +23,9 @@ use crate::stage::{Node, Rows};
 use so3::Scalar;
 use so3::math::{abs, max, min};
 
+/// Share of its distance to a bound that a slack may use up in a step of its own, and of itself a multiplier.
+const OWN_SHARE: f64 = 0.9;
+
 /// Parameters of a Newton step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowBarrier<T> {
@@ -290,11 +293,19 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     #[inline(always)]
     fn moved_slack(&self, i: usize, length: T) -> T {
         let rows = &self.rows;
-        let s = rows.slack[i] + length * self.step.rows[i];
+        let (below, above) = rows.distances(i);
+        let mut ds = length * self.step.rows[i];
+        if self.individual_steps {
+            ds = max(min(ds, T::of(OWN_SHARE) * above), -T::of(OWN_SHARE) * below);
+        }
+        let s = rows.slack[i] + ds;
         rows.inside(i, rows.relaxed(i, s, self.values.rows[i]))
     }
 
     /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
+    ///
+    /// With individual steps a multiplier that falls goes as far as it may. One that grows does not: where its slack stopped early its
+    /// Newton step is that for a slack far beyond the bound.
     ///
     /// `mu` is that of the step, `floor` bounds how small a multiplier becomes.
     pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T, floor: T) {
@@ -316,7 +327,12 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 if now == T::INFINITY {
                     continue;
                 }
-                let moved = *z + dual * newton(before, *z, mu, ds);
+                let dz = newton(before, *z, mu, ds);
+                let moved = if self.individual_steps && dz < T::ZERO {
+                    max(*z + dz, (T::ONE - T::of(OWN_SHARE)) * *z)
+                } else {
+                    *z + dual * dz
+                };
                 // Kept within 1e10 of the central path, as IPOPT does, so that the Hessian stays exact.
                 let far = T::of(1e10);
                 *z = max(min(moved, floor * far / now), floor / (far * now));

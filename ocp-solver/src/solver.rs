@@ -391,6 +391,7 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
         for stage in stages.iter_mut() {
             let node = &mut stage.node;
             node.elastic = self.elastic;
+            node.individual_steps = settings.individual_steps && self.uses_filter();
             if self.warm {
                 continue;
             }

@@ -54,6 +54,8 @@ pub(crate) struct Node<T, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) dims: Dims,
     /// Give of every row per unit of its multiplier; 0 outside elastic mode.
     pub(crate) elastic: T,
+    /// See [`crate::Settings::individual_steps`].
+    pub(crate) individual_steps: bool,
     /// Multiplier of the dynamics that lead into this node.
     pub(crate) costate: [T; NX],
     pub(crate) rows: Rows<T, NI>,
@@ -123,6 +125,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 mixed_rows: 0,
             },
             elastic: T::ZERO,
+            individual_steps: false,
             costate: [T::ZERO; NX],
             rows: Rows {
                 slack: [T::ZERO; NI],
@@ -246,16 +249,37 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         (&self.state, &self.control) == (&self.guess.0, &self.guess.1)
     }
 
-    /// Takes over the multipliers of a solved stage with the same rows, those of the dynamics times `scale`, for a warm start on
-    /// intervals of another length: where each interval has its cost whatever its length, on halves twice as many costs add up in
-    /// the multipliers of the dynamics, and those of the rows stay.
-    pub fn resume_from(&mut self, other: &Self, scale: T)
+    /// Takes over the multipliers of a solved stage, for a warm start on an interval that is part number `part` of the `parts` equal ones of
+    /// that stage's; `next` is the solved stage after it.
+    ///
+    /// Where each interval has its cost whatever its length, `parts` times as many costs add up on the parts: the multipliers of the
+    /// dynamics and those of the rows of a state alone, which stand at the first part, are as many times as large, and those of the
+    /// other rows stay. Rows are to be the same ones.
+    pub fn resume_part(&mut self, long: &Self, next: Option<&Self>, part: usize, parts: usize)
     where
         T: Scalar,
     {
-        self.node.costate = other.node.costate.map(|y| scale * y);
-        self.node.rows.below = other.node.rows.below;
-        self.node.rows.above = other.node.rows.above;
+        let scale = T::of(parts as f64);
+        let share = T::of(part as f64) / scale;
+        let after = next.map_or(&long.node.costate, |next| &next.node.costate);
+        let ends = long.node.costate.iter().zip(after);
+        for (y, (from, to)) in self.node.costate.iter_mut().zip(ends) {
+            *y = scale * (*from + share * (*to - *from));
+        }
+        let of_state = long.node.dims.state_rows;
+        let (rows, solved) = (&mut self.node.rows, &long.node.rows);
+        for (to, from) in [
+            (&mut rows.below, &solved.below),
+            (&mut rows.above, &solved.above),
+        ] {
+            if part == 0 {
+                *to = *from;
+                to.iter_mut().take(of_state).for_each(|y| *y *= scale);
+            } else {
+                let rest = from.iter().skip(of_state);
+                to.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
+            }
+        }
     }
 
     /// Keeps state and control beside, for a caller that tries another guess; solves leave them alone.

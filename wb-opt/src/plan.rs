@@ -10,13 +10,15 @@ use so3::Scalar;
 
 /// Settings for whole-body problems: the solver's defaults with a tighter primal tolerance, because a row of
 /// the force on the base is in units of 50 N, and a barrier that follows quickly: with the exact Hessian
-/// a barrier problem need not be solved closely before the next.
+/// a barrier problem need not be solved closely before the next. Of a thousand rows one is always near its bound, so each takes a
+/// step of its own.
 #[must_use]
 pub fn settings<T: Scalar>() -> Settings<T> {
     let mut settings = Settings::new();
     settings.primal_tolerance = T::of(2e-8);
     settings.initial_mu = T::of(0.005);
     settings.mu_margin = T::of(1e3);
+    settings.individual_steps = true;
     settings
 }
 
