@@ -15,10 +15,8 @@ use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
 const PATIENCE: usize = 150;
 /// Iterations in which the first try has to arrive: a search on long intervals, with what follows it, costs as much.
 const FIRST_PATIENCE: usize = 100;
-/// Barrier to begin with where a plan is made again.
-const WARM_MU: f64 = 1e-3;
-/// Barrier to begin with on intervals that were split: it is the same problem.
-const SPLIT_MU: f64 = 1e-4;
+/// Barrier to begin with where a plan is made again, or on parts of its intervals. With less the first steps go from bound to bound.
+const WARM_MU: f64 = 1e-2;
 
 /// Coordinates of a state with durations.
 const TIMED: usize = NX + PHASES;
@@ -156,7 +154,7 @@ impl<'a> Grid<'a> {
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
-        self.solve(&Tightening::default(), &warm(SPLIT_MU), observer)
+        self.solve(&Tightening::default(), &warm(), observer)
     }
 
     /// Plans again from where the last solve ended, with its torque.
@@ -165,7 +163,7 @@ impl<'a> Grid<'a> {
         drawn: &Tightening,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
-        self.solve(drawn, &warm(WARM_MU), observer)
+        self.solve(drawn, &warm(), observer)
     }
 
     /// Solves from what the stages hold, and keeps a note of it.
@@ -243,9 +241,9 @@ fn settings() -> Settings<f64> {
 }
 
 /// As [`settings`], from the multipliers that are there.
-fn warm(initial_mu: f64) -> Settings<f64> {
+fn warm() -> Settings<f64> {
     let mut settings = settings();
-    (settings.warm_start, settings.initial_mu) = (true, initial_mu);
+    (settings.warm_start, settings.initial_mu) = (true, WARM_MU);
     settings
 }
 
