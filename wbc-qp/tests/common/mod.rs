@@ -1,11 +1,6 @@
 //! States of iCub that proptest draws, and the Clarabel oracle.
 #![allow(unreachable_pub, reason = "tests")]
-#![allow(
-    clippy::panic,
-    clippy::unwrap_used,
-    missing_docs,
-    reason = "tests"
-)]
+#![allow(clippy::panic, clippy::unwrap_used, missing_docs, reason = "tests")]
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -114,10 +109,30 @@ pub fn snapshot(q: &Configuration<f64, N>, v: &Tangent<f64, N>) -> Snapshot<f64,
     s
 }
 
+/// What Clarabel says of a program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// The optimal cost.
+    Least(f64),
+    /// A cost that it could not show to be optimal to its last digits: the least one may be a little lower.
+    Nearly(f64),
+    Infeasible,
+    Unsure,
+}
+
+impl Verdict {
+    pub fn cost(self) -> Option<f64> {
+        match self {
+            Self::Least(cost) | Self::Nearly(cost) => Some(cost),
+            Self::Infeasible | Self::Unsure => None,
+        }
+    }
+}
+
 /// Optimal cost of the program as it stands, by Clarabel.
 pub fn oracle<const V: usize, const M: usize>(
     problem: &dense_qp::Problem<'_, f64, V, M>,
-) -> Option<f64> {
+) -> Verdict {
     let h: Vec<Vec<f64>> = problem.hessian.iter().map(|r| r.to_vec()).collect();
     let p = CscMatrix::from(&h).to_triu();
     // Equalities are a cone of their own: as two opposite inequalities they would leave an interior-point method no interior.
@@ -167,11 +182,13 @@ pub fn oracle<const V: usize, const M: usize>(
     let mut solver =
         DefaultSolver::new(&p, problem.gradient, &a, &equal_to, &cones, settings).unwrap();
     solver.solve();
+    let x: [f64; V] = core::array::from_fn(|i| solver.solution.x[i]);
     match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => {
-            let x: [f64; V] = core::array::from_fn(|i| solver.solution.x[i]);
-            Some(problem.cost(&x))
+        SolverStatus::Solved => Verdict::Least(problem.cost(&x)),
+        SolverStatus::AlmostSolved => Verdict::Nearly(problem.cost(&x)),
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            Verdict::Infeasible
         }
-        _ => None,
+        _ => Verdict::Unsure,
     }
 }
