@@ -167,4 +167,18 @@ proptest! {
         warm.workspace = Workspace::new();
         prop_assert_eq!(warm.step(&case), wanted);
     }
+
+    /// Tick after tick on the way from one motion to another, where rows come and go by little, memory changes nothing.
+    #[test]
+    fn a_motion_that_changes_slowly_is_followed(case in standing(), share in -1.0..1.0_f64) {
+        let mut warm = Controller::<f64>::new();
+        for tick in 0..12 {
+            let mut now = case;
+            now.v = case.v * (share * f64::from(tick) / 12.0);
+            let (a, b) = (Controller::<f64>::new().step(&now), warm.step(&now));
+            if is_solved(&a) && is_solved(&b) {
+                prop_assert!(off(&a.forces_w, &b.forces_w) < 5e-8, "{:e}", off(&a.forces_w, &b.forces_w));
+            }
+        }
+    }
 }
