@@ -4,3 +4,4 @@ mod common;
 mod forces;
 mod laws;
 mod optimal;
+mod touch;

@@ -113,8 +113,8 @@ fn stated(controller: &Controller<f64>, case: &Case) -> Stated {
         let frame = &FEET[foot].frame;
         frame_jacobian(&A1Geared, &kinematics, frame, Axes::Local, &mut jacobian);
         let rot_wf = kinematics.frame(frame).rotation;
-        for joint in 3 * foot..3 * foot + 3 {
-            let other = gravity[joint] - s.stance_damping * case.v.joints[joint];
+        for (joint, weight) in gravity.iter().enumerate().skip(3 * foot).take(3) {
+            let other = weight - s.stance_damping * case.v.joints[joint];
             let most = landing.max_torques[joint];
             out.room[joint] = [(-most - other).min(0.0), (most - other).max(0.0)];
             let column = -(rot_wf * jacobian.joints[joint].linear);
@@ -159,8 +159,8 @@ proptest! {
             }
             // Joint i's row stands after the sixteen of friction.
             let row = &found.rows[16 + i];
-            for j in 0..12 {
-                prop_assert!(near(row[j], wanted.torques[(i, j)]), "J {} {}", i, j);
+            for (j, found) in row.iter().enumerate() {
+                prop_assert!(near(*found, wanted.torques[(i, j)]), "J {} {}", i, j);
             }
             let [least, most] = wanted.room[i];
             prop_assert!(near(found.row_lower[16 + i], least) && near(found.row_upper[16 + i], most));
