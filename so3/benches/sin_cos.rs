@@ -44,7 +44,7 @@ fn drawn<S: Strategy>(configuration: &S) -> Vec<S::Value> {
 
 macro_rules! table {
     ($t:ident, $libm:path, $spread:expr) => {{
-        let inputs: Vec<[$t; JOINTS]> = drawn(&prop::array::uniform(-$spread..$spread));
+        let inputs: Vec<[$t; JOINTS]> = drawn(&prop::array::uniform(-$spread as $t..$spread as $t));
         let mut out = ([0.0; JOINTS], [0.0; JOINTS]);
         let mut each = |f: fn($t) -> ($t, $t)| {
             nanoseconds(&inputs, &mut out, |x, out| {
