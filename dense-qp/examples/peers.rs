@@ -11,19 +11,22 @@
 )]
 
 use dense_qp::{Problem, Settings, Status, Workspace, solve, solve_warm};
-use proptest::prelude::*;
-use proptest::strategy::ValueTree;
-use proptest::test_runner::TestRunner;
 use std::io::Write;
 use std::time::Instant;
 
 const INF: f64 = f64::INFINITY;
 
-/// Numbers in [−1, 1), the same on every machine.
-fn drawn(count: usize) -> impl Iterator<Item = f64> {
-    let mut runner = TestRunner::deterministic();
-    let numbers = prop::collection::vec(-1.0..1.0, count).new_tree(&mut runner);
-    numbers.unwrap().current().into_iter()
+/// SplitMix64.
+struct Rng(u64);
+
+impl Rng {
+    fn sym(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        2.0 * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 - 1.0
+    }
 }
 
 #[derive(Clone)]
@@ -59,7 +62,7 @@ impl<const N: usize, const M: usize> Qp<N, M> {
 /// Stance forces of a quadruped: track a wrench under friction pyramids (20 rows) and, for M = 32,
 /// joint torques (12 rows). Drifts at 1 kHz; the demand exceeds the limits now and then.
 fn landing<const M: usize>(count: usize) -> Vec<Qp<12, M>> {
-    let mut arms = drawn(count * 3 * (M - 20));
+    let mut r = Rng(7);
     let mut out = Vec::new();
     for k in 0..count {
         let t = k as f64 * 1e-2;
@@ -111,7 +114,7 @@ fn landing<const M: usize>(count: usize) -> Vec<Qp<12, M>> {
         for i in 20..M {
             let f = (i - 20) / 3;
             for c in 0..3 {
-                q.a[i][3 * f + c] = 0.2 * arms.next().unwrap();
+                q.a[i][3 * f + c] = 0.2 * r.sym();
             }
             (q.l[i], q.u[i]) = (-33.5, 33.5);
         }
@@ -123,9 +126,9 @@ fn landing<const M: usize>(count: usize) -> Vec<Qp<12, M>> {
 /// Whole-body control in shape: 23 accelerations and 12 contact forces, 18 equalities (6 of the
 /// base, 12 of the contacts), 80 inequalities of friction cones and torques.
 fn humanoid(count: usize) -> Vec<Qp<35, 98>> {
-    let size = (30 + 98) * 35;
-    let numbers: Vec<f64> = drawn(2 * size).collect();
-    let (fixed, drift) = numbers.split_at(size);
+    let mut r = Rng(11);
+    let fixed: Vec<f64> = (0..98 * 35 + 30 * 35).map(|_| r.sym()).collect();
+    let drift: Vec<f64> = (0..98 * 35 + 30 * 35).map(|_| r.sym()).collect();
     let mut out = Vec::new();
     for k in 0..count {
         let t = k as f64 * 1e-3;
