@@ -1,7 +1,8 @@
 //! What the force on a foot may be: inside the friction pyramid, below the largest normal force, and within the torques of its leg.
 //!
 //! Every limit is a row nᵀf ≤ d with d ≥ 0, so zero force keeps them all. Rows of a foot are numbered: ±f_x − μ f_z ≤ 0,
-//! ±f_y − μ f_z ≤ 0, f_z ≤ f_max, then two per joint of the robot, of which only those of the foot's own leg are its rows.
+//! ±f_y − μ f_z ≤ 0, f_z ≤ f_max, −f_z ≤ 0, then two per joint of the robot, of which only those of the foot's own leg are its rows.
+//! That feet do not pull follows from the first four unless μ = 0, and is a row of its own only then.
 
 use nalgebra::Vector3;
 use rbd_core::Limbs;
@@ -9,8 +10,11 @@ use so3::{Scalar, math};
 
 use crate::face::Face;
 
+/// The row −f_z ≤ 0.
+const PULL: usize = 5;
+
 /// Rows before those of the joints.
-const TORQUES: usize = 5;
+const TORQUES: usize = 6;
 
 /// A row nᵀf ≤ d.
 #[derive(Clone, Copy, Debug)]
@@ -121,6 +125,7 @@ impl<T: Scalar, const N: usize, const F: usize> Limits<T, N, F> {
             2 => (Vector3::new(zero, one, mu), zero),
             3 => (Vector3::new(zero, -one, mu), zero),
             4 => (Vector3::new(zero, zero, one), self.top),
+            PULL => (Vector3::new(zero, zero, -one), zero),
             _ => match self.torques.get((row - TORQUES) / 2) {
                 Some(torque) if row % 2 == TORQUES % 2 => (torque.normal, torque.most),
                 Some(torque) => (-torque.normal, -torque.least),
@@ -135,9 +140,15 @@ impl<T: Scalar, const N: usize, const F: usize> Limits<T, N, F> {
     pub(crate) fn most_violated(&self, foot: usize, force: &Vector3<T>) -> Violation<T> {
         let side = self.friction * force.z;
         let mut worst = Violation {
-            row: TORQUES - 1,
+            row: 4,
             force: force.z - self.top,
         };
+        if self.friction == T::ZERO && -force.z > worst.force {
+            worst = Violation {
+                row: PULL,
+                force: -force.z,
+            };
+        }
         for (row, along) in [(0, force.x), (2, force.y)] {
             let excess = math::abs(along) - side;
             if excess > worst.force {
@@ -162,7 +173,8 @@ impl<T: Scalar, const N: usize, const F: usize> Limits<T, N, F> {
     }
 
     /// Brings a force inside: first under the largest normal force and into the pyramid, then shorter until the joints can give it.
-    /// Zero force keeps every row, so some length does.
+    /// Zero force keeps every row, so some length does. Torques that are round-off of the force's count as none: where a joint has no
+    /// room left, they would take the whole force with them.
     pub(crate) fn shorten(&self, foot: usize, force: &mut Vector3<T>) {
         force.z = math::clamp(force.z, T::ZERO, self.top);
         let side = self.friction * force.z;
@@ -170,6 +182,9 @@ impl<T: Scalar, const N: usize, const F: usize> Limits<T, N, F> {
         force.y = math::clamp(force.y, -side, side);
         for (_, torque) in self.leg(foot) {
             let value = torque.normal.dot(force);
+            if math::abs(value) * torque.per_force <= force.amax() * T::of(4096.0) * T::EPSILON {
+                continue;
+            }
             if value > torque.most {
                 *force *= torque.most / value;
             } else if value < torque.least {

@@ -229,4 +229,20 @@ mod tests {
         let far = wild.iter().zip(LEVEL).map(|(q, l)| (q - l).abs());
         assert!(far.fold(0.0, f64::max) <= 0.5);
     }
+
+    /// However fast, feet lead by no more than the largest lead.
+    #[test]
+    fn the_lead_has_a_limit() {
+        let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
+        let joints = |speed: f64| posture.joints(&A1Geared, &Vector3::z(), &(Vector3::x() * speed));
+        let limit = posture.max_lead / posture.lead;
+        let apart = |a: [f64; 12], b: [f64; 12]| {
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max)
+        };
+        assert!(apart(joints(limit), joints(1.5 * limit)) < 1e-12);
+        assert!(apart(joints(limit), joints(0.9 * limit)) > 1e-3);
+    }
 }

@@ -106,7 +106,12 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         let bounds = self.lower.chunks_mut(3).zip(self.upper.chunks_mut(3));
         for ((lower, upper), on) in bounds.zip(&forces.on) {
             if *on {
-                let side = limits.friction * limits.top;
+                // Without friction there is no force to the side, however large the normal force may be: 0 · ∞ would be NaN.
+                let side = if limits.friction > T::ZERO {
+                    limits.friction * limits.top
+                } else {
+                    T::ZERO
+                };
                 lower.copy_from_slice(&[-side, -side, T::ZERO]);
                 upper.copy_from_slice(&[side, side, limits.top]);
             }

@@ -1,4 +1,7 @@
 //! Every integration test of the crate in one program: linked once.
 
+mod common;
 mod forces;
+mod laws;
 mod optimal;
+mod touch;

@@ -6,8 +6,12 @@
     clippy::disallowed_methods,
     reason = "std is the peer that is measured"
 )]
+#![allow(clippy::unwrap_used, reason = "bench")]
 
 use core::hint::black_box;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 use std::time::Instant;
 
 const JOINTS: usize = 12;
@@ -31,17 +35,16 @@ fn nanoseconds<I, O>(inputs: &[I], out: &mut O, mut call: impl FnMut(&I, &mut O)
     rounds[ROUNDS / 2]
 }
 
+/// Configurations, the same on every machine.
+fn drawn<S: Strategy>(configuration: &S) -> Vec<S::Value> {
+    let mut runner = TestRunner::deterministic();
+    let draw = |_| configuration.new_tree(&mut runner).unwrap().current();
+    (0..CONFIGURATIONS).map(draw).collect()
+}
+
 macro_rules! table {
     ($t:ident, $libm:path, $spread:expr) => {{
-        // A linear congruential generator is random enough for branch predictors.
-        let mut seed = 1_u64;
-        let mut angle = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            ((seed >> 40) as $t / (1 << 23) as $t - 1.0) * $spread
-        };
-        let inputs: Vec<[$t; JOINTS]> = (0..CONFIGURATIONS)
-            .map(|_| core::array::from_fn(|_| angle()))
-            .collect();
+        let inputs: Vec<[$t; JOINTS]> = drawn(&prop::array::uniform(-$spread as $t..$spread as $t));
         let mut out = ([0.0; JOINTS], [0.0; JOINTS]);
         let mut each = |f: fn($t) -> ($t, $t)| {
             nanoseconds(&inputs, &mut out, |x, out| {

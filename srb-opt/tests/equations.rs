@@ -1,23 +1,10 @@
 //! Problem (2) of paper A as it is printed, in plain formulas, beside what the solver is given.
 
-use crate::common::{NI, NU, NX, jump};
+use crate::common::{NI, NU, NX, config, jump, nodes};
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use ocp_solver::{Problem as Ocp, Stage, Values};
+use ocp_solver::{Problem as Ocp, Values};
+use proptest::prelude::*;
 use srb_opt::{OMEGA, POSITION, ROTATION, State, VELOCITY};
-
-type Node = Stage<f64, State<f64, 4>, NX, NU, NI>;
-
-/// The guess with noise from a small generator.
-fn nodes(seed: u32) -> Vec<Node> {
-    let problem = jump();
-    let mut stages = vec![Node::new(State::new()); problem.intervals() + 1];
-    let mut state = seed;
-    problem.write_guess(&mut stages, || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        0.3 * (f64::from(state >> 8) / f64::from(1 << 23) - 1.0)
-    });
-    stages
-}
 
 /// Forces on the feet in contact, N: controls are in halves of the weight.
 fn forces(k: usize, control: &[f64; NU]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
@@ -46,13 +33,14 @@ fn evaluate(
     values
 }
 
-/// (1a) and (1b) give the accelerations, (2b) steps with them, (1c), (2c) and (3) turn the body: the gaps to the next node are what is
-/// missing.
-#[test]
-fn the_body_moves_as_printed() {
-    let problem = jump();
-    for seed in 0..20 {
-        let stages = nodes(seed);
+proptest! {
+    #![proptest_config(config(20, 4))]
+
+    /// (1a) and (1b) give the accelerations, (2b) steps with them, (1c), (2c) and (3) turn the body: the gaps to the next node are what is
+    /// missing.
+    #[test]
+    fn the_body_moves_as_printed(stages in nodes(0.3)) {
+        let problem = jump();
         for k in 0..problem.intervals() {
             let (x, u) = (&stages[k].state, &stages[k].control);
             let (phase, data) = problem.phase_of(k).unwrap();
@@ -89,17 +77,14 @@ fn the_body_moves_as_printed() {
             assert!((reached - carried.rot_wb).amax() < 1e-9, "{k}");
         }
     }
-}
 
-/// ε_Ω Ωᵀ Ω + ε_f fᵀ f + ε_R e_Rᵀ e_R with e_R = log(R_refᵀ R)ˇ and R_ref turned linearly from start to goal.
-#[test]
-fn the_cost_is_that_of_the_paper() {
-    let problem = jump();
-    let last = problem.intervals() as f64;
-    for seed in 0..20 {
-        let stages = nodes(seed);
+    /// ε_Ω Ωᵀ Ω + ε_f fᵀ f + ε_R e_Rᵀ e_R with e_R = log(R_refᵀ R)ˇ and R_ref turned linearly from start to goal.
+    #[test]
+    fn the_cost_is_that_of_the_paper(stages in nodes(0.3), turn in prop::array::uniform3(-1.0..1.0_f64)) {
+        let problem = jump();
+        let last = problem.intervals() as f64;
+        let turn = Vector3::from(turn);
         for k in 1..problem.intervals() {
-            let turn = Vector3::new(0.1, -0.2, 0.05 * f64::from(seed));
             let mut step = [0.0; NX];
             step[ROTATION..ROTATION + 3].copy_from_slice(turn.as_slice());
             // A true rotation, off the reference.
@@ -121,14 +106,11 @@ fn the_cost_is_that_of_the_paper() {
             );
         }
     }
-}
 
-/// (2a): legs reach their feet, corners keep clear of the ground, forces stay in pyramids and below their limit; (2d): durations.
-#[test]
-fn rows_are_the_constraints_of_the_paper() {
-    let problem = jump();
-    for seed in 0..20 {
-        let stages = nodes(seed);
+    /// (2a): legs reach their feet, corners keep clear of the ground, forces stay in pyramids and below their limit; (2d): durations.
+    #[test]
+    fn rows_are_the_constraints_of_the_paper(stages in nodes(0.3)) {
+        let problem = jump();
         for k in 0..problem.intervals() {
             let (x, u) = (&stages[k].state, &stages[k].control);
             let rows = evaluate(k, x, u, &stages[k + 1].state).rows;

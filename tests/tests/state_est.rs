@@ -4,30 +4,26 @@
 use a1_model::{A1Geared, FEET, MOTORS, a1};
 use contact_sim::{Error, NativeSimulator, Shape, Simulator, Terrain};
 use icub_model::{Icub23Cad, SOLES};
+use jump_lab::noise::Noise;
 use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
 use rbd_core::{Configuration, ContactShape, Model, Motion, Tangent, Transform, Tree};
 use state_est::{Estimate, Estimator, Fault, Foot, Sample, Settings, State, Status};
 
-/// Normal numbers from a seed, as in `saltus`.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
+fn config(cases: u32, seed: u64) -> Config {
+    let mut config = Config::with_cases(cases);
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(seed);
     }
+    config.failure_persistence = None;
+    config
+}
 
-    /// The sum of twelve uniform numbers is normal enough.
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
-
-    fn vector(&mut self, deviation: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| deviation * self.normal())
-    }
+/// Three numbers with this standard deviation, of a noise with that of one.
+fn vector(noise: &mut Noise, deviation: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| deviation * noise.sample())
 }
 
 /// Standard deviations of the sensors; zero for ideal ones.
@@ -42,9 +38,9 @@ struct Sensors {
 
 impl Sensors {
     fn new(seed: u64, scale: f64, imu: Transform<f64>) -> Self {
-        let mut noise = Noise(seed);
-        let gyro_bias = noise.vector(0.01) * scale;
-        let force_bias = noise.vector(0.05) * scale;
+        let mut noise = Noise::new(seed, 1.0);
+        let gyro_bias = vector(&mut noise, 0.01 * scale);
+        let force_bias = vector(&mut noise, 0.05 * scale);
         Self {
             noise,
             scale,
@@ -79,12 +75,12 @@ impl Sensors {
         Sample {
             specific_force_i: to_imu * (q.base.rotation.inverse() * force_w)
                 + self.force_bias
-                + self.noise.vector(0.1 * s),
+                + vector(&mut self.noise, 0.1 * s),
             angular_velocity_i: to_imu * v.base.angular
                 + self.gyro_bias
-                + self.noise.vector(0.01 * s),
-            joints: q.joints.map(|x| x + 1e-3 * s * self.noise.normal()),
-            joint_velocities: v.joints.map(|x| x + 0.05 * s * self.noise.normal()),
+                + vector(&mut self.noise, 0.01 * s),
+            joints: q.joints.map(|x| x + 1e-3 * s * self.noise.sample()),
+            joint_velocities: v.joints.map(|x| x + 0.05 * s * self.noise.sample()),
             evidence,
         }
     }
@@ -278,38 +274,65 @@ fn ideal_sensors_follow_a1_through_flight_and_impact() {
     }
 }
 
-/// Bounds over ten seeds; the landing slides and rolls, which costs centimetres of place.
-#[test]
-fn noisy_sensors_follow_a1_through_flight_and_impact() {
-    let mut worst = [Errors::default(); 3];
-    for seed in 1..=10 {
-        let run = fly_a1(seed, 1.0, None, mounted());
-        for (worst, errors) in worst.iter_mut().zip(run) {
-            *worst = worst.worst(errors);
+/// Where an IMU may sit: where [`mounted`] says, at the origin, or anywhere in the trunk and turned anyhow, by half a turn too.
+fn mounts() -> impl Strategy<Value = Transform<f64>> {
+    let axis = prop::array::uniform3(-1.0..1.0_f64).prop_map(|axis| {
+        let axis = Vector3::from(axis).try_normalize(1e-3);
+        axis.unwrap_or_else(Vector3::z)
+    });
+    let angle = prop_oneof![2 => -3.0..3.0_f64, 1 => Just(core::f64::consts::PI)];
+    let turn = (axis, angle).prop_map(|(axis, angle)| so3::exp(&(axis * angle)));
+    let place = prop::array::uniform3(-0.05..0.05_f64).prop_map(Vector3::from);
+    let anyhow = (turn, place).prop_map(|(turn, place)| Transform::new(turn, place));
+    prop_oneof![2 => Just(mounted()), 1 => Just(Transform::IDENTITY), 3 => anyhow]
+}
+
+proptest! {
+    #![proptest_config(config(10, 1))]
+
+    /// The landing slides and rolls, which costs centimetres of place.
+    #[test]
+    fn noisy_sensors_follow_a1_through_flight_and_impact(noise: u64, imu in mounts()) {
+        let [stand, air, end] = fly_a1(noise, 1.0, None, imu);
+        println!("{stand:?}\n{air:?}\n{end:?}");
+        prop_assert!(stand.position < 0.01 && stand.velocity < 0.05 && stand.tilt < 0.015, "{stand:?}");
+        prop_assert!(air.position < 0.03 && air.velocity < 0.10 && air.tilt < 0.02, "{air:?}");
+        prop_assert!(end.position < 0.04 && end.velocity < 0.05 && end.tilt < 0.02, "{end:?}");
+        prop_assert!(end.heading < 0.03, "{end:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(config(1, 3))]
+
+    /// A sensor that is stuck on in the air anchors nothing.
+    #[test]
+    fn a_stuck_foot_sensor_does_not_hold_the_flying_robot(noises: [u64; 4], imus in [mounts(), mounts(), mounts(), mounts()]) {
+        for (foot, (noise, imu)) in noises.into_iter().zip(imus).enumerate() {
+            let [_, air, end] = fly_a1(noise, 1.0, Some(foot), imu);
+            println!("{air:?} {end:?}");
+            prop_assert!(air.velocity < 0.2 && air.position < 0.05, "{air:?}");
+            prop_assert!(end.velocity < 0.05 && end.tilt < 0.03, "{end:?}");
         }
     }
-    println!("{worst:?}");
-    let [stand, air, end] = worst;
-    assert!(stand.position < 0.01 && stand.velocity < 0.05 && stand.tilt < 0.015);
-    assert!(air.position < 0.03 && air.velocity < 0.10 && air.tilt < 0.02);
-    assert!(end.position < 0.04 && end.velocity < 0.05 && end.tilt < 0.02);
-    assert!(end.heading < 0.03);
 }
 
-/// A sensor that is stuck on in the air anchors nothing.
-#[test]
-fn a_stuck_foot_sensor_does_not_hold_the_flying_robot() {
-    for foot in 0..4 {
-        let [_, air, end] = fly_a1(3, 1.0, Some(foot), mounted());
-        println!("{air:?} {end:?}");
-        assert!(air.velocity < 0.2 && air.position < 0.05, "{air:?}");
-        assert!(end.velocity < 0.05 && end.tilt < 0.03, "{end:?}");
+proptest! {
+    #![proptest_config(config(3, 5))]
+
+    /// iCub: soles, 23 joints, IMU at the root.
+    #[test]
+    fn icub_is_followed_through_a_hop(noise: u64, imu in mounts()) {
+        let [stand, air, end] = hop_icub(noise, imu);
+        println!("{stand:?}\n{air:?}\n{end:?}");
+        prop_assert!(stand.position < 0.02 && stand.velocity < 0.05 && stand.tilt < 0.015, "{stand:?}");
+        prop_assert!(air.position < 0.04 && air.velocity < 0.10 && air.tilt < 0.02, "{air:?}");
+        // Held stiffly, it lands rocking on the edges of its soles, whose middles are then poor anchors.
+        prop_assert!(end.position < 0.08 && end.velocity < 0.3 && end.tilt < 0.05, "{end:?}");
     }
 }
 
-/// iCub: soles, 23 joints, IMU at the root.
-#[test]
-fn icub_is_followed_through_a_hop() {
+fn hop_icub(noise: u64, imu: Transform<f64>) -> [Errors; 3] {
     let spheres: [Shape<f64>; 8] = core::array::from_fn(|i| {
         let sole = &SOLES[i / 4];
         let ContactShape::Rectangle { x, y } = sole.shape else {
@@ -337,7 +360,7 @@ fn icub_is_followed_through_a_hop() {
     start.base.translation.z = -poses.frame(&SOLES[0].frame).translation.z;
     let estimator = Estimator::<f64, 23, 2, 4> {
         feet: SOLES.map(|sole| Foot::of(&sole)),
-        imu: mounted(),
+        imu,
         settings: Settings::new(),
     };
     let flight = Flight {
@@ -349,25 +372,18 @@ fn icub_is_followed_through_a_hop() {
         after: 700,
         stuck: None,
     };
-    for seed in 1..=3 {
-        let [stand, air, end] = fly(
-            &Icub23Cad,
-            &mut plant,
-            &estimator,
-            |plant: &NativeSimulator<f64, Icub23Cad, 23, 8, 8>| {
-                let f = plant.contact_forces_w();
-                [0, 4].map(|k| f[k..k + 4].iter().map(|f| f.z).sum())
-            },
-            &start,
-            &flight,
-            Sensors::new(seed, 1.0, mounted()),
-        );
-        println!("{stand:?}\n{air:?}\n{end:?}");
-        assert!(stand.position < 0.02 && stand.velocity < 0.05 && stand.tilt < 0.015);
-        assert!(air.position < 0.04 && air.velocity < 0.10 && air.tilt < 0.02);
-        // Held stiffly, it lands rocking on the edges of its soles, whose middles are then poor anchors.
-        assert!(end.position < 0.08 && end.velocity < 0.3 && end.tilt < 0.05);
-    }
+    fly(
+        &Icub23Cad,
+        &mut plant,
+        &estimator,
+        |plant: &NativeSimulator<f64, Icub23Cad, 23, 8, 8>| {
+            let f = plant.contact_forces_w();
+            [0, 4].map(|k| f[k..k + 4].iter().map(|f| f.z).sum())
+        },
+        &start,
+        &flight,
+        Sensors::new(noise, 1.0, imu),
+    )
 }
 
 /// Standing A1 and its estimator.

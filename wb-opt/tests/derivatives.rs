@@ -1,7 +1,7 @@
 //! Stage derivatives against finite differences.
 
 use crate::common::differences::{entry, mixed, moved, reached};
-use crate::common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump, robot};
+use crate::common::{FEET, N, NI, NU, NX, Node, anywhere, based, config, data, jump, robot, stage};
 use a1_model::A1Geared;
 use nalgebra::Vector3;
 use ocp_solver::{Derivatives, Evaluated, Problem as Ocp, Values, derivative_errors};
@@ -9,79 +9,86 @@ use proptest::prelude::*;
 use srb_opt::Edge;
 use wb_opt::{BASE, BaseCoordinates, EulerOrder, Friction, Problem, State};
 
+/// Two nodes in the same base coordinates: a state and a control, and where to go.
+fn pairs() -> impl Strategy<Value = (BaseCoordinates, Node, State<f64, N>)> {
+    let pair =
+        |base| (anywhere(base), anywhere(base)).prop_map(move |(node, next)| (base, node, next.0));
+    let each = crate::common::BASES.map(|base| pair(base).boxed());
+    prop::strategy::Union::new(each)
+}
+
+/// Multipliers of as many rows.
+fn multipliers<const K: usize>() -> impl Strategy<Value = [f64; K]> {
+    prop::array::uniform(-1.0..1.0_f64)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(config(24, 1))]
 
     #[test]
-    fn first_derivatives(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
+    fn first_derivatives((base, node, next) in pairs(), k in stage()) {
         let data = data();
-        let mut problem = jump(&data, BASES[base]);
+        let mut problem = jump(&data, base);
         problem.edge = Some(Edge { drop: 0.3, axis: 1, sign: -1.0, distance: 0.18, width: 0.3 });
-        let mut noise = Noise(seed);
-        let (state, control) = anywhere(&mut noise, BASES[base]);
-        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
+        let next = reached(base, problem.dt(k), &node, next);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
-            &problem, k, &state, &control, Some(&next), 1e-6,
+            &problem, k, &node.0, &node.1, Some(&next), 1e-6,
         );
         prop_assert!(errors.worst() < 2e-6, "{errors:?}");
     }
 
     #[test]
-    fn second_derivatives(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
+    fn second_derivatives((base, node, next) in pairs(), k in stage(), y in multipliers()) {
         let data = data();
-        let mut problem = jump(&data, BASES[base]);
+        let mut problem = jump(&data, base);
         problem.edge = Some(Edge { drop: 0.3, axis: 0, sign: 1.0, distance: 0.1, width: 0.3 });
-        let worst = hessian_error(&problem, seed, k);
+        let worst = hessian_error(&problem, k, (&node, next), &y);
         prop_assert!(worst < 2e-5, "{worst}");
     }
 
     #[test]
-    fn of_the_geared_robot_on_rolling_feet_and_eight_sides(seed in 0u32..1_000_000, k in 0usize..34, base in 0usize..3) {
+    fn of_the_geared_robot_on_rolling_feet_and_eight_sides((base, node, next) in pairs(), k in stage(), y in multipliers()) {
         let data = data();
-        let mut problem = jump(&data, BASES[base]);
-        problem.robot = robot(&A1Geared, BASES[base]);
+        let mut problem = jump(&data, base);
+        problem.robot = robot(&A1Geared, base);
         problem.feet.iter_mut().for_each(|foot| foot.radius = 0.2);
         problem.friction = Friction::within_cone(0.45, 0.57);
-        let mut noise = Noise(seed);
-        let (state, control) = anywhere(&mut noise, BASES[base]);
-        let next = reached(problem.robot.base, problem.dt(k), (&state, &control), &mut noise);
+        let there = reached(base, problem.dt(k), &node, next);
         let errors = derivative_errors::<f64, _, NX, NU, NI>(
-            &problem, k, &state, &control, Some(&next), 1e-6,
+            &problem, k, &node.0, &node.1, Some(&there), 1e-6,
         );
         prop_assert!(errors.worst() < 2e-6, "{errors:?}");
-        let worst = hessian_error(&problem, seed, k);
+        let worst = hessian_error(&problem, k, (&node, next), &y);
         prop_assert!(worst < 2e-5, "{worst}");
     }
 }
 
-#[test]
-fn derivatives_of_the_last_node() {
-    let data = data();
-    for base in BASES {
+proptest! {
+    #![proptest_config(config(6, 2))]
+
+    #[test]
+    fn derivatives_of_the_last_node((base, node) in based(), y in multipliers()) {
+        let data = data();
         let problem = jump(&data, base);
-        let (state, control) = anywhere(&mut Noise(5), base);
         let errors =
-            derivative_errors::<f64, _, NX, NU, NI>(&problem, 34, &state, &control, None, 1e-6);
-        assert!(errors.worst() < 1e-7, "{errors:?}");
-        assert!(hessian_error(&problem, 5, 34) < 1e-6);
+            derivative_errors::<f64, _, NX, NU, NI>(&problem, 34, &node.0, &node.1, None, 1e-6);
+        prop_assert!(errors.worst() < 1e-7, "{errors:?}");
+        prop_assert!(hessian_error(&problem, 34, (&node, node.0), &y) < 1e-6);
     }
 }
 
-/// What the gap of a rotation adds to the Hessian, against second differences of its values.
-#[test]
-fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
-    let data = data();
-    let problem = jump(&data, BaseCoordinates::Rotation);
-    let mut noise = Noise(3);
-    for k in [3, 15, 22] {
-        let (state, control) = anywhere(&mut noise, problem.robot.base);
-        let next = reached(
-            problem.robot.base,
-            problem.dt(k),
-            (&state, &control),
-            &mut noise,
-        );
-        let lambda: [f64; NX] = core::array::from_fn(|_| noise.next());
+proptest! {
+    #![proptest_config(config(6, 3))]
+
+    /// What the gap of a rotation adds to the Hessian, against second differences of its values.
+    #[test]
+    fn the_gap_of_a_rotation_bends_as_the_hessian_says(
+        node in anywhere(BaseCoordinates::Rotation), next in anywhere(BaseCoordinates::Rotation), lambda in multipliers::<NX>(), k in stage(),
+    ) {
+        let data = data();
+        let problem = jump(&data, BaseCoordinates::Rotation);
+        let next = reached(problem.robot.base, problem.dt(k), &node, next.0);
+        let (state, control) = node;
         let at = |lambda: &[f64; NX]| {
             let values = Values::<f64, NX, NI>::new();
             let mut d = Derivatives::<f64, NX, NU, NI>::new();
@@ -119,17 +126,17 @@ fn the_gap_of_a_rotation_bends_as_the_hessian_says() {
     }
 }
 
-/// One motion of a robot in two base coordinates takes the same efforts.
-#[test]
-fn the_same_motion_takes_the_same_efforts() {
-    let mut data = data();
-    // So short that the middle is the start.
-    data.phases.iter_mut().for_each(|phase| phase.dt = 1e-12);
-    let euler = jump(&data, BaseCoordinates::Angles(EulerOrder::Zyx));
-    let free = jump(&data, BaseCoordinates::Rotation);
-    let mut noise = Noise(17);
-    for k in [3, 15, 22] {
-        let (state, control) = anywhere(&mut noise, euler.robot.base);
+proptest! {
+    #![proptest_config(config(12, 17))]
+
+    /// One motion of a robot in two base coordinates takes the same efforts.
+    #[test]
+    fn the_same_motion_takes_the_same_efforts((state, control) in anywhere(BaseCoordinates::Angles(EulerOrder::Zyx)), k in stage()) {
+        let mut data = data();
+        // So short that the middle is the start.
+        data.phases.iter_mut().for_each(|phase| phase.dt = 1e-12);
+        let euler = jump(&data, BaseCoordinates::Angles(EulerOrder::Zyx));
+        let free = jump(&data, BaseCoordinates::Rotation);
         let rpy = Vector3::new(state.q[5], state.q[4], state.q[3]);
         let rates = Vector3::new(state.v[5], state.v[4], state.v[3]);
         let order = so3::euler::RollPitchYaw::Zyx;
@@ -163,16 +170,14 @@ fn the_same_motion_takes_the_same_efforts() {
 /// Largest relative difference between the Hessian and differences of the Lagrangian's gradient, less the
 /// part of the cost that is Gauss–Newton by construction: with the multipliers of the effort rows the
 /// Hessian is exact.
-fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f64 {
-    let mut noise = Noise(seed);
-    let (state, control) = anywhere(&mut noise, problem.robot.base);
-    let next = reached(
-        problem.robot.base,
-        problem.dt(k),
-        (&state, &control),
-        &mut noise,
-    );
-    let y: [f64; NI] = core::array::from_fn(|_| noise.next());
+fn hessian_error(
+    problem: &Problem<'_, f64, N, FEET>,
+    k: usize,
+    (node, next): (&Node, State<f64, N>),
+    y: &[f64; NI],
+) -> f64 {
+    let next = reached(problem.robot.base, problem.dt(k), node, next);
+    let (state, control) = *node;
     let rows = Ocp::<f64, NX, NU, NI>::dims(problem, k).rows();
     let controls = Ocp::<f64, NX, NU, NI>::dims(problem, k).controls;
     let at = |state: &State<f64, N>, control: &[f64; NU]| {
@@ -181,7 +186,7 @@ fn hessian_error(problem: &Problem<'_, f64, N, FEET>, seed: u32, k: usize) -> f6
         let at = Evaluated {
             values: &values,
             dynamics_multiplier: &[0.0; NX],
-            row_multipliers: &y,
+            row_multipliers: y,
         };
         let next = (k < problem.intervals()).then_some(&next);
         problem.differentiate(k, state, control, next, at, &mut d);

@@ -1,7 +1,8 @@
 //! A motion on long intervals is nearly one on their parts.
 
-use crate::common::{BASES, FEET, N, NI, NU, NX, Noise, anywhere, data, jump};
+use crate::common::{BASES, FEET, N, NI, NU, NX, anywhere, config, data, jump};
 use ocp_solver::{Problem as Ocp, SparseStage, Values};
+use proptest::prelude::*;
 use wb_opt::{BASE, BaseCoordinates, Problem, State};
 
 /// Three coordinates that turn the base.
@@ -20,14 +21,16 @@ fn gap(
     values.gap
 }
 
-#[test]
-fn parts_of_an_interval_follow_from_each_other() {
-    let data = data();
-    let mut noise = Noise(7);
-    for base in BASES {
+proptest! {
+    #![proptest_config(config(3, 7))]
+    #[test]
+    fn parts_of_an_interval_follow_from_each_other(
+        nodes in BASES.map(|base| prop::collection::vec(anywhere(base), 4)),
+    ) {
+        let data = data();
+        for (base, nodes) in BASES.into_iter().zip(nodes) {
         let problem = jump(&data, base);
         for parts in [1, 2, 4] {
-            let nodes: Vec<_> = (0..4).map(|_| anywhere(&mut noise, base)).collect();
             let mut stages =
                 vec![SparseStage::sparse(State::at_rest(problem.start)); problem.intervals() + 1];
             problem.write_split(&mut stages, &nodes, parts);
@@ -54,4 +57,5 @@ fn parts_of_an_interval_follow_from_each_other() {
             }
         }
     }
+}
 }

@@ -1,10 +1,12 @@
 //! Contacts on inclined ground, polygons, feedback, and what is refused.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, Rng, snapshot};
+use crate::common::{N, config, each, snapshot};
 use a1_model::{A1, FEET, FOOT_RADIUS};
+use core::cell::Cell;
 use icub_model::{Icub23, SOLES};
 use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
 use rbd_core::{Configuration, ContactShape, Frame, Tangent, Transform, integrate, rnea};
 use wbc_qp::{Contact, Error, Patch, Rank, Snapshot, TorqueQp, VelocityQp, Yielded, anchored};
 
@@ -123,26 +125,25 @@ fn a_polygon_bounds_the_centre_of_pressure() {
     };
     assert!((square.yaw - rectangle.yaw).abs() < 1e-15);
     let triangle = Contact::polygon(&frame, &TRIANGLE, 0.5, 100.0).unwrap();
-    let mut rng = Rng(31);
-    let mut inside = [0; 3];
-    for _ in 0..20_000 {
-        let (x, y) = (0.15 * rng.next(), 0.1 * rng.next());
-        let f = [
-            10.0 * rng.next(),
-            10.0 * rng.next(),
-            30.0,
-            30.0 * y,
-            -30.0 * x,
-            rng.next(),
-        ];
-        assert_eq!(allowed(&square, &f), allowed(&rectangle, &f));
-        inside[0] += u32::from(allowed(&square, &f));
-        // No tangential force and no yaw: the triangle alone decides.
-        let f = [0.0, 0.0, 30.0, f[3], f[4], 0.0];
-        let is_inside = x > -0.05 && y.abs() < (0.1 - x) / 3.0;
-        assert_eq!(allowed(&triangle, &f), is_inside, "{x} {y}");
-        inside[1] += u32::from(is_inside);
-    }
+    let inside = [const { Cell::new(0) }; 2];
+    let unit = || -1.0..1.0_f64;
+    let places = (unit(), unit()).prop_map(|(x, y)| (0.15 * x, 0.1 * y));
+    let wrenches = (places, [unit(), unit(), unit()]);
+    each(
+        config(20_000, 31),
+        &wrenches,
+        |((x, y), [side, across, yaw])| {
+            let f = [10.0 * side, 10.0 * across, 30.0, 30.0 * y, -30.0 * x, yaw];
+            assert_eq!(allowed(&square, &f), allowed(&rectangle, &f));
+            inside[0].set(inside[0].get() + u32::from(allowed(&square, &f)));
+            // No tangential force and no yaw: the triangle alone decides.
+            let f = [0.0, 0.0, 30.0, f[3], f[4], 0.0];
+            let is_inside = x > -0.05 && y.abs() < (0.1 - x) / 3.0;
+            assert_eq!(allowed(&triangle, &f), is_inside, "{x} {y}");
+            inside[1].set(inside[1].get() + u32::from(is_inside));
+        },
+    );
+    let inside = inside.map(|count| count.get());
     assert!(inside[0] > 1000 && inside[1] > 1000, "{inside:?}");
     for vertices in [&STAR[..], &CLOCKWISE, &SQUARE[..2], &[]] {
         assert_eq!(
@@ -155,64 +156,66 @@ fn a_polygon_bounds_the_centre_of_pressure() {
 /// The error's rate along a motion is minus the contact's velocity, and in both programs a displaced sole goes back.
 #[test]
 fn contacts_go_back_to_where_they_were() {
-    let mut rng = Rng(32);
-    let mut q = [0.0; N];
-    for leg in [0, 6] {
-        (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
-    }
-    let (q, v) = anchored(
-        &Icub23,
-        &q,
-        &[0.0; N],
-        &SOLES[0].frame,
-        &Transform::IDENTITY,
-    );
-    let home = snapshot(&q, &v);
-    let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
-    let places = contacts.map(|c| home.pose(&c.frame));
-    let mut q = q;
-    for x in &mut q.joints[..12] {
-        *x += 0.02 * rng.next();
-    }
-    let miss = |s: &Snapshot<f64, N>| {
-        let each = contacts
-            .iter()
-            .zip(&places)
-            .flat_map(|(c, at)| c.error(s, at));
-        each.collect::<Vec<f64>>()
-    };
-    let size = |e: &[f64]| e.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let before = size(&miss(&snapshot(&q, &v)));
-    let mut qp = VelocityQp::<f64, N, 29, 12>::new();
-    for _ in 0..100 {
+    let shifts = prop::array::uniform::<_, 12>(-0.02..0.02_f64);
+    each(config(2, 32), &shifts, |shifts| {
+        let mut q = [0.0; N];
+        for leg in [0, 6] {
+            (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
+        }
+        let (q, v) = anchored(
+            &Icub23,
+            &q,
+            &[0.0; N],
+            &SOLES[0].frame,
+            &Transform::IDENTITY,
+        );
+        let home = snapshot(&q, &v);
+        let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+        let places = contacts.map(|c| home.pose(&c.frame));
+        let mut q = q;
+        for (x, shift) in q.joints.iter_mut().zip(shifts) {
+            *x += shift;
+        }
+        let miss = |s: &Snapshot<f64, N>| {
+            let each = contacts
+                .iter()
+                .zip(&places)
+                .flat_map(|(c, at)| c.error(s, at));
+            each.collect::<Vec<f64>>()
+        };
+        let size = |e: &[f64]| e.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let before = size(&miss(&snapshot(&q, &v)));
+        let mut qp = VelocityQp::<f64, N, 29, 12>::new();
+        for _ in 0..100 {
+            let s = snapshot(&q, &Tangent::ZERO);
+            qp.begin(&Icub23, &s, &contacts).unwrap();
+            let wanted: Vec<f64> = miss(&s).iter().map(|e| 5.0 * e).collect();
+            qp.correct_contacts(&wanted);
+            qp.minimise_joints(&[0.0; N], &[1.0; N]);
+            let answer = qp.solve().unwrap();
+            assert_eq!(answer.yielded, Yielded::Nothing);
+            q = integrate(&q, &(answer.velocity * 0.01));
+        }
+        let after = size(&miss(&snapshot(&q, &v)));
+        assert!(before > 0.005 && after < 0.02 * before, "{before} {after}");
+
+        // At the level of torques: the acceleration asked for is had.
         let s = snapshot(&q, &Tangent::ZERO);
-        qp.begin(&Icub23, &s, &contacts).unwrap();
-        let wanted: Vec<f64> = miss(&s).iter().map(|e| 5.0 * e).collect();
+        let mut qp = TorqueQp::<f64, N, 12, 35, 55>::new();
+        qp.begin(&Icub23, &s, &contacts, &[0.0; N]).unwrap();
+        let wanted = core::array::from_fn(|k| 0.1 * (k as f64 - 6.0));
         qp.correct_contacts(&wanted);
         qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
         let answer = qp.solve().unwrap();
-        assert_eq!(answer.yielded, Yielded::Nothing);
-        q = integrate(&q, &(answer.velocity * 0.01));
-    }
-    let after = size(&miss(&snapshot(&q, &v)));
-    assert!(before > 0.005 && after < 0.02 * before, "{before} {after}");
-
-    // At the level of torques: the acceleration asked for is had.
-    let s = snapshot(&q, &Tangent::ZERO);
-    let mut qp = TorqueQp::<f64, N, 12, 35, 55>::new();
-    qp.begin(&Icub23, &s, &contacts, &[0.0; N]).unwrap();
-    let wanted = core::array::from_fn(|k| 0.1 * (k as f64 - 6.0));
-    qp.correct_contacts(&wanted);
-    qp.minimise_joints(&[0.0; N], &[1.0; N]);
-    qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
-    let answer = qp.solve().unwrap();
-    assert!(answer.contact_violation < 1e-7);
-    let sole = s.frame_pose(&Icub23, &SOLES[0].frame);
-    let rotation = s.pose(&SOLES[0].frame).rotation;
-    let linear = sole.select([0, 1, 2]).in_axes(&rotation);
-    for (a, b) in linear.reached(&answer.acceleration).iter().zip(&wanted) {
-        assert!((a - b).abs() < 1e-6, "{a} {b}");
-    }
+        assert!(answer.contact_violation < 1e-7);
+        let sole = s.frame_pose(&Icub23, &SOLES[0].frame);
+        let rotation = s.pose(&SOLES[0].frame).rotation;
+        let linear = sole.select([0, 1, 2]).in_axes(&rotation);
+        for (a, b) in linear.reached(&answer.acceleration).iter().zip(&wanted) {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
+        }
+    });
 }
 
 #[test]

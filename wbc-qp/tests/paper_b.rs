@@ -1,12 +1,13 @@
 //! The two programs of paper B as they are printed, beside what comes out of them.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, Rng, snapshot};
+use crate::common::{N, config, crouched, each, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::Vector3;
+use proptest::prelude::*;
 use rbd_core::{
-    Axes, CentroidalMap, ComJacobian, Configuration, FrameJacobian, Tangent, Transform,
-    center_of_mass, centroidal_bias, centroidal_map, com_jacobian, frame_jacobian, integrate,
+    Axes, CentroidalMap, ComJacobian, Configuration, FrameJacobian, Tangent, center_of_mass,
+    centroidal_bias, centroidal_map, com_jacobian, frame_jacobian, integrate,
 };
 use wbc_qp::jump::{
     ComReference, TorqueJump, TorqueJumpSettings, VelocityJump, VelocityJumpSettings,
@@ -19,14 +20,7 @@ const M: usize = 55;
 
 /// A crouch on both soles with each joint's velocity.
 fn crouch(speeds: &[f64; N]) -> (Configuration<f64, N>, Tangent<f64, N>) {
-    let mut q = [0.0; N];
-    for leg in [0, 6] {
-        (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
-    }
-    for arm in [15, 19] {
-        (q[arm], q[arm + 1], q[arm + 3]) = (-0.5, 0.4, 0.8);
-    }
-    anchored(&Icub23, &q, speeds, &SOLES[0].frame, &Transform::IDENTITY)
+    crouched(&[0.0; N], speeds)
 }
 
 fn contacts() -> [Contact<f64>; 2] {
@@ -106,9 +100,9 @@ fn velocity_control() {
 /// (6b) to (6f) hold, with (6d) written as in (5): Ḣ_ω = −K H_ω.
 #[test]
 fn torque_control() {
-    let mut rng = Rng(3);
-    for case in 0..30 {
-        let (q, v) = crouch(&core::array::from_fn(|_| 0.02 * rng.next()));
+    let speeds = prop_oneof![7 => prop::array::uniform(-0.02..0.02_f64), 1 => Just([0.0; N])];
+    each(config(30, 3), &speeds, |speeds| {
+        let (q, v) = crouch(&speeds);
         let s = snapshot(&q, &v);
         let goal = wanted(&s);
         let settings = profile::TORQUE;
@@ -125,23 +119,17 @@ fn torque_control() {
         let target = goal.acceleration_w
             + (goal.velocity_w - com_rate(&s, &v)) * settings.com.damping
             + (goal.position_w - s.com_w()) * settings.com.stiffness;
-        assert!(
-            (rise - target).amax() < 0.02,
-            "case {case}: {rise}, not {target}"
-        );
+        assert!((rise - target).amax() < 0.02, "{rise}, not {target}");
         // (6d)
         let decay = angular_momentum(&s, a) + bias.angular;
         let rate = -angular_momentum(&s, &v) * settings.momentum_gain;
-        assert!(
-            (decay - rate).amax() < 0.02,
-            "case {case}: {decay}, not {rate}"
-        );
+        assert!((decay - rate).amax() < 0.02, "{decay}, not {rate}");
         // (6e)
         for (tau, motor) in tick.answer.torques.iter().zip(&MOTORS) {
             assert!(tau.abs() <= motor.torque + 1e-6);
         }
         // (6c), (6f): the program's own measure of both, and the forces carry the robot.
-        assert!(tick.answer.contact_violation < 1e-6, "case {case}");
+        assert!(tick.answer.contact_violation < 1e-6);
         for (contact, f) in contacts().iter().zip(tick.answer.forces.chunks(6)) {
             let mut k = 0;
             while let Some(row) = contact.cone(k) {
@@ -150,7 +138,7 @@ fn torque_control() {
                 k += 1;
             }
         }
-    }
+    });
 }
 
 /// (3a): where nothing else is asked for, joints go to the posture and stay near the last velocities, by Λ and Δ.

@@ -1,9 +1,11 @@
 //! The torque program against the equations of motion, its limits, and Clarabel.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, Rng, oracle, snapshot};
+use crate::common::{N, Verdict, config, crouch, each, oracle, snapshot};
+use core::cell::{Cell, RefCell};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
-use rbd_core::{Axes, Configuration, Force, Frame, FrameJacobian, Tangent, Transform};
+use proptest::prelude::*;
+use rbd_core::{Axes, Force, Frame, FrameJacobian, Transform};
 use rbd_core::{frame_jacobian, joint_friction, rnea};
 use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
 use wbc_qp::{
@@ -13,31 +15,6 @@ use wbc_qp::{
 const K: usize = 12;
 const V: usize = 35;
 const M: usize = 55;
-
-/// A crouch on both soles, every joint displaced and moving a little.
-fn crouch(rng: &mut Rng, spread: f64, speed: f64) -> (Configuration<f64, N>, Tangent<f64, N>) {
-    let mut q = [0.0; N];
-    for leg in [0, 6] {
-        (q[leg], q[leg + 3], q[leg + 4]) = (1.2, -1.7, -0.7);
-    }
-    for arm in [15, 19] {
-        (q[arm], q[arm + 1], q[arm + 3]) = (-0.5, 0.4, 0.8);
-    }
-    // Both legs alike, so that both soles stay on the ground.
-    for i in 0..6 {
-        let shift = if matches!(i, 0 | 3 | 4) {
-            spread * rng.next()
-        } else {
-            0.0
-        };
-        (q[i], q[i + 6]) = (q[i] + shift, q[i + 6] + shift);
-    }
-    for x in &mut q[12..] {
-        *x += spread * rng.next();
-    }
-    let qd: [f64; N] = core::array::from_fn(|_| speed * rng.next());
-    anchored(&Icub23, &q, &qd, &SOLES[0].frame, &Transform::IDENTITY)
-}
 
 fn contacts(friction: f64) -> [Contact<f64>; 2] {
     SOLES.map(|sole| Contact::new(&sole, friction, 1000.0))
@@ -49,17 +26,21 @@ const HORIZON: Horizon<f64> = Horizon {
     acceleration: 1000.0,
 };
 
+/// Accelerations of the centre of mass to ask for.
+fn up() -> impl Strategy<Value = [f64; 3]> {
+    [-1.0..1.0, -1.0..1.0, -6.0..6.0_f64]
+}
+
 /// A program like the push-off's.
 fn program(
     qp: &mut TorqueQp<f64, N, K, V, M>,
     s: &Snapshot<f64, N>,
-    rng: &mut Rng,
+    up: &[f64; 3],
     torque_share: f64,
 ) -> [f64; N] {
     let friction = joint_friction(&LIMITS, &s.velocity.joints, 0.1);
     qp.begin(&Icub23, s, &contacts(0.5), &friction).unwrap();
-    let up = [rng.next(), rng.next(), 6.0 * rng.next()];
-    qp.minimise(&s.com(), &up, &[1e3; 3]);
+    qp.minimise(&s.com(), up, &[1e3; 3]);
     qp.minimise(&s.angular_momentum(), &[0.0; 3], &[1e3; 3]);
     qp.minimise_joints(&[0.0; N], &[1.0; N]);
     qp.minimise_forces(&[0.0; K], &[1e-3; K]);
@@ -71,14 +52,14 @@ fn program(
     friction
 }
 
+/// Also where the tick before was in another state.
 #[test]
 fn an_answer_obeys_the_equations_of_motion_and_every_limit() {
-    let mut rng = Rng(1);
-    let mut qp = TorqueQp::new();
-    for _ in 0..60 {
-        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+    let qp = RefCell::new(TorqueQp::new());
+    each(config(60, 1), &(crouch(0.1, 0.3), up()), |((q, v), up)| {
+        let qp = &mut *qp.borrow_mut();
         let s = snapshot(&q, &v);
-        let friction = program(&mut qp, &s, &mut rng, 1.0);
+        let friction = program(qp, &s, &up, 1.0);
         let a = qp.solve().unwrap();
         // M ν̇ + h = S τ + τ_fric + Jᵀ f
         let mut rest = rnea(&Icub23, &s.posture, &v, &a.acceleration);
@@ -112,20 +93,24 @@ fn an_answer_obeys_the_equations_of_motion_and_every_limit() {
             }
             assert!(k == 10 && f[2] >= -1e-6);
         }
-    }
+    });
 }
 
+/// From states well inside the limits, with torques without end too, to such where torques (none at last) or speeds do not allow both
+/// contacts.
 #[test]
 fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
-    let mut rng = Rng(2);
-    let (mut solved, mut yielded) = (0, 0);
-    for k in 0..60 {
+    let (solved, yielded) = (Cell::new(0), Cell::new(0));
+    let case = prop_oneof![
+        20 => (Just(0.6), crouch(0.1, 0.3)),
+        2 => (Just(f64::INFINITY), crouch(0.1, 0.3)),
+        10 => (Just(0.1), crouch(0.1, 12.0)),
+        1 => (Just(0.0), crouch(0.1, 0.3)),
+    ];
+    each(config(60, 2), &(case, up()), |((share, (q, v)), up)| {
         let mut qp = TorqueQp::new();
-        // From states well inside the limits to such where torques or speeds do not allow both contacts.
-        let (speed, share) = if k % 3 == 0 { (12.0, 0.1) } else { (0.3, 0.6) };
-        let (q, v) = crouch(&mut rng, 0.1, speed);
         let s = snapshot(&q, &v);
-        program(&mut qp, &s, &mut rng, share);
+        program(&mut qp, &s, &up, share);
         let wanted = oracle(&qp.problem());
         let a = qp.solve().unwrap();
         if a.yielded == Yielded::Nothing {
@@ -138,20 +123,21 @@ fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
                     a.forces[i - N] / unit
                 };
             }
-            let (cost, wanted) = (qp.problem().cost(&z), wanted.unwrap());
+            let (cost, wanted) = (qp.problem().cost(&z), wanted.cost().unwrap());
             assert!(
                 (cost - wanted).abs() < 1e-6 * (1.0 + wanted.abs()),
                 "{cost} {wanted}"
             );
-            solved += 1;
+            solved.set(solved.get() + 1);
         } else {
-            assert_eq!(wanted, None, "Clarabel found a solution where rows yielded");
-            yielded += 1;
+            assert_eq!(wanted, Verdict::Infeasible, "what rows yielded to");
+            yielded.set(yielded.get() + 1);
         }
         for (tau, motor) in a.torques.iter().zip(&MOTORS) {
             assert!(tau.abs() <= share * motor.torque + 1e-6);
         }
-    }
+    });
+    let (solved, yielded) = (solved.get(), yielded.get());
     assert!(
         solved > 20 && yielded > 0,
         "{solved} solved, {yielded} yielded"
@@ -161,9 +147,7 @@ fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
 /// As the tasks' weight grows, the weighed solution tends to the one that holds them.
 #[test]
 fn weights_tend_to_strict_priority() {
-    let mut rng = Rng(3);
-    for _ in 0..10 {
-        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+    each(config(10, 3), &crouch(0.1, 0.3), |(q, v)| {
         let s = snapshot(&q, &v);
         let solve = |weight: Option<f64>| {
             let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
@@ -200,7 +184,7 @@ fn weights_tend_to_strict_priority() {
             gaps[1] < 0.1 * gaps[0] && gaps[2] < 0.1 * gaps[1],
             "{gaps:?}"
         );
-    }
+    });
 }
 
 /// A program of four levels.
@@ -250,7 +234,7 @@ fn little(qp: &mut Levels) {
 
 /// Solves a level, whose cost must be Clarabel's.
 fn optimum(qp: &mut Levels, unit: f64) -> TorqueAnswer<f64, N, K> {
-    let wanted = oracle(&qp.problem()).unwrap();
+    let wanted = oracle(&qp.problem()).cost().unwrap();
     let answer = qp.solve().unwrap();
     assert_eq!(answer.yielded, Yielded::Nothing);
     let z = core::array::from_fn(|i| match i {
@@ -306,19 +290,18 @@ fn weighed(tasks: &Tasks, qp: &mut Levels, w: f64) -> [f64; N] {
 /// one before it, and weights that grow by the same factor from level to level tend to the same torques.
 #[test]
 fn levels_are_optimal_one_after_the_other() {
-    let mut rng = Rng(8);
-    let mut sums = [0.0; 3];
-    for _ in 0..8 {
-        let (q, v) = crouch(&mut rng, 0.1, 0.3);
+    let sums = RefCell::new([0.0; 3]);
+    each(config(8, 8), &crouch(0.1, 0.3), |(q, v)| {
         let s = snapshot(&q, &v);
         let (tasks, mut qp) = levels(&s);
         let strict = strictly(&tasks, &mut qp);
-        for (sum, w) in sums.iter_mut().zip([1e1, 1e2, 1e3]) {
+        for (sum, w) in sums.borrow_mut().iter_mut().zip([1e1, 1e2, 1e3]) {
             let (tasks, mut qp) = levels(&s);
             let pairs = weighed(&tasks, &mut qp, w).into_iter().zip(strict.torques);
             *sum += pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
         }
-    }
+    });
+    let sums = sums.into_inner();
     // Where levels compete for the same torques, the way is long: the last factor must be a thousand to see most of it.
     assert!(sums[1] < sums[0] && sums[2] < 0.5 * sums[1], "{sums:?}");
 }
@@ -326,44 +309,40 @@ fn levels_are_optimal_one_after_the_other() {
 /// A held task that limits make impossible yields, is reported, and everything harder stays.
 #[test]
 fn a_held_task_yields_before_limits_and_contacts() {
-    let mut rng = Rng(6);
-    let (q, v) = crouch(&mut rng, 0.05, 0.0);
-    let s = snapshot(&q, &v);
-    let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
-    qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
-    // No ground pulls a robot down at 3 g.
-    qp.hold(&s.com(), &[0.0, 0.0, -30.0]).unwrap();
-    qp.minimise_joints(&[0.0; N], &[1.0; N]);
-    qp.minimise_forces(&[0.0; K], &[1e-3; K]);
-    let answer = qp.solve().unwrap();
-    assert_eq!(answer.yielded, Yielded::Tasks);
-    assert!(answer.contact_violation < 1e-6);
-    let reached = s.com().of(&answer.acceleration)[2];
-    assert!(reached < -5.0 && reached > -9.82, "{reached}");
+    each(config(8, 6), &crouch(0.05, 0.0), |(q, v)| {
+        let s = snapshot(&q, &v);
+        let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
+        qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
+        // No ground pulls a robot down at 3 g.
+        qp.hold(&s.com(), &[0.0, 0.0, -30.0]).unwrap();
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Tasks);
+        assert!(answer.contact_violation < 1e-6);
+        let reached = s.com().of(&answer.acceleration)[2];
+        assert!(reached < -5.0 && reached > -9.82, "{reached}");
+    });
 }
 
 /// States and targets far from any jump under every cap: a command inside its limits, honest about the cap, optimal where it was not
 /// needed; and the next ticks find the optimum of where they begin.
 #[test]
 fn a_capped_command_is_inside_its_limits() {
-    let mut rng = Rng(12);
-    let (mut capped, mut whole) = (0, 0);
-    let solve = |qp: &mut TorqueQp<f64, N, K, V, M>, s: &Snapshot<f64, N>, mut rng: Rng| {
-        program(qp, s, &mut rng, 0.6);
-        qp.solve().unwrap()
-    };
-    for k in 0..120 {
-        let (speed, spread) = if k % 3 == 0 { (0.3, 0.1) } else { (8.0, 0.5) };
-        let (q, v) = crouch(&mut rng, spread, speed);
+    let (capped, whole) = (Cell::new(0), Cell::new(0));
+    let state = prop_oneof![1 => crouch(0.1, 0.3), 2 => crouch(0.5, 8.0)];
+    each(config(120, 12), &(state, up()), |((q, v), up)| {
         let s = snapshot(&q, &v);
-        let seed = rng.0;
-        let mut free = TorqueQp::new();
-        let best = solve(&mut free, &s, Rng(seed));
+        let solve = |qp: &mut TorqueQp<f64, N, K, V, M>| {
+            program(qp, &s, &up, 0.6);
+            qp.solve().unwrap()
+        };
+        let best = solve(&mut TorqueQp::new());
         assert!(!best.capped);
         for max_steps in [0, 2, 5, 10, 20, 40, 80, 160] {
             let mut qp = TorqueQp::new();
             qp.max_steps = max_steps;
-            let a = solve(&mut qp, &s, Rng(seed));
+            let a = solve(&mut qp);
             for (i, (tau, motor)) in a.torques.iter().zip(&MOTORS).enumerate() {
                 let [low, high] = torque_range(motor, v.joints[i], f64::INFINITY);
                 assert!(tau.is_finite());
@@ -373,21 +352,22 @@ fn a_capped_command_is_inside_its_limits() {
                 );
             }
             if a.capped {
-                capped += 1;
+                capped.set(capped.get() + 1);
                 // It goes on where it ended; with time enough, to the end.
                 let start = a.yielded;
                 qp.max_steps = u32::MAX;
-                let next = solve(&mut qp, &s, Rng(seed));
+                let next = solve(&mut qp);
                 assert!(!next.capped && next.yielded >= start);
             } else {
-                whole += 1;
+                whole.set(whole.get() + 1);
                 assert_eq!(a.yielded, best.yielded);
                 for (x, y) in a.torques.iter().zip(&best.torques) {
                     assert!((x - y).abs() < 1e-5, "{x} {y}");
                 }
             }
         }
-    }
+    });
+    let (capped, whole) = (capped.get(), whole.get());
     assert!(capped > 100 && whole > 100, "{capped} {whole}");
 }
 
@@ -400,14 +380,15 @@ fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
 
 #[test]
 fn single_precision_follows() {
-    let mut rng = Rng(4);
     let posture = [0.0; N];
-    let mut double = TorqueJump::<f64, N, K, V, 61>::new(strict(), posture);
-    let mut single = TorqueJump::<f32, N, K, V, 61>::new(strict(), [0.0; N]);
+    let controllers = RefCell::new((
+        TorqueJump::<f64, N, K, V, 61>::new(strict(), posture),
+        TorqueJump::<f32, N, K, V, 61>::new(strict(), [0.0; N]),
+    ));
     let f = |x: f64| x as f32;
     let soles = icub_model::hardware::SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));
-    for _ in 0..30 {
-        let (q, v) = crouch(&mut rng, 0.02, 0.1);
+    each(config(30, 4), &crouch(0.02, 0.1), |(q, v)| {
+        let (double, single) = &mut *controllers.borrow_mut();
         let s = snapshot(&q, &v);
         let wanted = ComReference {
             position_w: s.com_w(),
@@ -439,5 +420,5 @@ fn single_precision_follows() {
         for (x, y) in a.answer.torques.iter().zip(b.answer.torques) {
             assert!((x - f64::from(y)).abs() < 0.05, "{x} {y}");
         }
-    }
+    });
 }

@@ -1,8 +1,11 @@
 //! A jump to test with: a quarter turn of an A1-like body, four feet, flight.
 
 use nalgebra::{Matrix3, Vector3};
+use ocp_solver::Stage;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
 use so3::Scalar;
-use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
+use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, State, Weights};
 
 pub(crate) const NX: usize = 16;
 pub(crate) const NU: usize = 12;
@@ -73,4 +76,31 @@ pub(crate) fn jump_in<T: Scalar>() -> Problem<T, 4, 4> {
         exponential: Exponential::Taylor4,
         log_epsilon: s(1e-6),
     }
+}
+
+pub(crate) type Node = Stage<f64, State<f64, 4>, NX, NU, NI>;
+
+/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
+pub(crate) fn config(cases: u32, seed: u64) -> Config {
+    let mut config = Config::with_cases(cases);
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(seed);
+    }
+    config.failure_persistence = None;
+    config
+}
+
+/// The guess, each of its numbers displaced by up to `noise`; or, one in eight, as it is.
+pub(crate) fn nodes(noise: f64) -> impl Strategy<Value = Vec<Node>> {
+    // As many as the guess asks for.
+    let many = prop::collection::vec(-1.0..1.0_f64, 640);
+    prop_oneof![7 => many, 1 => Just(vec![0.0])].prop_map(move |numbers| {
+        let problem = jump();
+        let mut stages = vec![Node::new(State::new()); problem.intervals() + 1];
+        let mut numbers = numbers.iter().cycle();
+        problem.write_guess(&mut stages, || {
+            noise * numbers.next().copied().unwrap_or_default()
+        });
+        stages
+    })
 }

@@ -1,6 +1,6 @@
 //! Differences of a stage's values over its coordinates: those of the state, then the controls.
 
-use super::{N, NI, NU, Noise, anywhere};
+use super::{N, NI, NU, Node};
 use nalgebra::Vector3;
 use ocp_solver::Derivatives;
 use wb_opt::{BaseCoordinates, State};
@@ -41,15 +41,13 @@ pub(crate) fn entry<const NX: usize>(d: &Derivatives<f64, NX, NU, NI>, i: usize,
     }
 }
 
-/// Some state after an interval of length `dt` that turns the base as the interval turns it: there the derivative of the gap
-/// is exact.
+/// `next`, turned as the interval of length `dt` turns the base: there the derivative of the gap is exact.
 pub(crate) fn reached(
     base: BaseCoordinates,
     dt: f64,
-    (state, control): (&State<f64, N>, &[f64; NU]),
-    noise: &mut Noise,
+    (state, control): &Node,
+    mut next: State<f64, N>,
 ) -> State<f64, N> {
-    let (mut next, _) = anywhere(noise, base);
     if base == BaseCoordinates::Rotation {
         // The unit of accelerations is 100 rad/s².
         let omega = Vector3::from_fn(|i, _| state.v[3 + i] + 50.0 * dt * control[3 + i]);

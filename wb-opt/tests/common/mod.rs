@@ -3,7 +3,11 @@
 pub(crate) mod differences;
 
 use a1_model::{A1Reference, a1_reference::frame};
+use core::f64::consts::PI;
 use nalgebra::Vector3;
+use proptest::array::{uniform, uniform3, uniform4};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed};
 use wb_opt::{
     BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Friction, Phase, Point, Pose, Problem,
     Robot, State, Weights,
@@ -15,14 +19,14 @@ pub(crate) const NX: usize = 36;
 pub(crate) const NU: usize = 30;
 pub(crate) const NI: usize = 140;
 
-/// Numbers from a small generator, uniform in ±1.
-pub(crate) struct Noise(pub(crate) u32);
-
-impl Noise {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(self.0 >> 8) / f64::from(1 << 23) - 1.0
+/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
+pub(crate) fn config(cases: u32, seed: u64) -> Config {
+    let mut config = Config::with_cases(cases);
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(seed);
     }
+    config.failure_persistence = None;
+    config
 }
 
 /// What the problem borrows.
@@ -135,14 +139,58 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
     }
 }
 
-/// A state and a control away from anything special.
-pub(crate) fn anywhere(noise: &mut Noise, base: BaseCoordinates) -> (State<f64, N>, [f64; NU]) {
-    let mut state = State::at_rest(Pose::level(crouch()));
-    state.q.iter_mut().for_each(|q| *q += 0.7 * noise.next());
-    state.v.iter_mut().for_each(|v| *v += 5.0 * noise.next());
-    if base == BaseCoordinates::Rotation {
-        state.q[3..BASE].fill(0.0);
-        state.rot_wc = so3::exp(&Vector3::from_fn(|_, _| 2.0 * noise.next()));
-    }
-    (state, core::array::from_fn(|_| noise.next()))
+pub(crate) type Node = (State<f64, N>, [f64; NU]);
+
+/// Displacements in ±1, most of them free, some at an end or none.
+fn share() -> impl Strategy<Value = f64> + Clone {
+    prop_oneof![14 => -1.0..1.0_f64, 1 => prop::sample::select(vec![-1.0, 0.0, 1.0])]
+}
+
+/// Turns of a base: any, and one in eight of no, next to no, next to half a turn, and half a turn.
+fn turn() -> impl Strategy<Value = Vector3<f64>> {
+    let free = uniform3(-2.0..2.0_f64).prop_map(Vector3::from);
+    let angles = vec![0.0, 1e-9, PI - 1e-9, PI];
+    let special = (free.clone(), prop::sample::select(angles)).prop_map(|(axis, angle)| {
+        let axis = axis.try_normalize(1e-3);
+        axis.unwrap_or_else(Vector3::z) * angle
+    });
+    prop_oneof![7 => free, 1 => special]
+}
+
+/// Any state and control with these base coordinates, at rest and with straight knees included. Boxed, for it is much for a stack.
+pub(crate) fn anywhere(base: BaseCoordinates) -> BoxedStrategy<Node> {
+    let knees = prop_oneof![5 => Just([false; 4]), 1 => uniform4(any::<bool>())];
+    let speeds = prop_oneof![7 => uniform(share()), 1 => Just([0.0; N])];
+    let state = (uniform(share()), speeds, knees, turn());
+    let state = state.prop_map(
+        move |(shifts, speeds, straight, turn): ([f64; N], _, _, _)| {
+            let mut state = State::at_rest(Pose::level(crouch()));
+            for (q, shift) in state.q.iter_mut().zip(shifts) {
+                *q += 0.7 * shift;
+            }
+            for (leg, straight) in straight.into_iter().enumerate() {
+                if straight {
+                    state.q[BASE + 3 * leg + 2] = 0.0;
+                }
+            }
+            state.v = speeds.map(|v| 5.0 * v);
+            if base == BaseCoordinates::Rotation {
+                state.q[3..BASE].fill(0.0);
+                state.rot_wc = so3::exp(&turn);
+            }
+            state
+        },
+    );
+    (state, uniform(share())).boxed()
+}
+
+/// Any stage of the jump but its last node: of each phase as often, and often the first.
+pub(crate) fn stage() -> impl Strategy<Value = usize> {
+    prop_oneof![1 => Just(0), 3 => 0..12_usize, 3 => 12..20_usize, 3 => 20..34_usize]
+}
+
+/// One of the base coordinates, and any state and control with it.
+pub(crate) fn based() -> impl Strategy<Value = (BaseCoordinates, Node)> {
+    let each = BASES.map(|base| anywhere(base).prop_map(move |node| (base, node)).boxed());
+    prop::strategy::Union::new(each)
 }

@@ -81,7 +81,7 @@ pub struct TorqueQp<T: Scalar, const N: usize, const K: usize, const V: usize, c
 impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     TorqueQp<T, N, K, V, M>
 {
-    /// An empty program; iterations are capped at 200 per solve, steps not at all.
+    /// An empty program; iterations are capped at 1000 per search, steps not at all.
     #[must_use]
     pub fn new() -> Self {
         const {
@@ -105,7 +105,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             torque_range: [[T::NEG_INFINITY, T::INFINITY]; N],
             unit: T::ONE,
             settings: Settings {
-                max_iterations: 200,
+                max_iterations: 1000,
                 ..Settings::default()
             },
             contact_damping: T::of(20.0),

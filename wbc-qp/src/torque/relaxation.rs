@@ -56,7 +56,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
     /// Solves the program, letting rows yield in the order of [`Yielded`] where it must.
     ///
     /// # Errors
-    /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if 200 iterations or round-off ended even the
+    /// [`Error::Data`] for numbers that are not finite; [`Error::Unsolved`] if 1000 iterations or round-off ended even the
     /// last search.
     pub fn solve(&mut self) -> Result<TorqueAnswer<T, N, K>, Error> {
         self.program.finish();

@@ -1,0 +1,184 @@
+//! Laws of the optimum of a tick: limits, frames, units, the order of feet, and memory.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use crate::common::{Case, Controller, case, config};
+use dense_qp::Status;
+use landing::{Command, Outcome, Program, Workspace};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use proptest::prelude::*;
+use rbd_core::Transform;
+
+/// Friction, largest normal force and largest torque, none and without end included.
+fn limits() -> impl Strategy<Value = [f64; 3]> {
+    let friction = prop_oneof![1 => Just(0.0), 4 => 0.0..2.0_f64];
+    let top = prop_oneof![1 => Just(0.0), 1 => Just(f64::INFINITY), 4 => 1.0..1000.0_f64];
+    let torque = prop_oneof![1 => Just(0.0), 1 => Just(f64::INFINITY), 4 => 1e-3..100.0_f64];
+    (friction, top, torque).prop_map(|(friction, top, torque)| [friction, top, torque])
+}
+
+fn limited([friction, top, torque]: [f64; 3]) -> Controller<f64> {
+    let mut controller = Controller::new();
+    controller.landing.settings.friction = friction;
+    controller.landing.settings.max_normal_force = top;
+    controller.landing.max_torques = [torque; 12];
+    controller
+}
+
+/// The cost of a command in its own program.
+fn cost(controller: &Controller<f64>, command: &Command<f64, 12, 4>) -> f64 {
+    let program = Program::<f64, 12, 28>::of(&controller.workspace);
+    let x = core::array::from_fn(|i| command.forces_w[i / 3][i % 3]);
+    program.problem().cost(&x)
+}
+
+fn off(a: &[Vector3<f64>; 4], b: &[Vector3<f64>; 4]) -> f64 {
+    let gaps = a.iter().zip(b).map(|(a, b)| (a - b).amax());
+    gaps.fold(0.0, f64::max)
+}
+
+fn is_solved(command: &Command<f64, 12, 4>) -> bool {
+    matches!(command.outcome, Outcome::Solved(_))
+}
+
+/// A state with a foot on the ground.
+fn standing() -> impl Strategy<Value = Case> {
+    prop_oneof![case(0.1), case(0.4), case(1.0)]
+        .prop_filter("a foot stands", |case| case.on.contains(&true))
+}
+
+proptest! {
+    #![proptest_config(config(256, 6))]
+
+    /// Whatever the limits are, and whether or not there was time for the optimum, each is kept; and what is called solved is the optimum.
+    #[test]
+    fn any_limits_are_kept(case in standing(), limits in limits()) {
+        let mut controller = limited(limits);
+        let command = controller.step(&case);
+        // Where a limit is zero, more rows meet in one point than are independent: the search may lose its way, and says so.
+        let degenerate = limits.contains(&0.0);
+        let known = match command.outcome {
+            Outcome::Solved(_) | Outcome::Failed(Status::Limit) => true,
+            other => degenerate && other == Outcome::Failed(Status::Numerical),
+        };
+        prop_assert!(known, "{:?}", command.outcome);
+        let [friction, top, _] = limits;
+        let program = Program::<f64, 12, 28>::of(&controller.workspace);
+        let problem = program.problem();
+        for (foot, (force, on)) in command.forces_w.iter().zip(case.on).enumerate() {
+            if !on {
+                prop_assert_eq!(*force, Vector3::zeros());
+                continue;
+            }
+            let slack = 1e-9 * (1.0 + force.amax());
+            prop_assert!(force.z >= 0.0 && force.z <= top + slack, "{}", force);
+            prop_assert!(force.xy().amax() <= friction * force.z + slack, "{}", force);
+            for joint in 3 * foot..3 * foot + 3 {
+                let normal = Vector3::from_column_slice(&problem.rows[16 + joint][3 * foot..3 * foot + 3]);
+                let tau = normal.dot(force);
+                prop_assert!(tau <= problem.row_upper[16 + joint] + slack && tau >= problem.row_lower[16 + joint] - slack);
+            }
+        }
+        if is_solved(&command) {
+            let mut memory = dense_qp::Workspace::new();
+            let answer = dense_qp::solve(&problem, &Default::default(), &mut memory).unwrap();
+            prop_assert_eq!(answer.status, Status::Solved);
+            let best = core::array::from_fn(|foot| Vector3::from_column_slice(&answer.x[3 * foot..3 * foot + 3]));
+            let scale = 1.0 + best.iter().map(Vector3::amax).fold(0.0, f64::max);
+            prop_assert!(off(&command.forces_w, &best) <= (2e-10 * scale).max(2e-8), "{:e} of {}", off(&command.forces_w, &best), scale);
+        }
+    }
+
+    /// Stronger joints, more friction or a larger normal force never cost more.
+    #[test]
+    fn wider_limits_cost_less(case in standing(), limits in limits(), factors in prop::array::uniform3(1.0..3.0_f64)) {
+        let wide = core::array::from_fn(|i| limits[i] * factors[i]);
+        let [before, after] = [limits, wide].map(|limits| {
+            let mut controller = limited(limits);
+            let command = controller.step(&case);
+            is_solved(&command).then(|| cost(&controller, &command))
+        });
+        if let (Some(before), Some(after)) = (before, after) {
+            prop_assert!(after <= before + 1e-9 * (1.0 + before.abs()), "{} {}", before, after);
+        }
+    }
+
+    /// In a world that is displaced and turned by quarters about the vertical (the pyramid's own symmetry), the same forces, turned; the
+    /// same torques.
+    #[test]
+    fn places_and_quarter_turns_do_not_matter(case in standing(), place in prop::array::uniform3(-10.0..10.0_f64), quarters in 0..4_usize) {
+        let (sin, cos) = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][quarters];
+        let turn = Rotation3::from_matrix_unchecked(Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0));
+        let mut moved = case;
+        let base = case.q.base;
+        moved.q.base = Transform::new(turn * base.rotation, turn * base.translation + Vector3::from(place));
+        let (mut here, mut there) = (Controller::new(), Controller::new());
+        there.target.rot_wb = turn * here.target.rot_wb;
+        let (a, b) = (here.step(&case), there.step(&moved));
+        if is_solved(&a) && is_solved(&b) {
+            let turned = a.forces_w.map(|force| turn * force);
+            prop_assert!(off(&turned, &b.forces_w) < 2e-8, "{:e}", off(&turned, &b.forces_w));
+            for (a, b) in a.feed_forward.iter().zip(&b.feed_forward) {
+                prop_assert!((a - b).abs() < 2e-8, "{} {}", a, b);
+            }
+        }
+    }
+
+    /// Weights in another unit, by powers of four: the same bits.
+    #[test]
+    fn the_unit_of_cost_does_not_matter(case in standing(), power in -20..=20_i32) {
+        let (mut one, mut other) = (Controller::<f64>::new(), Controller::<f64>::new());
+        let factor = f64::from_bits(((1023 + 2 * i64::from(power)) as u64) << 52);
+        let s = &mut other.landing.settings;
+        s.force_weight *= factor;
+        s.moment_weight *= factor;
+        s.effort_weight *= factor;
+        prop_assert_eq!(one.step(&case), other.step(&case));
+    }
+
+    /// Feet in another order: the same forces in that order, and the same torques.
+    #[test]
+    fn the_order_of_feet_does_not_matter(case in standing(), order in Just([0, 1, 2, 3]).prop_shuffle()) {
+        let (mut one, mut other) = (Controller::<f64>::new(), Controller::<f64>::new());
+        other.landing.feet = order.map(|i| one.landing.feet[i]);
+        let shuffled = Case { on: order.map(|i| case.on[i]), ..case };
+        let (a, b) = (one.step(&case), other.step(&shuffled));
+        if is_solved(&a) && is_solved(&b) {
+            prop_assert!(off(&order.map(|i| a.forces_w[i]), &b.forces_w) < 2e-8);
+            for (a, b) in a.feed_forward.iter().zip(&b.feed_forward) {
+                prop_assert!((a - b).abs() < 2e-8, "{} {}", a, b);
+            }
+        }
+    }
+
+    /// What a tick remembers costs nothing and changes nothing: the same state again is solved by one system, whatever was before.
+    #[test]
+    fn warm_equals_cold(before in case(1.0), case in standing()) {
+        let (mut cold, mut warm) = (Controller::<f64>::new(), Controller::<f64>::new());
+        let wanted = cold.step(&case);
+        let _ = warm.step(&before);
+        let first = warm.step(&case);
+        if is_solved(&wanted) && is_solved(&first) {
+            prop_assert!(off(&wanted.forces_w, &first.forces_w) < 2e-8);
+            let again = warm.step(&case);
+            prop_assert_eq!(again.outcome, Outcome::Solved(1));
+            prop_assert!(off(&wanted.forces_w, &again.forces_w) < 2e-8);
+            prop_assert_eq!(warm.workspace.forces_w(), again.forces_w);
+        }
+        warm.workspace = Workspace::new();
+        prop_assert_eq!(warm.step(&case), wanted);
+    }
+
+    /// Tick after tick on the way from one motion to another, where rows come and go by little, memory changes nothing.
+    #[test]
+    fn a_motion_that_changes_slowly_is_followed(case in standing(), share in -1.0..1.0_f64) {
+        let mut warm = Controller::<f64>::new();
+        for tick in 0..12 {
+            let mut now = case;
+            now.v = case.v * (share * f64::from(tick) / 12.0);
+            let (a, b) = (Controller::<f64>::new().step(&now), warm.step(&now));
+            if is_solved(&a) && is_solved(&b) {
+                prop_assert!(off(&a.forces_w, &b.forces_w) < 5e-8, "{:e}", off(&a.forces_w, &b.forces_w));
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What the joints feel, and when a sensor is believed.
+#![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
+
+use crate::common::{config, smooth};
+use a1_model::{A1Geared, BUILD, FEET};
+use landing::{Detector, DetectorState, ForceObserver, ObserverState};
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use rbd_core::{Configuration, Motion, Posture, Tangent, generalized_gravity, rnea};
+
+const DT: f64 = 1e-3;
+
+/// Forces that are felt after a tenth of a second with this motion and these torques beside those of the motion.
+fn felt(
+    q: &Configuration<f64, 12>,
+    (v, a): (Tangent<f64, 12>, Tangent<f64, 12>),
+    beside: &[f64; 12],
+) -> [Vector3<f64>; 4] {
+    let observer = ForceObserver::new(&BUILD, FEET.map(|foot| foot.frame));
+    let mut state = ObserverState::new();
+    let posture = Posture::new(&A1Geared, q);
+    let mut forces = None;
+    for tick in 0..100 {
+        let now = v + a * (DT * f64::from(tick));
+        let needed = rnea(&A1Geared, &posture, &now, &a).joints;
+        let torques = core::array::from_fn(|i| needed[i] - beside[i]);
+        forces = observer.update(&A1Geared, &mut state, q, &now, &torques, DT);
+    }
+    forces.unwrap()
+}
+
+proptest! {
+    #![proptest_config(config(24, 8))]
+
+    /// Whatever the motion is, it is not felt as a force; what is beside it is felt as at rest.
+    #[test]
+    fn a_motion_is_no_force(
+        case in smooth(1.0),
+        linear in prop::array::uniform(-20.0..20.0_f64), joints in prop::array::uniform(-100.0..100.0_f64),
+        beside in prop_oneof![1 => Just([0.0; 12]), 3 => prop::array::uniform(-30.0..30.0_f64)],
+    ) {
+        let a = Tangent { base: Motion::from_array(linear), joints };
+        let moving = felt(&case.q, (case.v, a), &beside);
+        let resting = felt(&case.q, (Tangent::ZERO, Tangent::ZERO), &beside);
+        for (moving, resting) in moving.iter().zip(&resting) {
+            prop_assert!((moving - resting).amax() < 1e-8 * (1.0 + resting.amax()), "{} {}", moving, resting);
+        }
+        if beside == [0.0; 12] {
+            prop_assert!(moving.iter().all(|force| force.amax() < 1e-8));
+        }
+    }
+}
+
+/// A sensor that says contact while the leg feels nothing is doubted after [`Detector::patience`]; it is believed again only when nothing is
+/// left of a doubt of twice that, which falls at a quarter of the rate.
+#[test]
+fn a_stuck_sensor_is_believed_again_when_no_doubt_is_left() {
+    let detector = Detector::new(&BUILD, FEET.map(|foot| foot.frame));
+    let mut state = DetectorState::new();
+    let mut q = Configuration::NEUTRAL;
+    q.joints = core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3]);
+    let torques = generalized_gravity(&A1Geared, &Posture::new(&A1Geared, &q)).joints;
+    let mut after = |says: f64, time: f64| {
+        for _ in 0..(time / DT) as u32 {
+            let v = Tangent::ZERO;
+            detector.update(
+                &A1Geared,
+                &mut state,
+                &q,
+                &v,
+                &torques,
+                &[says, 0.0, 0.0, 0.0],
+                DT,
+            );
+        }
+        (state.faulty, state.contacts[0])
+    };
+    let (fault, healthy) = ([true, false, false, false], [false; 4]);
+    let patience = detector.patience;
+    assert_eq!(after(100.0, 0.9 * patience), (healthy, true));
+    assert_eq!(after(100.0, 2.1 * patience), (fault, false));
+    assert_eq!(after(0.0, 7.5 * patience), (fault, false));
+    assert_eq!(after(0.0, patience), (healthy, false));
+}
