@@ -108,12 +108,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             unloading: Unloading::new(build),
             inertia_shaping: InertiaShaping::new(build),
             detector: Detector::new(build, feet),
-            posture: PreLanding {
-                // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the
-                // forward jump tip over.
-                lead: build.time(0.04),
-                ..PreLanding::new(build, feet, standing)
-            },
+            posture: PreLanding::new(build, feet, standing),
             landing: landing::Settings::new(build),
             motors,
         }

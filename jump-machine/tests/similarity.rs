@@ -359,7 +359,7 @@ fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
             to.detector.observer.damping = of.detector.observer.damping
         }),
         ("filter", |to, of| to.detector.filter = of.detector.filter),
-        ("lead", |to, of| to.posture.lead = of.posture.lead),
+        ("capture", |to, of| to.posture.capture = of.posture.capture),
         ("posture", |to, of| to.posture.damping = of.posture.damping),
         ("height", |to, of| to.landing.height = of.landing.height),
         ("rotation", |to, of| {
