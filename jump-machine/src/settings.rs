@@ -29,7 +29,7 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub centring: Centring<T>,
     /// Farthest that a joint may be from the plan's first node at the start, rad.
     pub start_tolerance: T,
-    /// Time before the touchdown from which the landing posture follows tilt and speed, s.
+    /// Time before the touchdown from which the landing posture follows the capture point, s.
     pub levelling: T,
     /// Time after the planned touchdown at which the robot gives up waiting for the ground, s.
     pub patience: T,
