@@ -14,7 +14,7 @@ use so3::{Scalar, math};
 
 use crate::least_squares::solve_damped;
 
-/// Gauss-Newton steps from the level posture that find a turned one to a fraction of a millimetre.
+/// Gauss-Newton steps from the level posture that find a moved one to a fraction of a millimetre.
 const STEPS: usize = 3;
 
 /// How legs wait for the ground.
@@ -71,7 +71,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         joints
     }
 
-    /// The feet of the level posture, base axes: what [`PreLanding::follow`] turns.
+    /// The feet of the level posture, base axes: what [`PreLanding::follow`] moves.
     #[must_use]
     pub fn level_feet<M: Tree<T, N>>(&self, model: &M) -> [Vector3<T>; F] {
         self.limbs(model, &self.joints)
