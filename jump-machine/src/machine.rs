@@ -6,7 +6,7 @@ use jump_control::{
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use crate::balance::Balance;
 use crate::centring::Centred;
@@ -251,7 +251,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 }
             }
             Phase::PreLanding if levelled => {
-                self.level(measured);
+                self.level(measured, jump.plan.touchdown - t);
                 reference.joints = self.legs;
             }
             _ => {}
@@ -288,14 +288,17 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         command
     }
 
-    /// The landing posture as the body is turned and moves.
+    /// The landing posture for a body that goes on turning as it does until it touches down, `left` from now: legs that follow the tilt of
+    /// now turn a body away from its plan that would have been level in time.
     #[inline(always)]
-    fn level(&mut self, measured: &Measurement<T, N, F>) {
-        let up_b = measured.base.rotation.inverse() * Vector3::z();
+    fn level(&mut self, measured: &Measurement<T, N, F>, left: T) {
+        let velocity = &measured.base_velocity;
+        let back = so3::exp(&(velocity.angular * -math::max(left, T::ZERO)));
+        let up_b = back * (measured.base.rotation.inverse() * Vector3::z());
         self.legs = self.posture.follow(
             self.model,
             &self.level_feet,
-            (&up_b, &measured.base_velocity.linear),
+            (&up_b, &(back * velocity.linear)),
             &self.legs,
             &mut self.wanted,
         );

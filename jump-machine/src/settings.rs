@@ -29,7 +29,7 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub centring: Centring<T>,
     /// Farthest that a joint may be from the plan's first node at the start, rad.
     pub start_tolerance: T,
-    /// Time before the touchdown from which the landing posture follows tilt and speed, s.
+    /// Time before the touchdown from which the landing posture follows the capture point, s.
     pub levelling: T,
     /// Time after the planned touchdown at which the robot gives up waiting for the ground, s.
     pub patience: T,
@@ -108,12 +108,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             unloading: Unloading::new(build),
             inertia_shaping: InertiaShaping::new(build),
             detector: Detector::new(build, feet),
-            posture: PreLanding {
-                // A third of what a body that only falls would need: more lands the backflip on its trunk, none lets the
-                // forward jump tip over.
-                lead: build.time(0.04),
-                ..PreLanding::new(build, feet, standing)
-            },
+            posture: PreLanding::new(build, feet, standing),
             landing: landing::Settings::new(build),
             motors,
         }

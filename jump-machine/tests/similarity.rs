@@ -182,14 +182,14 @@ fn base(t: f64) -> (Transform<f64>, Motion<f64>, bool) {
     (pose, velocity, flown > 0.0 && landed == 0.0)
 }
 
-/// What A1 measures at millisecond `k`: it flies higher than planned and leans, one foot sensor is dead after the landing and another
+/// What A1 measures at millisecond `k`: it flies higher and farther than planned and leans, one foot sensor is dead after the landing and another
 /// chatters.
 fn heard(k: i32) -> Observation<f64, 12, 4> {
     let t = f64::from(k) * 1e-3;
     let (mut base, mut base_velocity, flies) = base(t * 1.02);
     if flies {
         base.translation.z += 0.1;
-        base_velocity.linear += base.rotation.inverse() * Vector3::new(0.0, 0.0, 0.3);
+        base_velocity.linear += base.rotation.inverse() * Vector3::new(1.2, 0.0, 0.3);
     }
     if t < TOUCHDOWN {
         base_velocity.angular += Vector3::new(0.1, -0.2, 0.05);
@@ -359,7 +359,7 @@ fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
             to.detector.observer.damping = of.detector.observer.damping
         }),
         ("filter", |to, of| to.detector.filter = of.detector.filter),
-        ("lead", |to, of| to.posture.lead = of.posture.lead),
+        ("capture", |to, of| to.posture.capture = of.posture.capture),
         ("posture", |to, of| to.posture.damping = of.posture.damping),
         ("height", |to, of| to.landing.height = of.landing.height),
         ("rotation", |to, of| {

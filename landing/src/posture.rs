@@ -1,9 +1,12 @@
-//! The pre-landing posture, turned partly against the tilt of the body.
+//! The pre-landing posture: feet where the body can come to rest over them.
 //!
-//! With the body tilted, feet that stay where they are in the base come down under one side of it. Turning all feet about
-//! the base's origin, towards where a level body would have them, brings them under the centre of mass again; but the legs'
-//! momentum turns a light trunk the other way, so only a share of the tilt is right. Feet that lead the horizontal motion
-//! step towards the capture point.
+//! A body that moves with v along the ground comes to rest over its capture point, v √(h/g) from where it touches down. Forces of the feet
+//! can stop it there as long as that is between them, and a tilt moves the feet from below the centre of mass. Where the capture point lies
+//! outside the box of the feet the body would topple over those in front, so all feet are moved after it until it is on the edge. Not farther,
+//! and not at all where it is inside: what swings legs one way turns the body the other, by half of the angle on A1, and a body that is turned
+//! comes down on one side.
+//!
+//! Source of the capture point: Pratt et al., *Capture Point: A Step toward Humanoid Push Recovery*, 2006.
 
 use nalgebra::Vector3;
 use rbd_core::{Build, Configuration, Frame, Limbs, Tree};
@@ -11,24 +14,20 @@ use so3::{Scalar, math};
 
 use crate::least_squares::solve_damped;
 
-/// Gauss-Newton steps from the level posture that find a turned one to a fraction of a millimetre.
+/// Gauss-Newton steps from the level posture that find a moved one to a fraction of a millimetre.
 const STEPS: usize = 3;
 
-/// How far legs follow the tilt.
+/// How legs wait for the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreLanding<T, const N: usize, const F: usize> {
     /// The feet; each is the end of a leg of its own.
     pub feet: [Frame<T>; F],
     /// Joint positions for a level landing, rad.
     pub joints: [T; N],
-    /// Share of the tilt that the feet follow.
-    pub share: T,
-    /// Time by which the feet lead the body's horizontal motion, s: towards the capture point, √(h/g) for a full step.
-    pub lead: T,
-    /// Farthest that they lead, m.
-    pub max_lead: T,
-    /// Largest tilt that they follow, rad; more is treated as this.
-    pub max_tilt: T,
+    /// Time to the capture point, √(h/g), s.
+    pub capture: T,
+    /// Farthest that the feet are moved, m.
+    pub most: T,
     /// Farthest that a joint goes from its level position, rad.
     pub reach: T,
     /// Tikhonov term on the way of a foot, m²: keeps a stretched leg from jumping about.
@@ -36,17 +35,15 @@ pub struct PreLanding<T, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
-    /// Half of at most 0.6 rad, joints within 0.5 rad; and, on legs of 0.4 m, 0.12 s of lead up to 12 cm, scaled by
-    /// [dynamic similarity](rbd_core::similarity).
+    /// Joints within 0.5 rad; and, on legs of 0.4 m, 0.15 s to the capture point, which is that of a body at 0.22 m, as far down as a landing
+    /// presses it, and up to 12 cm of way, scaled by [dynamic similarity](rbd_core::similarity).
     #[must_use]
     pub fn new(build: &Build<T>, feet: [Frame<T>; F], joints: [T; N]) -> Self {
         Self {
             feet,
             joints,
-            share: T::HALF,
-            lead: build.time(0.12),
-            max_lead: build.length(0.12),
-            max_tilt: T::of(0.6),
+            capture: build.time(0.15),
+            most: build.length(0.12),
             reach: T::HALF,
             damping: build.area(1e-4),
         }
@@ -74,7 +71,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         joints
     }
 
-    /// The feet of the level posture, base axes: what [`PreLanding::follow`] turns.
+    /// The feet of the level posture, base axes: what [`PreLanding::follow`] moves.
     #[must_use]
     pub fn level_feet<M: Tree<T, N>>(&self, model: &M) -> [Vector3<T>; F] {
         self.limbs(model, &self.joints)
@@ -113,7 +110,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         Limbs::new(model, &q, &self.feet)
     }
 
-    /// Where the feet are to be, base axes; `None` where a number is not finite.
+    /// Where the feet are to be, base axes, under a body whose up direction is `up_b` and which moves with `velocity_b`; `None` where a number is not finite.
     fn feet(
         &self,
         level: &[Vector3<T>; F],
@@ -124,23 +121,24 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         if !numbers.all(|x| x.is_finite_number()) {
             return None;
         }
-        let across = (velocity_b - up_b * velocity_b.dot(up_b)) * self.lead;
-        let size = math::sqrt(across.norm_squared());
-        let lead = if size > self.max_lead {
-            across * (self.max_lead / size)
-        } else {
-            across
+        let corner = |pick: fn(T, T) -> T| {
+            let feet = level.iter().copied();
+            feet.reduce(|a, b| a.zip_map(&b, pick)).unwrap_or_default()
         };
-        // The rotation that takes e_z to up: axis e_z × up, sine |e_z × up|, cosine e_z · up.
-        let axis = Vector3::z().cross(up_b);
-        let sine = math::sqrt(axis.norm_squared());
-        let tilt = math::min(math::atan2(sine, up_b.z), self.max_tilt);
-        let turn = if sine > T::EPSILON {
-            so3::exp(&(axis * (self.share * tilt / sine)))
-        } else {
-            nalgebra::Rotation3::identity()
-        };
-        Some(level.each_ref().map(|foot| turn * foot + lead))
+        let (most, least) = (corner(math::max), corner(math::min));
+        let half = (most - least) * T::HALF;
+        let along = |x: Vector3<T>| x - up_b * x.dot(up_b);
+        // In the level posture the feet's middle is below the centre of mass.
+        let below = Vector3::z() * ((most.z + least.z) * T::HALF);
+        let capture = along(velocity_b * self.capture - below);
+        let mut outside = capture.zip_map(&half, |x, half| x - math::clamp(x, -half, half));
+        outside.z = T::ZERO;
+        let mut way = along(outside);
+        let size = math::sqrt(way.norm_squared());
+        if size > self.most {
+            way *= self.most / size;
+        }
+        Some(level.each_ref().map(|foot| foot + way))
     }
 
     /// One Gauss-Newton step of the legs towards feet at `wanted`, from `joints`, whose `limbs` these are.
@@ -183,16 +181,29 @@ mod tests {
     }
 
     #[test]
-    fn feet_turn_by_the_share_of_the_tilt_and_lead_the_motion() {
+    fn feet_follow_a_capture_point_to_the_edge_of_their_box() {
         let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
-        let tilt: f64 = 0.2;
-        let up_b = Vector3::new(0.0, so3::math::sin(tilt), so3::math::cos(tilt));
-        let velocity = Vector3::new(0.3, 0.0, 0.0);
-        let feet = feet_b(posture.joints(&A1Geared, &up_b, &velocity));
-        let turn = so3::exp(&Vector3::new(-0.5 * tilt, 0.0, 0.0));
-        for (foot, level) in feet.iter().zip(feet_b(LEVEL)) {
-            let expected = turn * level + velocity * 0.12;
-            assert!((foot - expected).norm() < 2e-3, "{foot} {expected}");
+        let level = feet_b(LEVEL);
+        let ways = |up_b: &Vector3<f64>, velocity: Vector3<f64>| {
+            let feet = feet_b(posture.joints(&A1Geared, up_b, &velocity));
+            core::array::from_fn::<_, 4, _>(|i| feet[i] - level[i])
+        };
+        let half = 0.5 * (level[0] - level[3]).abs();
+        let fast = Vector3::new(half.x + 0.03, -half.y - 0.02, 0.0) / posture.capture;
+        for way in ways(&Vector3::z(), fast - Vector3::z()) {
+            let expected = Vector3::new(0.03, -0.02, 0.0);
+            assert!((way - expected).norm() < 2e-3, "{way}");
+        }
+        // As far as a foot may go.
+        for way in ways(&Vector3::z(), Vector3::x() * 9.0) {
+            assert!(way.x > 0.05 && way.x < posture.most + 2e-3, "{way}");
+        }
+        // A tilt of 0.2 rad moves the feet by 6 cm, which alone is inside their box; both together are not.
+        let up_b = Vector3::new(0.0, so3::math::sin(-0.2), so3::math::cos(0.2));
+        assert_eq!(ways(&up_b, Vector3::zeros()), [Vector3::zeros(); 4]);
+        let aside = half.y / posture.capture;
+        for way in ways(&up_b, Vector3::y() * aside) {
+            assert!((0.04..0.07).contains(&way.y), "{way}");
         }
     }
 
@@ -201,7 +212,7 @@ mod tests {
         let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
         let level = posture.level_feet(&A1Geared);
         let up_b = Vector3::new(0.1, 0.2, 0.97);
-        let velocity = Vector3::new(0.3, -0.1, -1.0);
+        let velocity = Vector3::new(1.6, -0.1, -1.0);
         let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
         for _ in 0..super::STEPS {
             joints = posture.follow(&A1Geared, &level, (&up_b, &velocity), &joints, &mut limbs);

@@ -23,7 +23,7 @@ pub enum Measure {
     Margins,
     /// The plan's torques a millisecond early, for what holding and the slew limit delay them by.
     Lookahead,
-    /// A landing posture that follows tilt and speed before touchdown.
+    /// A landing posture that follows the capture point before touchdown.
     Posture,
     /// Forces of the feet that bring the body back to its plan, by a time-varying LQR.
     Regulator,
@@ -78,7 +78,7 @@ impl Measure {
             Self::Lookahead => {
                 "The plan's torques a millisecond early, for what holding and the slew limit delay them by"
             }
-            Self::Posture => "A landing posture that follows tilt and speed before touchdown",
+            Self::Posture => "A landing posture that follows the capture point before touchdown",
             Self::Regulator => "Forces of the feet that bring the body back to its plan",
             Self::Unloading => "Feet that let go at the take-off and are pulled up",
             Self::InertiaShaping => {

@@ -51,7 +51,7 @@ pub struct Flight {
     pub position: f64,
     /// Angle of the whole rotation, degrees.
     pub rotation: f64,
-    /// Largest difference of a joint, degrees; not judged, since legs reach for the ground by tilt and speed.
+    /// Largest difference of a joint, degrees; not judged, since legs reach for the ground by the capture point.
     pub joints: f64,
 }
 
