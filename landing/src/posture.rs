@@ -110,7 +110,8 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         Limbs::new(model, &q, &self.feet)
     }
 
-    /// Where the feet are to be, base axes, under a body whose up direction is `up_b` and which moves with `velocity_b`; `None` where a number is not finite.
+    /// Where the feet are to be, base axes, under a body whose up direction is `up_b` and which moves with `velocity_b`; `None` where a
+    /// number is not finite.
     fn feet(
         &self,
         level: &[Vector3<T>; F],
@@ -241,12 +242,13 @@ mod tests {
         assert!(far.fold(0.0, f64::max) <= 0.5);
     }
 
-    /// However fast, feet lead by no more than the largest lead.
+    /// However fast, feet are moved by no more than the farthest way.
     #[test]
-    fn the_lead_has_a_limit() {
+    fn the_way_of_the_feet_has_a_limit() {
         let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
         let joints = |speed: f64| posture.joints(&A1Geared, &Vector3::z(), &(Vector3::x() * speed));
-        let limit = posture.max_lead / posture.lead;
+        let level = feet_b(LEVEL);
+        let limit = (posture.most + 0.5 * (level[0] - level[3]).x.abs()) / posture.capture;
         let apart = |a: [f64; 12], b: [f64; 12]| {
             a.iter()
                 .zip(b)
