@@ -261,12 +261,18 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
     {
         let scale = T::of(parts as f64);
         let share = T::of(part as f64) / scale;
+        let of_state = long.node.dims.state_rows;
         let after = next.map_or(&long.node.costate, |next| &next.node.costate);
-        let ends = long.node.costate.iter().zip(after);
+        // Rows of the state make a step in the multipliers at their node.
+        let before = if part > 0 && of_state > 0 {
+            after
+        } else {
+            &long.node.costate
+        };
+        let ends = before.iter().zip(after);
         for (y, (from, to)) in self.node.costate.iter_mut().zip(ends) {
             *y = scale * (*from + share * (*to - *from));
         }
-        let of_state = long.node.dims.state_rows;
         let (rows, solved) = (&mut self.node.rows, &long.node.rows);
         for (to, from) in [
             (&mut rows.below, &solved.below),

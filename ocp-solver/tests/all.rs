@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod common;
+mod individual_steps;
 mod known_optima;
 mod linear_quadratic;
 mod published_optima;

@@ -1,5 +1,6 @@
 //! Equality-constrained linear-quadratic problems against a dense solve of their KKT conditions.
 
+mod parts;
 mod problem;
 
 use core::ops::ControlFlow;
