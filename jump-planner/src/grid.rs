@@ -11,7 +11,7 @@ use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_row
 use std::time::Instant;
 use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
 
-/// Most iterations; tasks that are solved take 15 to 130.
+/// Most iterations; what is solved takes 10 to 60.
 const PATIENCE: usize = 150;
 /// Iterations in which the first try has to arrive: a search on long intervals, with what follows it, costs as much.
 const FIRST_PATIENCE: usize = 100;
@@ -105,7 +105,8 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Plans with the least torque, from the guess, as long as the solver keeps up.
+    /// Plans with the least torque, from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there
+    /// take longer than the search on long intervals.
     pub(crate) fn with_least_torque(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
@@ -115,7 +116,8 @@ impl<'a> Grid<'a> {
         let watch = |progress: &Progress<f64>| {
             cancelled = observer(progress).is_break();
             let violation = progress.residual.primal;
-            if !cancelled && pace.keeps_up(progress.attempt, violation, FIRST_PATIENCE) {
+            let keeps_up = progress.attempt == 0 && pace.keeps_up(violation, FIRST_PATIENCE);
+            if !cancelled && keeps_up {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())

@@ -10,18 +10,12 @@ const NEAR: f64 = 0.05;
 /// The violations of an attempt so far.
 #[derive(Debug, Default)]
 pub(crate) struct Pace {
-    attempt: usize,
     violations: Vec<f64>,
 }
 
 impl Pace {
-    /// Counts an iterate of an attempt; whether its violation, which falls about geometrically, will be near zero within
-    /// `patience` iterations of the attempt.
-    pub(crate) fn keeps_up(&mut self, attempt: usize, violation: f64, patience: usize) -> bool {
-        if attempt != self.attempt {
-            self.attempt = attempt;
-            self.violations.clear();
-        }
+    /// Counts an iterate; whether its violation, which falls about geometrically, will be near zero within `patience` iterations in all.
+    pub(crate) fn keeps_up(&mut self, violation: f64, patience: usize) -> bool {
         self.violations.push(violation);
         let done = self.violations.len();
         let Some(before) = done.checked_sub(WINDOW + 1) else {
@@ -46,7 +40,7 @@ mod tests {
     /// How many iterates pass before the pace is too slow, of those given.
     fn lasts(violations: impl Iterator<Item = f64>) -> usize {
         let mut pace = Pace::default();
-        violations.take_while(|v| pace.keeps_up(0, *v, 150)).count()
+        violations.take_while(|v| pace.keeps_up(*v, 150)).count()
     }
 
     #[test]

@@ -106,7 +106,7 @@ fn turns_about_mixed_axes_are_planned() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Three jumps that a solve alone does not find. Where the audit finds friction exceeded between nodes, it is drawn in; where the first try
+/// Two jumps that a solve alone does not find. Where the audit finds friction exceeded between nodes, it is drawn in; where the first try
 /// finds no motion, the search goes on on long intervals, and comes back to the short ones with as little torque as the task asks for;
 /// where no motion of the legs has the rigid body's durations, they are found on the whole body.
 #[test]
@@ -120,35 +120,22 @@ fn plans_are_made_again_where_the_first_way_ends() {
     let down = down.replace("drop_m = 0.3", "drop_m = 0.6");
     let down = down.replace("max_s = 0.9", "max_s = 1.2");
     let half_turn = "\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = 180.0\n";
-    let far = built_in("a1/lateral-down").replace("[0.0, 0.5, -0.3]", "[0.79, 0.04, -0.93]");
-    let far = far.replace("axis = \"y\"", "axis = \"x\"");
-    let far = far.replace("drop_m = 0.3", "drop_m = 0.93");
-    let far = far.replace("max_s = 0.9", "max_s = 1.5");
-    // Whose durations, whether friction is drawn in, and whether it takes the search.
+    // Whose durations, and whether it takes the search.
     let cases = [
         (
             "spin-270",
             longer.replace("90.0", "270.0"),
             "whole body",
             true,
-            true,
         ),
         (
             "down-turned",
             format!("{down}{half_turn}"),
             "rigid body",
-            true,
             false,
-        ),
-        (
-            "far-down",
-            format!("{far}\n[limits]\nfriction = 0.74\n"),
-            "whole body",
-            false,
-            true,
         ),
     ];
-    for (name, text, durations, drawn, searched) in cases {
+    for (name, text, durations, searched) in cases {
         let path = folder.join(name).with_extension("toml");
         std::fs::write(&path, text).unwrap();
         let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
@@ -159,7 +146,7 @@ fn plans_are_made_again_where_the_first_way_ends() {
         let last = path.last().unwrap();
         assert_eq!(last["durations"], durations, "{name}: {report}");
         let friction = last["drawn_in"]["friction"].as_f64().unwrap();
-        assert_eq!(friction > 0.0, drawn, "{name}: {report}");
+        assert!(friction > 0.0, "{name}: {report}");
         // As little torque as the task asks for, however much the search began with.
         let torque = |solve: &Value| solve["torque_share"].as_f64().unwrap();
         assert_eq!(torque(last), torque(&path[0]), "{name}: {report}");
