@@ -100,9 +100,7 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         let (mut step, common) = (step, step.primal);
-        if run.uses_filter() {
-            step.primal = self.longest(&step);
-        }
+        step.primal = self.longest(run, &step);
         let mut trial = iterate::try_step(problem, stages, step.primal);
         if run.uses_filter() {
             if let Some(found) = self.filtered(problem, stages, run, from, step, trial) {
@@ -129,9 +127,9 @@ impl<T: Scalar> Solver<T> {
         Ok((trial, step))
     }
 
-    /// Length of the longest step under the filter.
-    fn longest(&self, step: &Direction<T>) -> T {
-        if self.settings.individual_steps {
+    /// Length of the longest step: all of it where rows stop for themselves and the filter judges it, else as much as every row has room for.
+    fn longest<const NX: usize>(&self, run: &Run<T, NX>, step: &Direction<T>) -> T {
+        if self.settings.individual_steps && run.uses_filter() {
             T::ONE
         } else {
             step.primal
@@ -168,7 +166,7 @@ impl<T: Scalar> Solver<T> {
                 if let Some(mut bent) =
                     self.direction(problem, stages, run, step.shift, Pass::Corrected)
                 {
-                    bent.primal = self.longest(&bent);
+                    bent.primal = self.longest(run, &bent);
                     trial = iterate::try_step(problem, stages, bent.primal);
                     let there = trial.point(run.mu);
                     if trial.is_finite() && run.filter.accepts(here, there, step.primal, step.slope)
