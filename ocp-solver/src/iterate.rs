@@ -5,6 +5,7 @@ use crate::keep::Keep;
 use crate::kernel::{add_scaled, larger};
 use crate::linearised::Linearised;
 use crate::problem::{Derivatives, Problem, Values};
+use crate::riccati::Direction;
 use crate::rows::Complementarity;
 use crate::settings::Residual;
 use crate::stage::{Node, Pass, Stage};
@@ -192,23 +193,23 @@ pub(crate) fn merit<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, con
 }
 
 impl<T: Scalar> Merit<T> {
-    /// Adds a node, after `length` of its slack steps if that is given.
+    /// Adds a node, after a step of its slacks if one is given.
     #[inline(always)]
     fn add<const NX: usize, const NU: usize, const NI: usize>(
         &mut self,
         node: &Node<T, NX, NU, NI>,
-        length: Option<T>,
+        step: Option<&Direction<T>>,
     ) {
         self.cost += node.values.cost;
         for gap in &node.values.gap {
             self.worst = larger(self.worst, *gap);
             self.sum += abs(*gap);
         }
-        node.add_merit(length, self);
+        node.add_merit(step, self);
     }
 }
 
-/// Trial point at step length `alpha` and its merit; the values of the stages are those of the trial point.
+/// Trial point after a step and its merit; the values of the stages are those of the trial point.
 pub(crate) fn try_step<
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
@@ -219,11 +220,11 @@ pub(crate) fn try_step<
 >(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
-    alpha: T,
+    step: &Direction<T>,
 ) -> Merit<T> {
     let mut merit = Merit::new();
     if let Some(first) = stages.first_mut() {
-        first.move_to_trial(problem, 0, alpha, None);
+        first.move_to_trial(problem, 0, step.primal, None);
     }
     let mut rest = stages;
     let mut k = 0usize;
@@ -231,7 +232,7 @@ pub(crate) fn try_step<
         let after = k.wrapping_add(1);
         if let Some(next) = tail.first_mut() {
             let before = (&stage.trial.0, &stage.trial.1);
-            next.move_to_trial(problem, after, alpha, Some(before));
+            next.move_to_trial(problem, after, step.primal, Some(before));
         }
         let next = tail.first().map(|next| &next.trial.0);
         let (state, control) = &stage.trial;
@@ -239,14 +240,14 @@ pub(crate) fn try_step<
         if next.is_none() {
             stage.node.values.gap = [T::ZERO; NX];
         }
-        merit.add(&stage.node, Some(alpha));
+        merit.add(&stage.node, Some(step));
         rest = tail;
         k = after;
     }
     merit
 }
 
-/// Turns the values of the trial point at step length `alpha` into those that a second-order correction aims at:
+/// Turns the values of the trial point after a step into those that a second-order correction aims at:
 /// what the step was to take away, and what the curvature put in its place.
 #[inline(never)]
 pub(crate) fn correct<
@@ -259,7 +260,7 @@ pub(crate) fn correct<
 >(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
-    alpha: T,
+    step: &Direction<T>,
 ) {
     let mut rest = stages;
     let mut k = 0usize;
@@ -268,9 +269,9 @@ pub(crate) fn correct<
         let mut before = Values::new();
         problem.evaluate(k, &stage.state, &stage.control, next, &mut before);
         if next.is_some() {
-            add_scaled(&mut stage.node.values.gap, alpha, &before.gap);
+            add_scaled(&mut stage.node.values.gap, step.primal, &before.gap);
         }
-        stage.node.correct_rows(&before.rows, alpha);
+        stage.node.correct_rows(&before.rows, step);
         rest = tail;
         k = k.wrapping_add(1);
     }
@@ -299,8 +300,7 @@ impl<T: Scalar, X: Copy, K: Copy, const NX: usize, const NU: usize, const NI: us
 /// Makes the trial point the iterate and moves all multipliers.
 pub(crate) fn accept<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, const NI: usize>(
     stages: &mut [Stage<T, X, NX, NU, NI, K>],
-    primal: T,
-    dual: T,
+    step: &Direction<T>,
     mu: T,
     floor: T,
 ) {
@@ -308,8 +308,8 @@ pub(crate) fn accept<T: Scalar, X: Copy, K, const NX: usize, const NU: usize, co
         (stage.state, stage.control) = stage.trial;
         let node = &mut stage.node;
         for (costate, full) in node.costate.iter_mut().zip(&node.step.costate) {
-            *costate += primal * (*full - *costate);
+            *costate += step.primal * (*full - *costate);
         }
-        node.accept_rows(primal, dual, mu, floor);
+        node.accept_rows(step, mu, floor);
     }
 }

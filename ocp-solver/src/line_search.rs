@@ -12,6 +12,8 @@ use crate::stage::{Pass, Stage};
 use so3::Scalar;
 use so3::math::max;
 
+/// Share of its distance to a bound that a slack may use up in a step of its own, and of itself a multiplier.
+const OWN_SHARE: f64 = 0.9;
 /// Halvings of a step before the filter is given up for it.
 const HALVINGS: u8 = 6;
 /// Steps of one attempt that may be taken against the filter.
@@ -67,6 +69,11 @@ impl<T: Scalar> Solver<T> {
         let barrier = RowBarrier {
             mu: run.mu,
             fraction: max(T::of(0.99), T::ONE - run.mu),
+            reach: if self.settings.individual_steps && run.uses_filter() {
+                T::of(OWN_SHARE)
+            } else {
+                T::INFINITY
+            },
             rank_tolerance: self.settings.rank_tolerance,
         };
         run.factorisations = run.factorisations.saturating_add(1);
@@ -100,8 +107,8 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         let (mut step, common) = (step, step.primal);
-        step.primal = self.longest(run, &step);
-        let mut trial = iterate::try_step(problem, stages, step.primal);
+        step.primal = step.longest();
+        let mut trial = iterate::try_step(problem, stages, &step);
         if run.uses_filter() {
             if let Some(found) = self.filtered(problem, stages, run, from, step, trial) {
                 return Ok(found);
@@ -113,7 +120,7 @@ impl<T: Scalar> Solver<T> {
                 return Err(Status::Stalled);
             }
             step.primal = common;
-            trial = iterate::try_step(problem, stages, step.primal);
+            trial = iterate::try_step(problem, stages, &step);
         }
         let mut halvings = 0u8;
         while !trial.is_finite() || (halvings < 4 && run.explodes(trial.sum)) {
@@ -122,18 +129,9 @@ impl<T: Scalar> Solver<T> {
                 return Err(Status::NotFinite);
             }
             step.primal *= T::HALF;
-            trial = iterate::try_step(problem, stages, step.primal);
+            trial = iterate::try_step(problem, stages, &step);
         }
         Ok((trial, step))
-    }
-
-    /// Length of the longest step: all of it where rows stop for themselves and the filter judges it, else as much as every row has room for.
-    fn longest<const NX: usize>(&self, run: &Run<T, NX>, step: &Direction<T>) -> T {
-        if self.settings.individual_steps && run.uses_filter() {
-            T::ONE
-        } else {
-            step.primal
-        }
     }
 
     /// The longest of a few halvings that the filter takes. Where the whole step is refused because it raises the
@@ -162,12 +160,12 @@ impl<T: Scalar> Solver<T> {
                 return Some((trial, step));
             }
             if halvings == 0 && trial.is_finite() && trial.sum >= from.sum {
-                iterate::correct(problem, stages, step.primal);
+                iterate::correct(problem, stages, &step);
                 if let Some(mut bent) =
                     self.direction(problem, stages, run, step.shift, Pass::Corrected)
                 {
-                    bent.primal = self.longest(run, &bent);
-                    trial = iterate::try_step(problem, stages, bent.primal);
+                    bent.primal = bent.longest();
+                    trial = iterate::try_step(problem, stages, &bent);
                     let there = trial.point(run.mu);
                     if trial.is_finite() && run.filter.accepts(here, there, step.primal, step.slope)
                     {
@@ -182,7 +180,7 @@ impl<T: Scalar> Solver<T> {
                 step.primal = primal;
             }
             step.primal *= T::HALF;
-            trial = iterate::try_step(problem, stages, step.primal);
+            trial = iterate::try_step(problem, stages, &step);
         }
         None
     }

@@ -38,6 +38,19 @@ pub(crate) struct Direction<T> {
     pub(crate) dual: T,
     /// Derivative of the barrier function along it.
     pub(crate) slope: T,
+    /// See [`RowBarrier::reach`].
+    pub(crate) reach: T,
+}
+
+impl<T: Scalar> Direction<T> {
+    /// Length of the longest trial step: all of it where rows stop for themselves, else as much as every row has room for.
+    pub(crate) fn longest(&self) -> T {
+        if self.reach < T::INFINITY {
+            T::ONE
+        } else {
+            self.primal
+        }
+    }
 }
 
 /// Backward recursion with `shift` added to the diagonal of every stage Hessian.
@@ -170,6 +183,7 @@ where
         primal: T::ONE,
         dual: T::ONE,
         slope: T::ZERO,
+        reach: barrier.reach,
     };
     if let Some(first) = stages.first_mut() {
         first.node.step.state = start;

@@ -23,9 +23,6 @@ use crate::stage::{Node, Rows};
 use so3::Scalar;
 use so3::math::{abs, max, min};
 
-/// Share of its distance to a bound that a slack may use up in a step of its own, and of itself a multiplier.
-const OWN_SHARE: f64 = 0.9;
-
 /// Parameters of a Newton step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowBarrier<T> {
@@ -33,6 +30,9 @@ pub(crate) struct RowBarrier<T> {
     pub(crate) mu: T,
     /// Share of a distance to a bound, or of a multiplier, that a step may use up.
     pub(crate) fraction: T,
+    /// Share of its distance to a bound at which a slack stops for itself, and of itself at which a multiplier does; infinite where steps
+    /// are common.
+    pub(crate) reach: T,
     /// Entries below this share of their row count as zero in the elimination of equalities.
     pub(crate) rank_tolerance: T,
 }
@@ -289,33 +289,30 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         to.slope += mu * slope;
     }
 
-    /// Slack of row `i` after `length` of its step.
+    /// Slack of row `i` after a step.
     #[inline(always)]
-    fn moved_slack(&self, i: usize, length: T) -> T {
+    fn moved_slack(&self, i: usize, step: &Direction<T>) -> T {
         let rows = &self.rows;
         let (below, above) = rows.distances(i);
-        let mut ds = length * self.step.rows[i];
-        if self.individual_steps {
-            ds = max(min(ds, T::of(OWN_SHARE) * above), -T::of(OWN_SHARE) * below);
-        }
-        let s = rows.slack[i] + ds;
+        let ds = min(step.primal * self.step.rows[i], step.reach * above);
+        let s = rows.slack[i] + max(ds, -step.reach * below);
         rows.inside(i, rows.relaxed(i, s, self.values.rows[i]))
     }
 
-    /// Moves slacks and multipliers of equalities by `primal`, bound multipliers by `dual` of their steps.
+    /// Moves slacks and multipliers of equalities by the primal part of a step, bound multipliers by its dual part.
     ///
-    /// With individual steps a multiplier that falls goes as far as it may. One that grows does not: where its slack stopped early its
+    /// Where rows stop for themselves, a multiplier that falls goes as far as it may. One that grows does not: where its slack stopped early its
     /// Newton step is that for a slack far beyond the bound.
     ///
     /// `mu` is that of the step, `floor` bounds how small a multiplier becomes.
-    pub(crate) fn accept_rows(&mut self, primal: T, dual: T, mu: T, floor: T) {
+    pub(crate) fn accept_rows(&mut self, step: &Direction<T>, mu: T, floor: T) {
         for i in 0..self.row_count() {
             let ds = self.step.rows[i];
             if self.rows.is_equality(i) {
-                self.rows.above[i] += primal * (ds - self.rows.above[i]);
+                self.rows.above[i] += step.primal * (ds - self.rows.above[i]);
                 continue;
             }
-            let moved = self.moved_slack(i, primal);
+            let moved = self.moved_slack(i, step);
             let rows = &mut self.rows;
             let before = rows.distances(i);
             rows.slack[i] = moved;
@@ -328,10 +325,10 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                     continue;
                 }
                 let dz = newton(before, *z, mu, ds);
-                let moved = if self.individual_steps && dz < T::ZERO {
-                    max(*z + dz, (T::ONE - T::of(OWN_SHARE)) * *z)
+                let moved = if step.reach < T::INFINITY && dz < T::ZERO {
+                    max(*z + dz, (T::ONE - step.reach) * *z)
                 } else {
-                    *z + dual * dz
+                    *z + step.dual * dz
                 };
                 // Kept within 1e10 of the central path, as IPOPT does, so that the Hessian stays exact.
                 let far = T::of(1e10);
@@ -341,14 +338,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     }
 
     /// Adds the violation of `c − s = e y` (`s = l` in an equality) and the distances of `s` to its bounds, after
-    /// `length` of the slack steps if that is given.
+    /// a step if one is given.
     #[inline(always)]
-    pub(crate) fn add_merit(&self, length: Option<T>, to: &mut Merit<T>) {
+    pub(crate) fn add_merit(&self, step: Option<&Direction<T>>, to: &mut Merit<T>) {
         for i in 0..self.row_count() {
             let rows = &self.rows;
             let mut s = rows.slack[i];
             if !rows.is_equality(i) {
-                s = length.map_or(s, |length| self.moved_slack(i, length));
+                s = step.map_or(s, |step| self.moved_slack(i, step));
                 to.logs.add(s - rows.lower[i]);
                 to.logs.add(rows.upper[i] - s);
             }
@@ -360,15 +357,15 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
     }
 
     /// See [`crate::iterate::correct`]; `before` are the rows at the iterate.
-    pub(crate) fn correct_rows(&mut self, before: &[T; NI], alpha: T) {
+    pub(crate) fn correct_rows(&mut self, before: &[T; NI], step: &Direction<T>) {
         for (i, before) in before.iter().enumerate().take(self.row_count()) {
             let s = self.rows.slack[i];
             let moved = if self.rows.is_equality(i) {
                 s
             } else {
-                self.moved_slack(i, alpha)
+                self.moved_slack(i, step)
             };
-            self.values.rows[i] += s - moved + alpha * (*before - s);
+            self.values.rows[i] += s - moved + step.primal * (*before - s);
         }
     }
 

@@ -272,7 +272,7 @@ impl<T: Scalar> Solver<T> {
             (used_shift, primal_step, dual_step) = (step.shift, step.primal, step.dual);
             run.recent = [run.recent[1], run.recent[2], run.recent[3], trial.sum];
             let floor = max(run.mu, settings.smallest_mu(run.elastic));
-            iterate::accept(stages, primal_step, dual_step, run.mu, floor);
+            iterate::accept(stages, &step, run.mu, floor);
             point = if run.elastic > T::ZERO {
                 // The give of the rows has moved with their multipliers.
                 iterate::merit(stages)
@@ -391,7 +391,6 @@ impl<T: Scalar, const NX: usize> Run<T, NX> {
         for stage in stages.iter_mut() {
             let node = &mut stage.node;
             node.elastic = self.elastic;
-            node.individual_steps = settings.individual_steps && self.uses_filter();
             if self.warm {
                 continue;
             }

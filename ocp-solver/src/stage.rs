@@ -54,8 +54,6 @@ pub(crate) struct Node<T, const NX: usize, const NU: usize, const NI: usize> {
     pub(crate) dims: Dims,
     /// Give of every row per unit of its multiplier; 0 outside elastic mode.
     pub(crate) elastic: T,
-    /// See [`crate::Settings::individual_steps`].
-    pub(crate) individual_steps: bool,
     /// Multiplier of the dynamics that lead into this node.
     pub(crate) costate: [T; NX],
     pub(crate) rows: Rows<T, NI>,
@@ -125,7 +123,6 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 mixed_rows: 0,
             },
             elastic: T::ZERO,
-            individual_steps: false,
             costate: [T::ZERO; NX],
             rows: Rows {
                 slack: [T::ZERO; NI],
