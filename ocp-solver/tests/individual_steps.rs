@@ -1,20 +1,9 @@
 //! Slacks and falling multipliers that take steps of their own arrive where common steps do.
 
-use crate::common::{BrysonDenham, LeastTime};
+use crate::common::{BrysonDenham, LeastTime, config};
 use core::ops::ControlFlow;
 use ocp_solver::{Problem, Settings, Solution, Solver, Stage, Status};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
-
-/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
-fn config(cases: u32, seed: u64) -> ProptestConfig {
-    let mut config = ProptestConfig::with_cases(cases);
-    if config.rng_seed == RngSeed::Random {
-        config.rng_seed = RngSeed::Fixed(seed);
-    }
-    config.failure_persistence = None;
-    config
-}
 
 /// Solves with common steps and with individual ones.
 fn both<P, const NX: usize, const NU: usize, const NI: usize>(

@@ -1,6 +1,18 @@
-//! Small problems with known optima.
+//! Small problems with known optima, and how tests draw.
 
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem, Values};
+use proptest::prelude::ProptestConfig;
+use proptest::test_runner::RngSeed;
+
+/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
+pub(crate) fn config(cases: u32, seed: u64) -> ProptestConfig {
+    let mut config = ProptestConfig::with_cases(cases);
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(seed);
+    }
+    config.failure_persistence = None;
+    config
+}
 
 /// Rest to rest over one metre with |u| ≤ 1 in least time: T = 2, bang-bang. State (position, speed, T).
 pub(crate) struct LeastTime {

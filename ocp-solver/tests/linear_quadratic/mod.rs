@@ -3,12 +3,12 @@
 mod parts;
 mod problem;
 
+use crate::common::config;
 use core::ops::ControlFlow;
 use nalgebra::{DMatrix, DVector};
 use ocp_solver::{Settings, Solver, Stage, Status, blocking_rows};
 use problem::{Lq, Node};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 const NX: usize = 8;
 const NU: usize = 4;
@@ -24,16 +24,6 @@ struct Draw {
 /// As many numbers as the largest problem here takes.
 fn draw() -> impl Strategy<Value = Draw> {
     prop::collection::vec(-1.0..1.0_f64, 4096).prop_map(|numbers| Draw { numbers, at: 0 })
-}
-
-/// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
-fn config(cases: u32, seed: u64) -> ProptestConfig {
-    let mut config = ProptestConfig::with_cases(cases);
-    if config.rng_seed == RngSeed::Random {
-        config.rng_seed = RngSeed::Fixed(seed);
-    }
-    config.failure_persistence = None;
-    config
 }
 
 impl Draw {
