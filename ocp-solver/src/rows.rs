@@ -384,3 +384,47 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Dims;
+
+    /// A row 0 ≤ c with slack 1 and multiplier 2, after a step of its slack.
+    fn moved(slack_step: f64, reach: f64) -> (f64, f64) {
+        let mut node = crate::stage::Stage::<f64, (), 1, 1, 1>::new(()).node;
+        node.dims = Dims {
+            control_rows: 1,
+            ..Dims::default()
+        };
+        (node.rows.lower, node.rows.upper) = ([0.0], [f64::INFINITY]);
+        (node.rows.slack, node.rows.below) = ([1.0], [2.0]);
+        // Where the row already is no slack is moved towards it.
+        node.values.rows = [-9.0];
+        node.step.rows = [slack_step];
+        let step = Direction {
+            shift: 0.0,
+            primal: 1.0,
+            dual: 0.25,
+            slope: 0.0,
+            reach,
+        };
+        node.accept_rows(&step, 1e-3, 1e-3);
+        (node.rows.slack[0], node.rows.below[0])
+    }
+
+    #[test]
+    fn rows_that_stop_for_themselves_keep_a_tenth() {
+        let near = |(s, z): (f64, f64), (slack, multiplier): (f64, f64)| {
+            assert!((s - slack).abs() < 1e-12 && (z - multiplier).abs() < 1e-12);
+        };
+        // The slack is to go far beyond the bound, where the multiplier would be (µ − z ds)/d = 6.001: it grows by a quarter of the way there.
+        near(moved(-3.0, 0.9), (0.1, 2.0 + 0.25 * 4.001));
+        // Away from the bound the multiplier falls, as far as it may whatever the dual step is.
+        near(moved(3.0, 0.9), (4.0, 0.2));
+        // A step that has room is taken whole.
+        near(moved(-0.5, 0.9), (0.5, 1.001));
+        // With common steps by the dual step alone.
+        near(moved(-0.5, f64::INFINITY), (0.5, 2.0 - 0.25 * 0.999));
+    }
+}
