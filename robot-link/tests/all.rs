@@ -1,0 +1,6 @@
+//! All tests in one program, which links once.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "tests")]
+
+mod board;
+mod packets;
+mod peer;
