@@ -23,11 +23,11 @@ pub struct Recorded<'e, E> {
 }
 
 impl<'e, E: End> Recorded<'e, E> {
-    /// From now on.
-    pub const fn new(end: &'e mut E) -> Self {
+    /// From now on, with memory for so many bytes: what is put aside before the flight does not have to be found in it.
+    pub fn new(end: &'e mut E, capacity: usize) -> Self {
         Self {
             end,
-            bytes: Vec::new(),
+            bytes: Vec::with_capacity(capacity),
         }
     }
 

@@ -76,7 +76,7 @@ pub fn fly(planned: &Planned, trial: Trial<'_>, linked: Linked) -> Result<Flown,
     let end = robot.duration();
     let mut flown = None;
     prepared(planned, &trial, linked, |session| {
-        let mut session = Recorded::new(session);
+        let mut session = Recorded::new(session, 0);
         let (mut up, mut down) = (VecDeque::<Vec<u8>>::new(), VecDeque::<Vec<u8>>::new());
         let mut out = [0; 512];
         for tick in 0..end / TICK {

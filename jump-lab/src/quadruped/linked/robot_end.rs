@@ -75,6 +75,9 @@ impl<'p> RobotEnd<'p> {
         let mut noise = Noise::new(trial.seed.wrapping_add(0x5eed), 1.0);
         let air = |seed| Link::new(disturbance, 0.5, 0.0, trial.seed.wrapping_add(seed));
         let limits = (Model::limits(robot), robot.drives());
+        let mut run = Run::new(task, stored.checksum(), world.plant().tick());
+        // No flight in real time waits for memory.
+        run.samples.reserve((1e3 * Self::end(planned)) as usize + 1);
         Ok(Self {
             planned,
             plan: jump.plan,
@@ -91,7 +94,7 @@ impl<'p> RobotEnd<'p> {
             begun: None,
             ticks: 0,
             due: 0,
-            run: Run::new(task, stored.checksum(), world.plant().tick()),
+            run,
             world,
         })
     }
@@ -99,7 +102,12 @@ impl<'p> RobotEnd<'p> {
     /// How long it takes until the jump can be judged, ns.
     #[must_use]
     pub fn duration(&self) -> u64 {
-        (1e9 * (HOLD + self.planned.reference.touchdown + AFTER)) as u64
+        (1e9 * Self::end(self.planned)) as u64
+    }
+
+    /// The same in s, from the beginning of the hold.
+    fn end(planned: &Planned) -> f64 {
+        HOLD + planned.reference.touchdown + AFTER
     }
 
     /// A datagram comes at the time `now`, ns, at this end's side of the bad link.
@@ -183,7 +191,8 @@ impl<'p> RobotEnd<'p> {
     /// A tick of the plant from the time `time` on, ns, watched by the judge.
     fn tick(&mut self, time: u64, glance: &Glance) -> Result<(), String> {
         let t = plan_time(time, glance);
-        if self.ticks.is_multiple_of(u64::from(RATIO)) && glance.start.is_some() {
+        let is_seen = glance.start.is_some() && t + HOLD < Self::end(self.planned);
+        if is_seen && self.ticks.is_multiple_of(u64::from(RATIO)) {
             let planned = sample(&self.plan, t, 0);
             let robot = &self.planned.task.robot;
             let seen = record(robot, &self.world, glance.phase, &self.plan, &planned, t);

@@ -1,7 +1,7 @@
 //! A jump over a link that is whole, lossy, slow, or cut; in simulated time, so that no machine is too slow for it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::{Flown, Linked, fly, flown_again};
+use super::{Flown, Linked, flown_again, fly};
 use crate::Sim;
 use crate::lab::{Lab, PlantArgument};
 use crate::quadruped::Planned;
@@ -47,7 +47,22 @@ fn what() {
         let clock = std::time::Instant::now();
         let (trial, flown) = flown(&planned, air, Linked { period_ms, ..WHOLE });
         let judged = planned.judge(&flown.run);
-        println!("{air} {period_ms}: {} {:?} {:?} {:?} {} s", judged.verdict.first(), flown.run.final_phase, flown.run.fault, flown.tallies, clock.elapsed().as_secs_f64());
-        println!("{:?}", flown_again(&planned, &trial, Linked { period_ms, ..WHOLE }, &flown.recording));
+        println!(
+            "{air} {period_ms}: {} {:?} {:?} {:?} {} s",
+            judged.verdict.first(),
+            flown.run.final_phase,
+            flown.run.fault,
+            flown.tallies,
+            clock.elapsed().as_secs_f64()
+        );
+        println!(
+            "{:?}",
+            flown_again(
+                &planned,
+                &trial,
+                Linked { period_ms, ..WHOLE },
+                &flown.recording
+            )
+        );
     }
 }
