@@ -4,6 +4,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod adapters;
 mod board;
 mod command;
 mod end;
