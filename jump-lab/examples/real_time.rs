@@ -7,6 +7,8 @@
 //! plan, in s, at which nothing gets through any more. Deadlines are the operating system's to keep: `chrt -f 50` before the program, where that is
 //! allowed, makes it try harder.
 
+use core::error::Error;
+use core::time::Duration;
 use jump_lab::Sim;
 use jump_lab::lab::{Lab, PlantArgument};
 use jump_lab::quadruped::Planned;
@@ -16,10 +18,9 @@ use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use robot_link::recording::Recorded;
 use robot_link::{End, UdpLink};
-use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Nanoseconds between two looks of the robot at its socket.
 const LOOK: u64 = 200_000;
@@ -75,9 +76,13 @@ impl Shared {
         *self.glance.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait_until(&self, deadline: u64) {
+    /// Waits for the next deadline, and returns it: a period after the last, or after `now` where that is over.
+    fn wait(&self, last: u64, period: u64, now: u64) -> u64 {
+        let next = last + period;
+        let deadline = if next > now { next } else { now + period };
         let left = deadline.saturating_sub(self.now());
         thread::sleep(Duration::from_nanos(left));
+        deadline
     }
 }
 
@@ -119,11 +124,8 @@ fn robot(
         while let Some(bytes) = link.receive(&mut memory) {
             robot.hear(bytes, now, &glance);
         }
-        robot.advance(now, &glance, |bytes| {
-            link.send(bytes);
-        })?;
-        deadline = (deadline + LOOK).max(now);
-        shared.wait_until(deadline);
+        robot.advance(now, &glance, |bytes| link.send(bytes))?;
+        deadline = shared.wait(deadline, LOOK, now);
     }
     Ok(late)
 }
@@ -162,8 +164,7 @@ fn controller(
             around.all.push(round_trip);
         }
         long.all.push(shared.now() - now);
-        deadline = (deadline + TURN).max(now);
-        shared.wait_until(deadline);
+        deadline = shared.wait(deadline, TURN, now);
     }
     Ok([late, long, old, around])
 }

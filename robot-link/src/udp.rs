@@ -1,7 +1,8 @@
 //! Datagrams over UDP.
 
+use core::net::SocketAddr;
 use std::io;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
+use std::net::{ToSocketAddrs, UdpSocket};
 
 /// A socket that only talks with one other, and never waits.
 #[derive(Debug)]
@@ -43,8 +44,8 @@ impl UdpLink {
         memory.get(..length)
     }
 
-    /// Sends a datagram; false if it did not get as far as the wire, which is a loss like any other.
-    pub fn send(&self, datagram: &[u8]) -> bool {
-        self.socket.send(datagram).is_ok()
+    /// Sends a datagram. One that does not get as far as the wire is a loss like any other: the other end counts it.
+    pub fn send(&self, datagram: &[u8]) {
+        let _ = self.socket.send(datagram);
     }
 }
