@@ -21,7 +21,9 @@ impl<'a> Writer<'a> {
     pub fn put(&mut self, bytes: &[u8]) {
         let end = self.at.saturating_add(bytes.len());
         if let Some(room) = self.bytes.get_mut(self.at..end) {
-            room.copy_from_slice(bytes);
+            for (to, from) in room.iter_mut().zip(bytes) {
+                *to = *from;
+            }
         }
         self.at = end;
     }
