@@ -87,3 +87,14 @@ fn a_silence_is_not_forgotten_by_the_next_command() {
     pair.turn(4.0, true);
     assert!(pair.board.has_tripped());
 }
+
+/// What a caller has to keep: the README's numbers.
+#[test]
+fn the_ends_are_small() {
+    let sizes = [
+        size_of::<Board<12>>(),
+        size_of::<Peer<State<12, 4>>>(),
+        size_of::<Peer<Command<12>>>(),
+    ];
+    assert_eq!(sizes, [352, 280, 344]);
+}
