@@ -131,13 +131,13 @@ fn robot(
 }
 
 /// The controller's thread: a turn per millisecond until `end`, ns. Returns how late turns were, how long they took, how old the states were and
-/// their round trips.
+/// their round trips, and when the machine gave up, ns.
 fn controller(
     end: u64,
     session: &mut Recorded<'_, Session<'_>>,
     link: &UdpLink,
     shared: &Shared,
-) -> Result<[Times; 4], String> {
+) -> Result<([Times; 4], Option<u64>), String> {
     let names = [
         "turn behind its deadline",
         "turn's length",
@@ -147,7 +147,7 @@ fn controller(
     let [mut late, mut long, mut old, mut around] =
         names.map(|name| Times::new(name, end / TURN + 1));
     let mut deadline = shared.now();
-    let (mut memory, mut out) = ([0; 1024], [0; 1024]);
+    let (mut memory, mut out, mut aborted) = ([0; 1024], [0; 1024], None);
     while shared.now() < end {
         let now = shared.now();
         late.all.push(now.saturating_sub(deadline));
@@ -159,6 +159,9 @@ fn controller(
         }
         let glance = session.end().glance(now)?;
         *shared.glance.lock().unwrap_or_else(PoisonError::into_inner) = glance;
+        if glance.fault.is_some() {
+            aborted = aborted.or(Some(now));
+        }
         if let Some([age, round_trip]) = session.end().age(now) {
             old.all.push(age);
             around.all.push(round_trip);
@@ -166,7 +169,7 @@ fn controller(
         long.all.push(shared.now() - now);
         deadline = shared.wait(deadline, TURN, now);
     }
-    Ok([late, long, old, around])
+    Ok(([late, long, old, around], aborted))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -196,7 +199,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut simulated = RobotEnd::new(&planned, trial, linked)?;
             let late = robot(end, &mut simulated, &down, &shared)?;
             let (tally, tripped) = (*simulated.tally(), simulated.has_tripped());
-            Ok::<_, String>((late, (simulated.finish(&shared.glance()), tally, tripped)))
+            Ok::<_, String>((late, (simulated.finish(), tally, tripped)))
         });
         prepared(&planned, &trial, linked, |session| {
             let mut session = Recorded::new(session, (end / TURN * RECORD) as usize);
@@ -210,7 +213,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             .map_err(|_| "the robot's thread has panicked".to_owned())?
     })?;
     let (run, heard_there, tripped) = flown;
-    let (mut times, heard_here, recording) = controlled.ok_or("nothing was controlled")?;
+    let ((mut times, aborted), heard_here, recording) =
+        controlled.ok_or("nothing was controlled")?;
     println!(
         "{:34}{:>9}{:>9}{:>9}{:>9}",
         "ms", "50 %", "99 %", "99.9 %", "most"
@@ -220,15 +224,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         "controller: {heard_here:?}\nrobot: {heard_there:?}, watchdog {}",
         if tripped { "tripped" } else { "quiet" }
     );
-    let judged = planned.judge(&run);
-    let fault = run
-        .fault
-        .map_or("no fault".to_owned(), |fault| fault.to_string());
-    println!(
-        "in the end {:?}, {fault}; {}",
-        run.final_phase,
-        judged.verdict.first()
-    );
+    println!("the jump: {}", planned.judge(&run).verdict.first());
+    let Glance {
+        phase,
+        fault,
+        start,
+    } = shared.glance();
+    let given_up = aborted.zip(start).zip(fault).map(|((at, start), fault)| {
+        let at = 1e-9 * at.wrapping_sub(start).cast_signed() as f64;
+        format!(", given up at {at:.3} s: {fault}")
+    });
+    println!("in the end: {phase:?}{}", given_up.unwrap_or_default());
     let turns = flown_again(&planned, &trial, linked, &recording)?;
     println!(
         "replayed: {turns} turns say the recorded bits ({} MB)",

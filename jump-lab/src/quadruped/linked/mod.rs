@@ -102,7 +102,7 @@ pub fn fly(planned: &Planned, trial: Trial<'_>, linked: Linked) -> Result<Flown,
     let (recording, tally) = flown.ok_or("the session was not run")?;
     let (tallies, has_tripped) = ([tally, *robot.tally()], robot.has_tripped());
     Ok(Flown {
-        run: robot.finish(&glance.get()),
+        run: robot.finish(),
         recording,
         tallies,
         has_tripped,

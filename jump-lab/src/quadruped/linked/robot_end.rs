@@ -192,6 +192,9 @@ impl<'p> RobotEnd<'p> {
     fn tick(&mut self, time: u64, glance: &Glance) -> Result<(), String> {
         let t = plan_time(time, glance);
         let is_seen = glance.start.is_some() && t + HOLD < Self::end(self.planned);
+        if is_seen {
+            (self.run.final_phase, self.run.fault) = (glance.phase, glance.fault);
+        }
         if is_seen && self.ticks.is_multiple_of(u64::from(RATIO)) {
             let planned = sample(&self.plan, t, 0);
             let robot = &self.planned.task.robot;
@@ -225,10 +228,9 @@ impl<'p> RobotEnd<'p> {
         self.board.has_tripped()
     }
 
-    /// The run, for the judge.
+    /// The run up to when it can be judged, for the judge.
     #[must_use]
-    pub fn finish(mut self, glance: &Glance) -> Run {
-        (self.run.final_phase, self.run.fault) = (glance.phase, glance.fault);
+    pub fn finish(self) -> Run {
         self.run
     }
 }
