@@ -188,7 +188,7 @@ impl<'p> RobotEnd<'p> {
         }
     }
 
-    /// A tick of the plant from the time `time` on, ns, watched by the judge.
+    /// A tick of the plant from the time `time` on, ns, watched by the judge from the arming until the jump can be judged.
     fn tick(&mut self, time: u64, glance: &Glance) -> Result<(), String> {
         let t = plan_time(time, glance);
         let is_seen = glance.start.is_some() && t + HOLD < Self::end(self.planned);
@@ -211,7 +211,9 @@ impl<'p> RobotEnd<'p> {
         let flies = matches!(glance.phase, Phase::Flight | Phase::PreLanding);
         let world = (&mut self.world, flies);
         let step = self.actuators.step(world, (t, 0.0), (q, v), computed)?;
-        self.run.observe(&self.world, &step, glance.phase);
+        if is_seen {
+            self.run.observe(&self.world, &step, glance.phase);
+        }
         self.ticks += 1;
         Ok(())
     }
