@@ -4,6 +4,7 @@
 pub mod cartesian;
 pub mod com_profile;
 pub mod container;
+mod crc;
 pub mod joint;
 pub mod minimum_jerk;
 mod payload;
@@ -15,6 +16,7 @@ pub mod watch;
 
 pub use cartesian::{CartesianGains, CartesianPd};
 pub use com_profile::{ComPoint, ComProfile, Curve, takeoff_speed};
+pub use crc::Crc32;
 pub use joint::{JointCommand, JointGains};
 pub use minimum_jerk::MinimumJerk;
 pub use payload::PayloadEstimate;

@@ -2,7 +2,8 @@
 //!
 //! Three of them misuse the library: null, unaligned and moved blocks, wrong sizes, versions, plans, numbers. They end with an error if
 //! a status is not the promised one, and what they compute on a Cortex-M7 is what they compute here, bit for bit. Together they call every
-//! function of the header, so that their link for the board shows that no panic is reachable. A fourth flies A1 in MuJoCo.
+//! function of the header, so that their link for the board shows that no panic is reachable. A fourth flies A1 in MuJoCo. A controller in C++ with
+//! the shape of ros2_control's is compiled without ROS, and stepped through a jump beside the header's own calls.
 
 use core::time::Duration;
 use std::fs;
@@ -78,6 +79,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     all_called(&folder)?;
     in_cpp(&folder)?;
     let library = for_host()?;
+    ros2_control(&folder, &library)?;
     let board = for_board(args.core)?;
     for example in EXAMPLES {
         let here = on_host(&folder, &library, example)?;
@@ -166,6 +168,27 @@ fn in_cpp(folder: &Path) -> Result<()> {
             .arg(folder.join("include/saltus.h"))
             .arg("/dev/null"),
     )
+}
+
+/// The controller with the shape of ros2_control's, stepped.
+fn ros2_control(folder: &Path, library: &Path) -> Result<()> {
+    let program = library.with_file_name("ros2_control_step");
+    let sources = folder.join("example/ros2_control");
+    let mut compile = Command::new("g++");
+    compile.args(["-std=c++17", "-O2", "-Wall", "-Wextra", "-Werror"]);
+    compile
+        .arg("-pedantic")
+        .arg("-I")
+        .arg(folder.join("include"));
+    compile.args(["jump_controller.cpp", "step.cpp"].map(|name| sources.join(name)));
+    compile.arg(library).args(SYSTEM).arg("-o").arg(&program);
+    run::succeed(&mut compile)?;
+    let mut step = Command::new(&program);
+    print!(
+        "{}",
+        run::stdout_within(step.arg(run::root().join(PLAN)), LIMIT)?
+    );
+    Ok(())
 }
 
 /// The library for this machine.

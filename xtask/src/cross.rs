@@ -8,7 +8,7 @@ use crate::bare::{Bare, Choice, TARGETS};
 use crate::run;
 
 /// The crates that promise `no_std` without `alloc`.
-const CRATES: [&str; 14] = [
+const CRATES: [&str; 15] = [
     "so3",
     "rbd-core",
     "a1-model",
@@ -22,6 +22,7 @@ const CRATES: [&str; 14] = [
     "jump-control",
     "jump-machine",
     "state-est",
+    "robot-link",
     "contact-sim",
 ];
 

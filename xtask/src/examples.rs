@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use crate::run;
 
 /// Crate and example.
-const EXAMPLES: [(&str, &str); 16] = [
+const EXAMPLES: [(&str, &str); 17] = [
     ("so3", "attitude"),
     ("rbd-core", "double_pendulum"),
     ("dense-qp", "grip"),
@@ -23,6 +23,7 @@ const EXAMPLES: [(&str, &str); 16] = [
     ("jump-control", "track"),
     ("jump-machine", "faults"),
     ("state-est", "estimate"),
+    ("robot-link", "cut_cable"),
     ("contact-sim", "catch"),
     ("model-import", "describe"),
 ];

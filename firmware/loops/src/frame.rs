@@ -12,7 +12,7 @@
 //! Integers and single-precision numbers are little-endian, CRC-32 is that of Ethernet. Both frames have [`FRAME`] bytes on the
 //! wire; a report's end at [`REPORT`].
 
-use crc::{CRC_32_ISO_HDLC, Crc};
+use robot_link::wire::{Reader, Writer, is_sealed};
 
 /// Bytes on the wire in each direction.
 pub const FRAME: usize = BODY + 12 * 4 + LUGGAGE + 4;
@@ -25,8 +25,6 @@ pub const LUGGAGE: usize = 264;
 const BODY: usize = 8;
 const REPORT_MARK: u16 = 0x5e45;
 const ORDER_MARK: u16 = 0x0e4d;
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// What the robot says, SI units; in the axes of the IMU, which are those of the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,66 +71,21 @@ pub enum Refusal {
     Luggage,
 }
 
-/// Bytes that are put or taken one after the other; beyond the end nothing happens, and zeros come.
-struct Cursor<B> {
-    bytes: B,
-    at: usize,
-}
-
-impl Cursor<&mut [u8]> {
-    fn put(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            if let Some(slot) = self.bytes.get_mut(self.at) {
-                *slot = *byte;
-            }
-            self.at += 1;
-        }
-    }
-
-    fn numbers(&mut self, numbers: &[f32]) {
-        for x in numbers {
-            self.put(&x.to_le_bytes());
-        }
-    }
-
-    /// CRC-32 of everything before.
-    fn seal(&mut self) {
-        let sum = CRC.checksum(self.bytes.get(..self.at).unwrap_or_default());
-        self.put(&sum.to_le_bytes());
-    }
-}
-
-impl Cursor<&[u8]> {
-    fn take<const K: usize>(&mut self) -> [u8; K] {
-        let rest = self.bytes.get(self.at..).unwrap_or_default();
-        self.at += K;
-        rest.first_chunk().copied().unwrap_or([0; K])
-    }
-
-    fn word(&mut self) -> u16 {
-        u16::from_le_bytes(self.take())
-    }
-
-    fn numbers<const K: usize>(&mut self) -> [f32; K] {
-        core::array::from_fn(|_| f32::from_le_bytes(self.take()))
-    }
-}
-
 /// The contents of a frame of `length` bytes after its mark, if nobody has touched it.
-fn open(bytes: &[u8], length: usize, mark: u16) -> Result<Cursor<&[u8]>, Refusal> {
+fn open(bytes: &[u8], length: usize, mark: u16) -> Result<Reader<'_>, Refusal> {
     let frame = bytes.get(..length).ok_or(Refusal::CutOff)?;
-    let mut cursor = Cursor {
-        bytes: frame,
-        at: 0,
-    };
-    if cursor.word() != mark {
+    let mut from = Reader::new(frame);
+    if word(&mut from) != mark {
         return Err(Refusal::Mark);
     }
-    let (body, sum) = frame.split_last_chunk::<4>().ok_or(Refusal::CutOff)?;
-    if CRC.checksum(body) != u32::from_le_bytes(*sum) {
+    if !is_sealed(frame) {
         return Err(Refusal::Checksum);
     }
-    Ok(cursor)
+    Ok(from)
+}
+
+fn word(from: &mut Reader<'_>) -> u16 {
+    u16::from_le_bytes(from.take())
 }
 
 impl Report {
@@ -140,10 +93,7 @@ impl Report {
     #[must_use]
     pub fn encode(&self) -> [u8; REPORT] {
         let mut bytes = [0; REPORT];
-        let mut to = Cursor {
-            bytes: bytes.as_mut_slice(),
-            at: 0,
-        };
+        let mut to = Writer::new(&mut bytes);
         for word in [REPORT_MARK, self.number, u16::from(self.jump), 0] {
             to.put(&word.to_le_bytes());
         }
@@ -163,7 +113,7 @@ impl Report {
     /// [`Refusal`], if any bit is not as it was sent.
     pub fn decode(bytes: &[u8]) -> Result<Self, Refusal> {
         let mut from = open(bytes, REPORT, REPORT_MARK)?;
-        let (number, flags, _) = (from.word(), from.word(), from.word());
+        let (number, flags, _) = (word(&mut from), word(&mut from), word(&mut from));
         Ok(Self {
             number,
             jump: flags & 1 != 0,
@@ -182,10 +132,7 @@ impl Order {
     #[must_use]
     pub fn encode(&self) -> [u8; FRAME] {
         let mut bytes = [0; FRAME];
-        let mut to = Cursor {
-            bytes: bytes.as_mut_slice(),
-            at: 0,
-        };
+        let mut to = Writer::new(&mut bytes);
         let (luggage, count) = &self.luggage;
         let count = (*count).min(LUGGAGE) as u16;
         for word in [ORDER_MARK, self.number, count, 0] {
@@ -203,7 +150,11 @@ impl Order {
     /// [`Refusal`], if any bit is not as it was sent.
     pub fn decode(bytes: &[u8]) -> Result<Self, Refusal> {
         let mut from = open(bytes, FRAME, ORDER_MARK)?;
-        let (number, count, _) = (from.word(), usize::from(from.word()), from.word());
+        let (number, count, _) = (
+            word(&mut from),
+            usize::from(word(&mut from)),
+            word(&mut from),
+        );
         let torques = from.numbers();
         if count > LUGGAGE {
             return Err(Refusal::Luggage);

@@ -45,7 +45,6 @@
 
 mod bytes;
 mod check;
-mod crc;
 mod error;
 mod flash;
 mod hash;
@@ -60,9 +59,9 @@ pub use record::{
 };
 pub use write::write;
 
+use crate::crc::Crc32;
 use crate::plan::Node;
 use bytes::Reader;
-use crc::Crc;
 use so3::Scalar;
 
 /// First bytes of every container.
@@ -298,7 +297,7 @@ const fn checksum(whole: &[u8]) -> u32 {
         Some((_, after)) => after,
         None => &[],
     };
-    Crc::START.with(before).with(after).value()
+    Crc32::START.with(before).with(after).value()
 }
 
 #[cfg(test)]

@@ -1,25 +1,17 @@
 //! The path from the machine's commands to the plant's torques.
 
-use super::{RATIO, Sensors};
-use crate::lab::{Boards, Disturbance, Ground, Interface, Motors};
+use super::{Actuators, Sensors};
+use crate::lab::{Boards, Disturbance, Ground, Interface};
 use jump_control::{JointCommand, Phase};
 use jump_machine::JumpMachine;
 use rbd_core::hardware::Budgets;
-use rbd_core::{JointLimits, Motor, Tree, joint_friction};
-
-/// Speed at which the joints' Coulomb friction fades, rad/s.
-const FRICTION_SMOOTHING: f64 = 0.1;
+use rbd_core::{JointLimits, Motor, Tree};
 
 /// Boards and motors of one run.
 pub struct Drive<const N: usize> {
     interface: Interface,
     boards: Boards<N>,
-    motors: Motors<N>,
-    /// Torques that the joint loop has computed and that act from the next tick on.
-    computed: [f64; N],
-    /// Mean of what the boards believe to have given, friction included, since the last tick of the machine.
-    felt: [f64; N],
-    limits: [JointLimits<f64>; N],
+    actuators: Actuators<N>,
     drives: [Motor<f64>; N],
 }
 
@@ -54,17 +46,14 @@ impl<const N: usize> Drive<N> {
         Self {
             interface,
             boards: Boards::new(disturbance, seed.wrapping_add(0xb0a2d)),
-            motors: Motors::new(disturbance, drives, budgets),
-            computed: [0.0; N],
-            felt: [0.0; N],
-            limits: *limits,
+            actuators: Actuators::new(disturbance, (limits, drives), budgets),
             drives,
         }
     }
 
     /// Mean torques since the last call, friction included, N m.
     pub const fn take_felt(&mut self) -> [f64; N] {
-        core::mem::replace(&mut self.felt, [0.0; N])
+        self.actuators.take_felt()
     }
 
     /// Sends the command of the `k`-th millisecond at time `t` to the boards, where they listen.
@@ -93,27 +82,12 @@ impl<const N: usize> Drive<N> {
         let since = f64::from(i) * dt;
         let now = t + since;
         let (q, v) = sensors.encoders(world);
-        let asked = self.computed;
-        self.computed = match self.interface {
+        let computed = match self.interface {
             Interface::Torque => machine.joint_tick(&q, &v, dt),
             Interface::JointPd { .. } => self.boards.torques(now, (&q, &v), &self.drives),
         };
-        let speeds = world.velocity().joints;
-        let given = self.motors.give(&asked, &speeds, dt);
         let flies = matches!(machine.phase(), Phase::Flight | Phase::PreLanding);
-        world.step(&given, flies)?;
-        let losses = joint_friction(&self.limits, &v, FRICTION_SMOOTHING);
-        for ((felt, tau), loss) in self.felt.iter_mut().zip(self.motors.measured()).zip(losses) {
-            *felt += (tau + loss) / f64::from(RATIO);
-        }
-        Ok(Step {
-            time: now + dt,
-            since,
-            dt,
-            asked,
-            speeds,
-            encoders: (q, v),
-            power: self.motors.power(),
-        })
+        let times = (now, since);
+        self.actuators.step((world, flies), times, (q, v), computed)
     }
 }

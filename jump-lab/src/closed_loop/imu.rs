@@ -12,16 +12,52 @@ const PERIOD: f64 = 1e-3;
 /// Bias of a gyroscope over that of an accelerometer, rad/s per m/s².
 const GYROSCOPE_BIAS: f64 = 0.2;
 
-/// The IMU with the estimator behind it; `S` is F + 2.
-pub(super) struct Observer<const N: usize, const F: usize, const S: usize> {
-    estimator: Estimator<f64, N, F, S>,
-    state: State<f64, F, S>,
+/// An IMU at the base's origin.
+pub(crate) struct Imu {
     /// Standard deviations of a gyroscope's and an accelerometer's sample: rad/s, m/s².
     deviations: [f64; 2],
     /// Velocity of the base at the last sample, world axes.
     last_w: Vector3<f64>,
     gyroscope_bias: Vector3<f64>,
     accelerometer_bias: Vector3<f64>,
+}
+
+impl Imu {
+    /// On a base that moves so, world axes; draws the biases.
+    pub(crate) fn new(disturbance: &Disturbance, now_w: Vector3<f64>, noise: &mut Noise) -> Self {
+        Self {
+            deviations: [Key::GyroNoise, Key::AccelerometerNoise].map(|key| disturbance.get(key)),
+            last_w: now_w,
+            gyroscope_bias: vector(noise, GYROSCOPE_BIAS * disturbance.get(Key::ImuBias)),
+            accelerometer_bias: vector(noise, disturbance.get(Key::ImuBias)),
+        }
+    }
+
+    /// Accelerometer's mean over the `period` since the last sample, m/s², and gyroscope, rad/s, of the true motion, with noise.
+    pub(crate) fn sample<const N: usize>(
+        &mut self,
+        q: &Configuration<f64, N>,
+        v: &Tangent<f64, N>,
+        period: f64,
+        noise: &mut Noise,
+    ) -> [Vector3<f64>; 2] {
+        let now_w = q.base.rotation * v.base.linear;
+        let felt_w = (now_w - self.last_w) / period - Vector3::from(GRAVITY);
+        self.last_w = now_w;
+        let specific_force = q.base.rotation.inverse() * felt_w
+            + self.accelerometer_bias
+            + vector(noise, self.deviations[1]);
+        let angular_velocity =
+            v.base.angular + self.gyroscope_bias + vector(noise, self.deviations[0]);
+        [specific_force, angular_velocity]
+    }
+}
+
+/// The IMU with the estimator behind it; `S` is F + 2.
+pub(super) struct Observer<const N: usize, const F: usize, const S: usize> {
+    estimator: Estimator<f64, N, F, S>,
+    state: State<f64, F, S>,
+    imu: Imu,
 }
 
 /// What the sensors of joints and feet say with an IMU's sample.
@@ -50,10 +86,7 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         Self {
             state: State::new(&estimator, model, start).moving(last_w),
             estimator,
-            deviations: [Key::GyroNoise, Key::AccelerometerNoise].map(|key| disturbance.get(key)),
-            last_w,
-            gyroscope_bias: vector(noise, GYROSCOPE_BIAS * disturbance.get(Key::ImuBias)),
-            accelerometer_bias: vector(noise, disturbance.get(Key::ImuBias)),
+            imu: Imu::new(disturbance, last_w, noise),
         }
     }
 
@@ -66,16 +99,10 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         legs: &Legs<N, F>,
         noise: &mut Noise,
     ) -> Estimate<f64, F> {
-        let now_w = q.base.rotation * v.base.linear;
-        let felt_w = (now_w - self.last_w) / PERIOD - Vector3::from(GRAVITY);
-        self.last_w = now_w;
+        let [specific_force_i, angular_velocity_i] = self.imu.sample(q, v, PERIOD, noise);
         let sample = Sample {
-            specific_force_i: q.base.rotation.inverse() * felt_w
-                + self.accelerometer_bias
-                + vector(noise, self.deviations[1]),
-            angular_velocity_i: v.base.angular
-                + self.gyroscope_bias
-                + vector(noise, self.deviations[0]),
+            specific_force_i,
+            angular_velocity_i,
             joints: legs.joints,
             joint_velocities: legs.joint_velocities,
             evidence: legs.evidence,

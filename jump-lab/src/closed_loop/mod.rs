@@ -1,10 +1,13 @@
 //! The closed loop of every simulated jump: plant, motors and joint loop at 10 kHz, sensors and jump machine at 1 kHz.
 
+mod actuators;
 mod drive;
 mod imu;
 mod sensors;
 
+pub(crate) use actuators::Actuators;
 pub use drive::{Drive, Step};
+pub(crate) use imu::Imu;
 pub use sensors::{Feet, Sensors, Setting};
 
 use crate::lab::Ground;

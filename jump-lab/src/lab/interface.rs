@@ -99,25 +99,34 @@ impl<const N: usize> Boards<N> {
         self.link.send(now, *command);
     }
 
-    /// Torques by the boards' own loop: τ + kp(q_d − q) + kd(q̇_d − q̇), cut at the current's limit only.
+    /// Torques by the boards' own loop ([`board_torques`]) under the newest command that has arrived.
     pub fn torques(
         &mut self,
         now: f64,
-        (q, qd): (&[f64; N], &[f64; N]),
+        measured: (&[f64; N], &[f64; N]),
         motors: &[Motor<f64>; N],
     ) -> [f64; N] {
         if let Some((command, _)) = self.link.receive(now) {
             self.held = command;
         }
-        let command = &self.held;
-        core::array::from_fn(|i| {
-            let gains = command.gains[i];
-            let spring = gains.stiffness * (command.position[i] - q[i]);
-            let damper = gains.damping * (command.velocity[i] - qd[i]);
-            let wanted = command.feed_forward[i] + spring + damper;
-            wanted.clamp(-motors[i].torque, motors[i].torque)
-        })
+        board_torques(&self.held, measured, motors)
     }
+}
+
+/// What motor boards make of a command: τ + kp(q_d − q) + kd(q̇_d − q̇), cut at the current's limit only.
+#[must_use]
+pub fn board_torques<const N: usize>(
+    command: &JointCommand<f64, N>,
+    (q, qd): (&[f64; N], &[f64; N]),
+    motors: &[Motor<f64>; N],
+) -> [f64; N] {
+    core::array::from_fn(|i| {
+        let gains = command.gains[i];
+        let spring = gains.stiffness * (command.position[i] - q[i]);
+        let damper = gains.damping * (command.velocity[i] - qd[i]);
+        let wanted = command.feed_forward[i] + spring + damper;
+        wanted.clamp(-motors[i].torque, motors[i].torque)
+    })
 }
 
 #[cfg(test)]

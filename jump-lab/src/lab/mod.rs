@@ -15,7 +15,7 @@ mod sensors;
 pub use disturbance::{Disturbance, Lab, PlantArgument};
 pub use ground::{Ground, Plant};
 pub use inertia::robot;
-pub use interface::{Boards, Interface};
+pub use interface::{Boards, Interface, board_torques};
 pub use keys::Key;
 pub use link::Link;
 pub use motors::{Motors, copper_loss};

@@ -143,7 +143,7 @@ impl Run {
     }
 
     /// Extremes and events of one tick of the plant.
-    fn observe(&mut self, world: &World, step: &Step<JOINTS>, phase: Phase) {
+    pub(super) fn observe(&mut self, world: &World, step: &Step<JOINTS>, phase: Phase) {
         let plant = world.plant();
         self.ticks[0] += 1;
         let delivered = plant.delivered();
@@ -359,7 +359,8 @@ pub fn run_watched(
     Ok(run)
 }
 
-fn record(
+/// A sample of a world at time `t` of the plan.
+pub(super) fn record(
     robot: &Quadruped,
     world: &World,
     phase: Phase,

@@ -6,6 +6,7 @@ pub mod execute;
 #[cfg(all(test, feature = "mujoco"))]
 mod fuzz;
 pub mod judge;
+pub mod linked;
 pub mod log;
 pub mod measure;
 mod planned;

@@ -2,6 +2,7 @@
 
 mod jumping;
 mod landing;
+mod link;
 mod planner;
 mod plans;
 mod plant;
@@ -38,6 +39,8 @@ where
     plans::run(on, &robot);
     on.name = "landing";
     landing::run(on, &robot);
+    on.name = "robot-link";
+    link::run(on, &robot);
     on.name = "contact-sim";
     plant::run(on, &robot);
     #[cfg(feature = "introduce_panic")]

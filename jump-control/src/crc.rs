@@ -35,15 +35,19 @@ const fn tables() -> [[u32; 256]; 4] {
 }
 
 /// A checksum that grows with the bytes it is told.
-#[derive(Clone, Copy)]
-pub(super) struct Crc(u32);
+#[derive(Clone, Copy, Debug)]
+pub struct Crc32(u32);
 
-impl Crc {
-    pub(super) const START: Self = Self(!0);
+impl Crc32 {
+    /// Before the first byte.
+    pub const START: Self = Self(!0);
 
+    /// With these bytes behind those that it was told.
+    ///
     /// Not inlined: two copies of the loop leave too few registers for the tables' addresses, which cost a third more instructions then.
     #[inline(never)]
-    pub(super) const fn with(self, bytes: &[u8]) -> Self {
+    #[must_use]
+    pub const fn with(self, bytes: &[u8]) -> Self {
         let Self(mut remainder) = self;
         let [last, third, second, first] = &TABLES;
         let (mut fours, mut bytes) = bytes.as_chunks::<4>();
@@ -63,14 +67,16 @@ impl Crc {
         Self(remainder)
     }
 
-    pub(super) const fn value(self) -> u32 {
+    /// The checksum of all bytes so far.
+    #[must_use]
+    pub const fn value(self) -> u32 {
         !self.0
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Crc;
+    use super::Crc32;
 
     /// The check value of the catalogue of CRCs, in one piece and in two of any length.
     #[test]
@@ -78,7 +84,7 @@ mod tests {
         let text = b"123456789";
         for cut in 0..=text.len() {
             let (first, rest) = text.split_at(cut);
-            assert_eq!(Crc::START.with(first).with(rest).value(), 0xCBF4_3926);
+            assert_eq!(Crc32::START.with(first).with(rest).value(), 0xCBF4_3926);
         }
     }
 }
