@@ -6,8 +6,9 @@
 
 use super::audit::Audit;
 use super::bounds::Impossible;
+use super::search::roughly;
 use super::task::{SrbPlan, Task};
-use super::whole_body::{self, Blocked, Timing, WholeBodyPlan};
+use super::whole_body::{Blocked, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
 use core::time::Duration;
 use nalgebra::Vector3;
@@ -364,7 +365,7 @@ fn stronger(task: &Task, srb: &SrbPlan, observe: impl Observer) -> Option<String
     let mut strong = task.clone();
     strong.limits.torque_shares = [10.0; 3];
     strong.limits.speed_share *= 10.0;
-    let plan = whole_body::roughly(&strong, srb, Timing::Given, observe).ok()?;
+    let plan = roughly(&strong, srb, Timing::Given, observe).ok()?;
     if plan.outcome.status != Status::Solved {
         return None;
     }

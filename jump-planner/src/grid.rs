@@ -13,8 +13,13 @@ use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
 
 /// Most iterations; what is solved takes 10 to 60.
 const PATIENCE: usize = 150;
-/// Iterations in which the first try has to arrive: a search on long intervals, with what follows it, costs as much.
+/// Iterations in which a descent from the rigid body's motion has to arrive: others find what it does not in as many.
 const FIRST_PATIENCE: usize = 100;
+/// Iterations in which a motion on the parts of long intervals has to arrive: those that do take half to all of them.
+const PARTS_PATIENCE: usize = 60;
+/// Iterations in which a motion with less torque has to arrive from one with more. Where that takes longer, it is another motion, and one that
+/// only long intervals have: between their middles it does as it likes.
+const LESS_PATIENCE: usize = 40;
 /// Barrier to begin with where a plan is made again, or on parts of its intervals. With less the first steps go from bound to bound.
 const WARM_MU: f64 = 1e-2;
 
@@ -95,6 +100,13 @@ impl<'a> Grid<'a> {
         Ok(fine)
     }
 
+    /// This grid, whose solves were made after those of another one.
+    pub(crate) fn after(mut self, mut before: Self) -> Self {
+        before.path.append(&mut self.path);
+        self.path = before.path;
+        self
+    }
+
     /// Durations of the phases in the last solve, s.
     fn durations(&self) -> Vec<f64> {
         match self.timed.first() {
@@ -105,58 +117,68 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Plans with the least torque, from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there
-    /// take longer than the search on long intervals.
+    /// Plans with the least torque, from the guess; whether the observer ended it.
     pub(crate) fn with_least_torque(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<(WholeBodyPlan, bool), String> {
         self.torque_share = self.task.limits.torque_shares[0];
-        let (mut pace, mut cancelled) = (Pace::default(), false);
-        let watch = |progress: &Progress<f64>| {
-            cancelled = observer(progress).is_break();
-            let violation = progress.residual.primal;
-            let keeps_up = progress.attempt == 0 && pace.keeps_up(violation, FIRST_PATIENCE);
-            if !cancelled && keeps_up {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        };
-        let plan = self.solve(&Tightening::default(), &settings(), watch)?;
-        Ok((plan, cancelled))
+        self.descend(observer)
     }
 
     /// Plans with the most torque, from the guess, and then with as much less as still has a motion.
     pub(crate) fn with_most_torque(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
+    ) -> Result<(WholeBodyPlan, bool), String> {
         let [least, middle, most] = self.task.limits.torque_shares;
         self.torque_share = most;
-        let mut plan = self.solve(&Tightening::default(), &settings(), &mut *observer)?;
+        let none = Tightening::default();
+        let (mut plan, mut cancelled) = self.descend(observer)?;
         for share in [middle, least] {
-            if plan.outcome.status != Status::Solved || share >= self.torque_share {
+            if cancelled || plan.outcome.status != Status::Solved || share >= self.torque_share {
                 break;
             }
             let before = (self.torque_share, self.stages.clone(), self.timed.clone());
             self.torque_share = share;
-            let less = self.again(&Tightening::default(), observer)?;
+            let (less, ended) = self.solve(&warm(), &none, observer, |progress| {
+                progress.iteration <= LESS_PATIENCE
+            })?;
+            cancelled = ended;
             if less.outcome.status != Status::Solved {
                 (self.torque_share, self.stages, self.timed) = before;
                 break;
             }
             plan = less;
         }
-        Ok(plan)
+        Ok((plan, cancelled))
     }
 
-    /// Plans from the motion of the grid that this one was split from, with its torque.
+    /// Solves from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there take longer than a
+    /// search elsewhere. Also whether the observer ended it.
+    fn descend(
+        &mut self,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<(WholeBodyPlan, bool), String> {
+        let (mut pace, timing) = (Pace::default(), self.timing);
+        self.solve(&settings(), &Tightening::default(), observer, |progress| {
+            let violation = progress.residual.primal;
+            match timing {
+                Timing::Given => progress.attempt == 0 && pace.keeps_up(violation, FIRST_PATIENCE),
+                // The violation falls late where durations have to move first.
+                Timing::Free => progress.iteration <= FIRST_PATIENCE,
+            }
+        })
+    }
+
+    /// Plans from the motion of the grid that this one was split from, with its torque. Also whether the observer ended it.
     pub(crate) fn resume(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        self.solve(&Tightening::default(), &warm(), observer)
+    ) -> Result<(WholeBodyPlan, bool), String> {
+        self.solve(&warm(), &Tightening::default(), observer, |progress| {
+            progress.iteration <= PARTS_PATIENCE
+        })
     }
 
     /// Plans again from where the last solve ended, with its torque.
@@ -165,18 +187,30 @@ impl<'a> Grid<'a> {
         drawn: &Tightening,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
-        self.solve(drawn, &warm(), observer)
+        let (plan, _) = self.solve(&warm(), drawn, observer, |_| true)?;
+        Ok(plan)
     }
 
-    /// Solves from what the stages hold, and keeps a note of it.
+    /// Solves from what the stages hold for as long as `goes_on` says, and keeps a note of it. Also whether the observer ended it.
     fn solve(
         &mut self,
-        drawn: &Tightening,
         settings: &Settings<f64>,
-        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        let clock = Instant::now();
-        let plan = self.solved(drawn, settings, watch)?;
+        drawn: &Tightening,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        mut goes_on: impl FnMut(&Progress<f64>) -> bool,
+    ) -> Result<(WholeBodyPlan, bool), String> {
+        let (clock, mut cancelled) = (Instant::now(), false);
+        let mut plan = self.solved(drawn, settings, |progress| {
+            cancelled = observer(progress).is_break();
+            if !cancelled && goes_on(progress) {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        })?;
+        if plan.outcome.status == Status::Cancelled && !cancelled {
+            plan.outcome.status = Status::Stalled;
+        }
         self.path.push(Attempt {
             timing: self.timing,
             intervals: plan.intervals.len(),
@@ -186,7 +220,7 @@ impl<'a> Grid<'a> {
             iterations: plan.outcome.iterations,
             wall_ms: clock.elapsed().as_secs_f64() * 1e3,
         });
-        Ok(plan)
+        Ok((plan, cancelled))
     }
 
     fn solved(

@@ -12,6 +12,7 @@ pub mod range;
 pub mod reference;
 pub mod robot;
 pub mod scene;
+mod search;
 mod setup;
 pub mod stored;
 pub mod task;

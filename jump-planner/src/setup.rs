@@ -30,6 +30,9 @@ pub const POSED: f64 = 0.05;
 const EDGE_MARGIN: f64 = 0.12;
 /// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
 const ONTO_SHARE: f64 = 0.35;
+/// The way that is left to them, in widths of the smoothed edge at least: the ground that they stand on is then a 400th of the box's height too
+/// high for them. With much more they cannot lift off, since no foot is over it an instant later.
+const ONTO_WIDTHS: f64 = 3.0;
 /// Height over the ground that feet keep on their way onto a box, m.
 const ONTO_RISE: f64 = 0.03;
 /// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
@@ -257,11 +260,15 @@ fn cautious(task: &Task) -> Option<Edge<f64>> {
         .into_iter()
         .fold(f64::NEG_INFINITY, f64::max);
     let land = landed.into_iter().fold(f64::INFINITY, f64::min);
-    edge.distance += if edge.drop < 0.0 {
-        -EDGE_MARGIN.min(ONTO_SHARE * -stand.min(0.0))
+    if edge.drop < 0.0 {
+        let way = -stand.min(0.0);
+        let taken = EDGE_MARGIN.min(ONTO_SHARE * way);
+        edge.distance -= taken;
+        // Feet at the edge itself are no jump, but a width is positive.
+        edge.width = edge.width.min(((way - taken) / ONTO_WIDTHS).max(1e-3));
     } else {
-        EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0))
-    };
+        edge.distance += EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0));
+    }
     Some(edge)
 }
 
@@ -313,6 +320,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{EDGE_MARGIN, cautious};
     use crate::task::Task;
+    use nalgebra::Vector3;
 
     /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
     fn moved(aside: f64, drop: f64) -> f64 {
@@ -332,5 +340,29 @@ mod tests {
         // Onto a box: towards the left feet, 0.05 m before it, and not as far as they are.
         let onto = moved(0.5, -0.3);
         assert!(onto < -0.01 && onto > -0.03, "{onto}");
+    }
+
+    #[test]
+    fn a_box_to_jump_onto_does_not_begin_under_feet_that_stand() {
+        for beyond in [0.01, 0.03, 0.1, 0.5] {
+            let file = concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/tasks/extra/forward-onto-box.toml"
+            );
+            let mut task = Task::load(file).unwrap();
+            let feet = task.problem.feet.map(|foot| foot.pos_wf);
+            let front = feet.iter().map(|foot| foot.x).fold(f64::MIN, f64::max);
+            let edge = task.problem.edge.as_mut().unwrap();
+            edge.distance = front + beyond;
+            let height = -edge.drop;
+            let cautious = cautious(&task).unwrap();
+            assert!(cautious.distance > front && cautious.distance < front + beyond);
+            let under = feet.map(|foot| cautious.ground(&foot).height / height);
+            assert!(under.iter().all(|share| *share < 1.0 / 350.0), "{under:?}");
+            // Where the box begins, all of it is there but a twentieth.
+            let begin = Vector3::new(front + beyond, 0.0, 0.0);
+            let there = cautious.ground(&begin).height / height;
+            assert!(there > 0.95, "{beyond}: {there}");
+        }
     }
 }

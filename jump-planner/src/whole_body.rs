@@ -6,6 +6,7 @@ use super::stored::{open, store};
 use super::task::{SrbPlan, Task};
 use crate::audit::Audit;
 use crate::grid::Grid;
+use crate::search::searched;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
 use ocp_solver::{Progress, Solution, Status};
@@ -13,8 +14,6 @@ use serde_json::{Value, json};
 use std::time::Instant;
 use wb_opt::{Gains, Judgement, Phase, Row, Sample, State};
 
-/// Lengths of intervals on which a motion is searched for that the first try did not find.
-const LONG: usize = 4;
 /// How often limits are drawn in at most.
 const TIGHTENINGS: usize = 3;
 
@@ -105,9 +104,7 @@ pub struct Audited {
 
 /// Plans the whole body and audits the plan.
 ///
-/// First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long
-/// intervals, which cost a quarter: with all the torque there is and then with less, in the given durations and then in others, for what a
-/// rigid body can do in a time, legs with motors may not. What is found there is the guess on the short ones.
+/// The motion is searched for ([`crate::search`]) and the plan audited.
 ///
 /// Where the audit finds limits exceeded between nodes, they are drawn in by that much and the plan is made again from where it is
 /// ([`Tightening`]). Where that is no remedy, or the flight is not true to the dynamics, the intervals were too long for this robot: they are
@@ -128,7 +125,7 @@ pub fn audited(
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
         grid = grid.split(2)?;
-        let plan = grid.resume(observer)?;
+        let (plan, _) = grid.resume(observer)?;
         let fine = tightened(task, &mut grid, plan, observer)?;
         if fine.audit.is_some() {
             told = fine;
@@ -137,53 +134,6 @@ pub fn audited(
     told.path = grid.path;
     told.wall_ms = clock.elapsed().as_secs_f64() * 1e3;
     Ok(told)
-}
-
-/// Plans on intervals too long to execute, with all the torque there is or as much less as has a motion: whether there is one.
-///
-/// # Errors
-/// A problem that cannot be begun with.
-pub(crate) fn roughly(
-    task: &Task,
-    srb: &SrbPlan,
-    timing: Timing,
-    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-) -> Result<WholeBodyPlan, String> {
-    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(&mut observer)
-}
-
-/// A plan on short intervals, or how far the search came; on the last grid that was tried.
-fn searched<'a>(
-    task: &'a Task,
-    srb: &'a SrbPlan,
-    timing: Timing,
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-) -> Result<(Grid<'a>, WholeBodyPlan), String> {
-    let mut grid = Grid::new(task, srb, timing, 1.0)?;
-    let (plan, cancelled) = grid.with_least_torque(observer)?;
-    let mut found = (grid, plan);
-    if cancelled {
-        return Ok(found);
-    }
-    let free = (timing == Timing::Given && !task.has_given_durations()).then_some(Timing::Free);
-    for timing in [Some(timing), free].into_iter().flatten() {
-        if found.1.outcome.status == Status::Solved {
-            break;
-        }
-        let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
-        grid.path = found.0.path;
-        let mut plan = grid.with_most_torque(observer)?;
-        if plan.outcome.status == Status::Solved {
-            grid = grid.split(LONG)?;
-            plan = grid.resume(observer)?;
-        }
-        let cancelled = plan.outcome.status == Status::Cancelled;
-        found = (grid, plan);
-        if cancelled {
-            break;
-        }
-    }
-    Ok(found)
 }
 
 /// Audits a plan on a grid, and plans again within limits drawn in as long as that is what the audit asks for, a few times.

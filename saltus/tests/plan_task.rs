@@ -160,6 +160,52 @@ fn plans_are_made_again_where_the_first_way_ends() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// Eighty centimetres forwards, onto a box that begins 4 cm in front of the feet. The first try does not find it, so that on two cores the search runs
+/// beside it, and on one after it.
+#[test]
+#[cfg(target_os = "linux")]
+#[ignore = "long: cargo xtask suites"]
+fn a_search_finds_the_same_on_any_number_of_cores() {
+    let folder = folder("cores");
+    let task = built_in("extra/forward-onto-box")
+        .replace("[0.6, 0.0, 0.1]", "[0.8, -0.09, 0.07]")
+        .replace("drop_m = -0.1", "drop_m = -0.07")
+        .replace("distance_m = 0.3", "beyond_feet_m = 0.04");
+    let (task, _) = task.split_once("[total]").unwrap();
+    let path = folder.join("onto.toml");
+    std::fs::write(&path, format!("{task}[limits]\nfriction = 0.8\n")).unwrap();
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let allowed = status
+        .lines()
+        .find_map(|line| line.strip_prefix("Cpus_allowed_list:"));
+    let first = allowed.unwrap().trim().split(['-', ',']).next().unwrap();
+    let saltus = env!("CARGO_BIN_EXE_saltus");
+    let ways: [(&str, &[&str]); 2] = [
+        ("one", &["taskset", "-c", first, saltus]),
+        ("all", &[saltus]),
+    ];
+    let [one, all] = ways.map(|(name, command)| {
+        let out = folder.join(name);
+        let mut plan = Command::new(command[0]);
+        plan.args(&command[1..])
+            .args(["plan", path.to_str().unwrap()]);
+        let output = plan
+            .args(["--json", "--out", out.to_str().unwrap()])
+            .output()
+            .unwrap();
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["status"], "Solved", "{name}: {report}");
+        let mut path = report["path"].clone();
+        for solve in path.as_array_mut().unwrap() {
+            solve["wall_ms"].take();
+        }
+        (path, std::fs::read(out.join("plan.bin")).unwrap())
+    });
+    assert!(one.0.as_array().unwrap().len() > 2, "{}", one.0);
+    assert_eq!(one, all);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 fn margins_are_kept(task: &str, plan: &Value) {
     let rows = |key: &str| plan[key].as_array().unwrap().iter().map(numbers);
     let dt = numbers(&plan["dt"]);

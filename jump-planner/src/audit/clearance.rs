@@ -1,6 +1,6 @@
 //! Whether the robot, with the shapes of all its links, passes through the ground, a box or itself.
 
-use super::Held;
+use super::interval::Held;
 use crate::robot::{JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, State};
 use crate::terrain::over_edge;
 use contact_sim::{Terrain, gaps, self_contacts};

@@ -1,7 +1,8 @@
 //! Every limit, in every step.
 
 use super::clearance::Clearance;
-use super::{Held, Limit, Margin};
+use super::interval::{Held, Watched};
+use super::{Limit, Margin};
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use crate::stored::joint_name;
 use jump_control::container::{GroundStep, Header};
@@ -13,7 +14,7 @@ use super::forward::Velocity;
 /// Share of its torque below its limit at which a joint counts as saturated.
 const SATURATED: f64 = 1e-3;
 
-/// Watches the limits of a robot. Ranges: of a joint's position, its limits; of its speed and torque, the largest; of forces, the
+/// The limits of a robot. Ranges: of a joint's position, its limits; of its speed and torque, the largest; of forces, the
 /// largest planned normal force of a foot (times friction); of heights and gaps, the leg. In the last interval feet come down, so that their
 /// height is no limit there.
 pub(crate) struct Limits<'a> {
@@ -25,10 +26,6 @@ pub(crate) struct Limits<'a> {
     force_range: f64,
     /// Kinds and names.
     limits: Vec<(Limit, String)>,
-    pub(crate) saturation: [f64; JOINTS],
-    pub(crate) any_saturation: f64,
-    /// The smallest of each limit so far, by its name's index.
-    pub(crate) margins: Vec<Margin>,
 }
 
 impl<'a> Limits<'a> {
@@ -64,21 +61,34 @@ impl<'a> Limits<'a> {
                 .chain(clearance.names().map(|name| (Limit::Clearance, name)))
                 .collect(),
             clearance,
-            saturation: [0.0; JOINTS],
-            any_saturation: 0.0,
-            margins: Vec::new(),
         }
     }
 
+    /// How many there are.
+    pub(super) const fn count(&self) -> usize {
+        self.limits.len()
+    }
+
+    /// The distances from all limits that were seen.
+    pub(super) fn margins(&self, seen: &Watched) -> Vec<Margin> {
+        let of = |((limit, name), (value, time)): (&(Limit, String), &(f64, f64))| Margin {
+            limit: *limit,
+            name: name.clone(),
+            value: *value,
+            time: *time,
+        };
+        self.limits.iter().zip(&seen.smallest).map(of).collect()
+    }
+
     /// Looks at the state after a step that began at `time`.
-    pub(crate) fn check(
-        &mut self,
+    pub(super) fn check(
+        &self,
         time: f64,
-        h: f64,
         q: &State,
         v: &Velocity,
         held: &Held,
         forces_w: &[Vector3<f64>; LEGS],
+        found: &mut Watched,
     ) {
         let mut values = Vec::with_capacity(self.limits.len());
         let mut saturated = false;
@@ -94,12 +104,12 @@ impl<'a> Limits<'a> {
             let spare = f64::min(torque - range[0], range[1] - torque) / limit.effort;
             values.push(spare);
             if spare <= SATURATED {
-                self.saturation[i] += h;
+                found.saturation[i] += held.h;
                 saturated = true;
             }
         }
         if saturated {
-            self.any_saturation += h;
+            found.any_saturation += held.h;
         }
         let kinematics = self.robot.poses(q);
         for (leg, f) in forces_w.iter().enumerate() {
@@ -124,7 +134,7 @@ impl<'a> Limits<'a> {
         values.push(corners.fold(f64::INFINITY, f64::min));
         let gaps = self.clearance.gaps(&kinematics, held);
         values.extend(gaps.map(|gap| gap / self.robot.leg_length));
-        self.remember(time + h, &values);
+        found.remember(time + held.h, &values);
     }
 
     /// Height of a point over the ground in legs.
@@ -138,23 +148,5 @@ impl<'a> Limits<'a> {
             }
         });
         (point.z - ground) / self.robot.leg_length
-    }
-
-    /// Keeps the smallest value of each limit; limits that do not hold now are NaN, those without bounds infinite.
-    fn remember(&mut self, time: f64, values: &[f64]) {
-        if self.margins.is_empty() {
-            let empty = |(limit, name): &(Limit, String)| Margin {
-                limit: *limit,
-                name: name.clone(),
-                value: f64::INFINITY,
-                time,
-            };
-            self.margins = self.limits.iter().map(empty).collect();
-        }
-        for (margin, value) in self.margins.iter_mut().zip(values) {
-            if *value < margin.value {
-                (margin.value, margin.time) = (*value, time);
-            }
-        }
     }
 }

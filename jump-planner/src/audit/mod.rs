@@ -10,6 +10,7 @@
 
 mod clearance;
 mod forward;
+mod interval;
 mod limits;
 mod motion;
 mod values;
@@ -17,10 +18,10 @@ mod values;
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use crate::stored::Stored;
 use forward::{Forward, Velocity};
+use interval::{Interval, Watched};
 use jump_control::container::PlanNode;
 use limits::Limits;
-use nalgebra::Vector3;
-use rbd_core::difference;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::{Value, json};
 pub use values::check as check_values;
 
@@ -100,64 +101,39 @@ impl Audit {
     pub fn of(robot: &Quadruped, plan: &Stored<'_>) -> Result<Self, String> {
         let nodes: Vec<_> = plan.nodes().filter(|node| node.time >= 0.0).collect();
         let takeoff = f64::from(plan.header().takeoff);
-        let mut forward = Forward::new(robot);
         let start = nodes.first().map(|node| state(node).0).ok_or("no nodes")?;
-        let mut limits = Limits::new(robot, plan.header(), &start);
-        let mut defect = [0.0, 0.0];
-        let mut force_error: f64 = 0.0;
-        let force_range = f64::from(plan.header().margins.max_force);
-        let mut flight = None;
-        let last = nodes.len().saturating_sub(2);
-        for (k, pair) in nodes.windows(2).enumerate() {
-            let [from, to] = pair else { continue };
-            let mut held = Held::of(plan, from, f64::from(to.time - from.time))?;
-            held.last = k == last;
-            let (mut q, mut v) = state(from);
-            let time = f64::from(from.time);
-            for i in 0..held.steps {
-                let at = time + i as f64 * held.h;
-                let forces_w = forward.step(&mut q, &mut v, &held.torques, &held.contacts, held.h);
-                limits.check(at, held.h, &q, &v, &held, &forces_w);
-                if i == held.steps / 2 {
-                    let told = from.forces_w.map(|f| Vector3::from(f.map(f64::from)));
-                    let gaps = told
-                        .iter()
-                        .zip(&forces_w)
-                        .map(|(a, b)| (a - b).amax() / force_range);
-                    force_error = gaps.fold(force_error, f64::max);
-                }
-            }
-            let (end, end_v) = state(to);
-            let miss = difference(&end, &q);
-            let largest = |x: &Velocity| {
-                let parts = x.base.to_array();
-                let parts = parts.iter().chain(&x.joints);
-                parts.fold(0.0, |most: f64, x| most.max(x.abs()))
-            };
-            defect[0] = f64::max(defect[0], largest(&miss));
-            defect[1] = f64::max(defect[1], largest(&(v - end_v)));
-            // Half a step earlier: times are stored in single precision.
-            if time >= takeoff - 0.5 * STEP {
-                let (q, v) = flight.get_or_insert_with(|| state(from));
-                for _ in 0..held.steps {
-                    forward.step(q, v, &held.torques, &held.contacts, held.h);
-                }
-            }
-        }
-        let (landed, _) = flight.ok_or("the plan has no flight")?;
+        let limits = Limits::new(robot, plan.header(), &start);
+        let intervals = Interval::all(plan, &nodes)?;
+        // Half a step earlier: times are stored in single precision.
+        let in_flight = |interval: &&Interval<'_>| interval.time() >= takeoff - 0.5 * STEP;
+        // No interval knows of another, so that as many are watched at once as the machine has cores.
+        let (landed, watched) = rayon::join(
+            || flown(robot, intervals.iter().filter(in_flight)),
+            || {
+                let watch = |forward: &mut Forward<'_>, interval: &Interval<'_>| {
+                    interval.watch(forward, &limits)
+                };
+                let all = intervals.par_iter();
+                all.map_init(|| Forward::new(robot), watch)
+                    .collect::<Vec<_>>()
+            },
+        );
+        let landed = landed.ok_or("the plan has no flight")?;
+        let mut found = Watched::new(&limits);
+        watched.iter().for_each(|interval| found.merge(interval));
         let end = nodes.last().map(|node| state(node).0).ok_or("no nodes")?;
         let turn = end.base.rotation.inverse() * landed.base.rotation;
-        let mut margins = limits.margins;
+        let mut margins = limits.margins(&found);
         margins.retain(|margin| margin.value.is_finite());
         margins.sort_by(|a, b| a.value.total_cmp(&b.value));
         Ok(Self {
             checksum: plan.checksum(),
             flight_orientation_error: so3::log(&turn).norm(),
             flight_position_error: (end.base.translation - landed.base.translation).norm(),
-            saturation: limits.saturation,
-            any_saturation: limits.any_saturation,
-            defect,
-            force_error,
+            saturation: found.saturation,
+            any_saturation: found.any_saturation,
+            defect: found.defect,
+            force_error: found.force_error,
             margins,
             leg_length: robot.leg_length,
         })
@@ -291,37 +267,20 @@ impl Audit {
     }
 }
 
-/// What is held over an interval.
-struct Held {
-    torques: [f64; JOINTS],
-    contacts: [bool; LEGS],
-    steps: usize,
-    /// Length of a step, s.
-    h: f64,
-    /// Whether the plan ends with this interval.
-    last: bool,
-}
-
-impl Held {
-    fn of(plan: &Stored<'_>, node: &PlanNode<JOINTS, LEGS>, dt: f64) -> Result<Self, String> {
-        let header = plan.header();
-        let phases = header.phases.get(..usize::from(header.phase_count));
-        let phase = phases.and_then(|phases| phases.get(usize::from(node.phase)));
-        let bits = phase
-            .ok_or("a node is in a phase that there is not")?
-            .contacts;
-        if !(dt > 0.0 && dt < 1.0) {
-            return Err(format!("an interval of {dt} s"));
+/// Where the robot is after these intervals in one piece, from the first one's node on; none if there are none.
+fn flown<'a>(
+    robot: &Quadruped,
+    intervals: impl Iterator<Item = &'a Interval<'a>>,
+) -> Option<State> {
+    let mut forward = Forward::new(robot);
+    let mut at = None;
+    for interval in intervals {
+        let (q, v) = at.get_or_insert_with(|| interval.start());
+        for _ in 0..interval.held.steps {
+            interval.held.step(&mut forward, q, v);
         }
-        let steps = (dt / STEP).round().max(1.0);
-        Ok(Self {
-            torques: node.torques.map(f64::from),
-            contacts: core::array::from_fn(|i| (bits >> i) & 1 == 1),
-            steps: steps as usize,
-            h: dt / steps,
-            last: false,
-        })
     }
+    at.map(|(q, _)| q)
 }
 
 /// Configuration and velocity at a node.

@@ -1,0 +1,153 @@
+//! The search for a motion of the whole body.
+//!
+//! First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long
+//! intervals, which cost a quarter: with all the torque there is and then with less, in the given durations and then in others, for what a
+//! rigid body can do in a time, legs with motors may not. What is found there is the guess on the short ones.
+//!
+//! A first try that does not arrive takes seconds. So where it takes longer than those that do, the search on long intervals begins beside
+//! it, on a core of its own if the machine has one. What comes out is the same, since the first try is waited for, and sooner.
+
+use crate::grid::Grid;
+use crate::task::{SrbPlan, Task};
+use crate::whole_body::{Timing, WholeBodyPlan};
+use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicBool, Ordering};
+use ocp_solver::{Progress, Status};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::{self, Scope, ScopedJoinHandle};
+
+/// Lengths of intervals on which a motion is searched for that the first try did not find.
+const LONG: usize = 4;
+/// Iterations after which the search begins beside the first try: easy jumps have almost arrived by then.
+const SLOW: usize = 10;
+/// Stack of the search beside it, B: a solver's scratch lies there, and in a build without optimisation many times.
+const STACK: usize = 1 << 26;
+
+/// A plan, or how far the search came, and the grid that it is on.
+type Found<'a> = Result<(Grid<'a>, WholeBodyPlan), String>;
+
+/// A plan on short intervals, or how far the search came; on the last grid that was tried.
+pub(crate) fn searched<'a>(
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    timing: Timing,
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Found<'a> {
+    let mut grid = Grid::new(task, srb, timing, 1.0)?;
+    let is_alone = thread::available_parallelism().is_ok_and(|cores| cores.get() == 1);
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let mut beside = None;
+        let (plan, cancelled) = grid.with_least_torque(&mut |progress| {
+            if progress.iteration == SLOW && !is_alone {
+                beside = Beside::begin(scope, &stop, task, srb, timing);
+            }
+            observer(progress)
+        })?;
+        if cancelled || plan.outcome.status == Status::Solved {
+            stop.store(true, Ordering::Relaxed);
+            return Ok((grid, plan));
+        }
+        let (long, plan) = match beside {
+            Some(beside) => beside.end(&stop, observer)?,
+            None => on_long_intervals(task, srb, timing, observer)?,
+        };
+        Ok((long.after(grid), plan))
+    })
+}
+
+/// Plans on intervals too long to execute, with all the torque there is or as much less as has a motion: whether there is one.
+///
+/// # Errors
+/// A problem that cannot be begun with.
+pub(crate) fn roughly(
+    task: &Task,
+    srb: &SrbPlan,
+    timing: Timing,
+    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<WholeBodyPlan, String> {
+    let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
+    let (plan, _) = grid.with_most_torque(&mut observer)?;
+    Ok(plan)
+}
+
+/// A search on long intervals that runs beside the first try.
+struct Beside<'scope, 'a> {
+    search: ScopedJoinHandle<'scope, Found<'a>>,
+    progress: Receiver<Progress<f64>>,
+}
+
+impl<'scope, 'a: 'scope> Beside<'scope, 'a> {
+    /// Begins it; none where the system has no thread to give.
+    fn begin(
+        scope: &'scope Scope<'scope, '_>,
+        stop: &'scope AtomicBool,
+        task: &'a Task,
+        srb: &'a SrbPlan,
+        timing: Timing,
+    ) -> Option<Self> {
+        let (tell, progress) = channel();
+        let mut observer = move |progress: &Progress<f64>| {
+            // Nobody listens once the first try has arrived, and then the search is stopped as well.
+            let _ = tell.send(*progress);
+            if stop.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let thread = thread::Builder::new().stack_size(STACK);
+        let search = move || on_long_intervals(task, srb, timing, &mut observer);
+        let search = thread.spawn_scoped(scope, search).ok()?;
+        Some(Self { search, progress })
+    }
+
+    /// Waits for its end, while the observer hears of every iteration since the beginning and may stop it.
+    fn end(
+        self,
+        stop: &AtomicBool,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Found<'a> {
+        for progress in self.progress {
+            if observer(&progress).is_break() {
+                stop.store(true, Ordering::Relaxed);
+            }
+        }
+        match self.search.join() {
+            Ok(found) => found,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    }
+}
+
+/// The search on long intervals; a motion that it finds is made one on short ones.
+fn on_long_intervals<'a>(
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    timing: Timing,
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Found<'a> {
+    let (given, plan, cancelled) = on_long_intervals_in(task, srb, timing, observer)?;
+    let is_decided = cancelled || plan.outcome.status == Status::Solved;
+    if is_decided || timing == Timing::Free || task.has_given_durations() {
+        return Ok((given, plan));
+    }
+    let (free, plan, _) = on_long_intervals_in(task, srb, Timing::Free, observer)?;
+    Ok((free.after(given), plan))
+}
+
+/// The same with durations from one place; also whether the observer ended it.
+fn on_long_intervals_in<'a>(
+    task: &'a Task,
+    srb: &'a SrbPlan,
+    timing: Timing,
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<(Grid<'a>, WholeBodyPlan, bool), String> {
+    let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
+    let (mut plan, mut cancelled) = grid.with_most_torque(observer)?;
+    if !cancelled && plan.outcome.status == Status::Solved {
+        grid = grid.split(LONG)?;
+        (plan, cancelled) = grid.resume(observer)?;
+    }
+    Ok((grid, plan, cancelled))
+}
