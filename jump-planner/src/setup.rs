@@ -28,8 +28,8 @@ const FLIGHT_DT: f64 = 0.005;
 pub const POSED: f64 = 0.05;
 /// How much farther than it is a box edge is taken to be at most, m; that of a box to jump onto, nearer.
 const EDGE_MARGIN: f64 = 0.12;
-/// At most this share of the way from the feet that stand to a box to jump onto is taken from them.
-const ONTO_SHARE: f64 = 0.35;
+/// At most this share of the way from the feet that stand to a box to jump onto is taken from them: with less, feet meet its edge in simulation.
+const ONTO_SHARE: f64 = 0.5;
 /// The way that is left to them, in widths of the smoothed edge at least: the ground that they stand on is then a 400th of the box's height too
 /// high for them. With much more they cannot lift off, since no foot is over it an instant later.
 const ONTO_WIDTHS: f64 = 3.0;

@@ -160,20 +160,15 @@ fn plans_are_made_again_where_the_first_way_ends() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Eighty centimetres forwards, onto a box that begins 4 cm in front of the feet. The first try does not find it, so that on two cores the search runs
-/// beside it, and on one after it.
+/// Three quarters of a turn are not found by the first try, so that the search runs beside it on two cores, and after it on one.
 #[test]
 #[cfg(target_os = "linux")]
 #[ignore = "long: cargo xtask suites"]
 fn a_search_finds_the_same_on_any_number_of_cores() {
     let folder = folder("cores");
-    let task = built_in("extra/forward-onto-box")
-        .replace("[0.6, 0.0, 0.1]", "[0.8, -0.09, 0.07]")
-        .replace("drop_m = -0.1", "drop_m = -0.07")
-        .replace("distance_m = 0.3", "beyond_feet_m = 0.04");
-    let (task, _) = task.split_once("[total]").unwrap();
-    let path = folder.join("onto.toml");
-    std::fs::write(&path, format!("{task}[limits]\nfriction = 0.8\n")).unwrap();
+    let spin = built_in("a1/spin-90").replace("90.0", "270.0");
+    let path = folder.join("spin.toml");
+    std::fs::write(&path, spin.replace("max_s = 0.9", "max_s = 1.2")).unwrap();
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let allowed = status
         .lines()
