@@ -117,11 +117,11 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Plans with the least torque, from the guess; whether the observer ended it.
+    /// Plans with the least torque, from the guess.
     pub(crate) fn with_least_torque(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<(WholeBodyPlan, bool), String> {
+    ) -> Result<WholeBodyPlan, String> {
         self.torque_share = self.task.limits.torque_shares[0];
         self.descend(observer)
     }
@@ -130,36 +130,38 @@ impl<'a> Grid<'a> {
     pub(crate) fn with_most_torque(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<(WholeBodyPlan, bool), String> {
+    ) -> Result<WholeBodyPlan, String> {
         let [least, middle, most] = self.task.limits.torque_shares;
         self.torque_share = most;
         let none = Tightening::default();
-        let (mut plan, mut cancelled) = self.descend(observer)?;
+        let mut plan = self.descend(observer)?;
         for share in [middle, least] {
-            if cancelled || plan.outcome.status != Status::Solved || share >= self.torque_share {
+            if plan.outcome.status != Status::Solved || share >= self.torque_share {
                 break;
             }
             let before = (self.torque_share, self.stages.clone(), self.timed.clone());
             self.torque_share = share;
-            let (less, ended) = self.solve(&warm(), &none, observer, |progress| {
+            let less = self.solve(&warm(), &none, observer, |progress| {
                 progress.iteration <= LESS_PATIENCE
             })?;
-            cancelled = ended;
-            if less.outcome.status != Status::Solved {
-                (self.torque_share, self.stages, self.timed) = before;
-                break;
+            match less.outcome.status {
+                // Nothing is to be done with what there was before, either.
+                Status::Solved | Status::Cancelled => plan = less,
+                _ => {
+                    (self.torque_share, self.stages, self.timed) = before;
+                    break;
+                }
             }
-            plan = less;
         }
-        Ok((plan, cancelled))
+        Ok(plan)
     }
 
     /// Solves from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there take longer than a
-    /// search elsewhere. Also whether the observer ended it.
+    /// search elsewhere.
     fn descend(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<(WholeBodyPlan, bool), String> {
+    ) -> Result<WholeBodyPlan, String> {
         let (mut pace, timing) = (Pace::default(), self.timing);
         self.solve(&settings(), &Tightening::default(), observer, |progress| {
             let violation = progress.residual.primal;
@@ -171,34 +173,34 @@ impl<'a> Grid<'a> {
         })
     }
 
-    /// Plans from the motion of the grid that this one was split from, with its torque. Also whether the observer ended it.
+    /// Plans from the motion of the long intervals that these are parts of, with its torque.
     pub(crate) fn resume(
         &mut self,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<(WholeBodyPlan, bool), String> {
+    ) -> Result<WholeBodyPlan, String> {
         self.solve(&warm(), &Tightening::default(), observer, |progress| {
             progress.iteration <= PARTS_PATIENCE
         })
     }
 
-    /// Plans again from where the last solve ended, with its torque.
+    /// Plans again from what the stages hold, with the torque of the last solve.
     pub(crate) fn again(
         &mut self,
         drawn: &Tightening,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
-        let (plan, _) = self.solve(&warm(), drawn, observer, |_| true)?;
-        Ok(plan)
+        self.solve(&warm(), drawn, observer, |_| true)
     }
 
-    /// Solves from what the stages hold for as long as `goes_on` says, and keeps a note of it. Also whether the observer ended it.
+    /// Solves from what the stages hold, and keeps a note of it. A solve that the observer ends is cancelled, one that does not go on by
+    /// `goes_on` has stalled.
     fn solve(
         &mut self,
         settings: &Settings<f64>,
         drawn: &Tightening,
         observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
         mut goes_on: impl FnMut(&Progress<f64>) -> bool,
-    ) -> Result<(WholeBodyPlan, bool), String> {
+    ) -> Result<WholeBodyPlan, String> {
         let (clock, mut cancelled) = (Instant::now(), false);
         let mut plan = self.solved(drawn, settings, |progress| {
             cancelled = observer(progress).is_break();
@@ -220,7 +222,7 @@ impl<'a> Grid<'a> {
             iterations: plan.outcome.iterations,
             wall_ms: clock.elapsed().as_secs_f64() * 1e3,
         });
-        Ok((plan, cancelled))
+        Ok(plan)
     }
 
     fn solved(
@@ -348,4 +350,30 @@ fn finish<S: Copy, const X: usize>(
         intervals: intervals.collect(),
         phases: problem.phases.to_vec(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+
+    #[test]
+    fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
+        let task = Task::load("a1/lateral").unwrap();
+        let go = |_: &Progress<f64>| ControlFlow::Continue(());
+        let srb = task.attempt(&Settings::new(), go).unwrap();
+        let mut grid = Grid::new(&task, &srb, Timing::Given, 4.0).unwrap();
+        let mut solves = 0;
+        let plan = grid.with_most_torque(&mut |progress| {
+            solves += usize::from(progress.iteration == 1);
+            if solves < 2 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        });
+        assert_eq!(plan.unwrap().outcome.status, Status::Cancelled);
+        let ended: Vec<_> = grid.path.iter().map(|solve| solve.status).collect();
+        assert_eq!(ended, [Status::Solved, Status::Cancelled]);
+    }
 }

@@ -38,13 +38,13 @@ pub(crate) fn searched<'a>(
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let mut beside = None;
-        let (plan, cancelled) = grid.with_least_torque(&mut |progress| {
+        let plan = grid.with_least_torque(&mut |progress| {
             if progress.iteration == SLOW && !is_alone {
                 beside = Beside::begin(scope, &stop, task, srb, timing);
             }
             observer(progress)
         })?;
-        if cancelled || plan.outcome.status == Status::Solved {
+        if is_decided(&plan) {
             stop.store(true, Ordering::Relaxed);
             return Ok((grid, plan));
         }
@@ -66,9 +66,12 @@ pub(crate) fn roughly(
     timing: Timing,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<WholeBodyPlan, String> {
-    let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
-    let (plan, _) = grid.with_most_torque(&mut observer)?;
-    Ok(plan)
+    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(&mut observer)
+}
+
+/// Whether nothing is to be searched for any more.
+const fn is_decided(plan: &WholeBodyPlan) -> bool {
+    matches!(plan.outcome.status, Status::Solved | Status::Cancelled)
 }
 
 /// A search on long intervals that runs beside the first try.
@@ -127,27 +130,26 @@ fn on_long_intervals<'a>(
     timing: Timing,
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Found<'a> {
-    let (given, plan, cancelled) = on_long_intervals_in(task, srb, timing, observer)?;
-    let is_decided = cancelled || plan.outcome.status == Status::Solved;
-    if is_decided || timing == Timing::Free || task.has_given_durations() {
+    let (given, plan) = on_long_intervals_in(task, srb, timing, observer)?;
+    if is_decided(&plan) || timing == Timing::Free || task.has_given_durations() {
         return Ok((given, plan));
     }
-    let (free, plan, _) = on_long_intervals_in(task, srb, Timing::Free, observer)?;
+    let (free, plan) = on_long_intervals_in(task, srb, Timing::Free, observer)?;
     Ok((free.after(given), plan))
 }
 
-/// The same with durations from one place; also whether the observer ended it.
+/// The same with durations from one place.
 fn on_long_intervals_in<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-) -> Result<(Grid<'a>, WholeBodyPlan, bool), String> {
+) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
-    let (mut plan, mut cancelled) = grid.with_most_torque(observer)?;
-    if !cancelled && plan.outcome.status == Status::Solved {
+    let mut plan = grid.with_most_torque(observer)?;
+    if plan.outcome.status == Status::Solved {
         grid = grid.split(LONG)?;
-        (plan, cancelled) = grid.resume(observer)?;
+        plan = grid.resume(observer)?;
     }
-    Ok((grid, plan, cancelled))
+    Ok((grid, plan))
 }

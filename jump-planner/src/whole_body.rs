@@ -126,7 +126,7 @@ pub fn audited(
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
         grid = grid.split(2)?;
-        let (plan, _) = grid.resume(observer)?;
+        let plan = grid.again(&Tightening::default(), observer)?;
         let fine = tightened(task, &mut grid, plan, observer)?;
         if fine.audit.is_some() {
             told = fine;
