@@ -14,7 +14,7 @@ def standing(plan: saltus.Plan) -> saltus.Observation:
 
 def test_it_holds_the_first_node_then_walks_through_the_phases(lateral: saltus.Plan) -> None:
     machine = lateral.machine()
-    tick = machine.tick(-0.3, standing(lateral))
+    tick = machine.tick(-0.9, standing(lateral))
     assert (tick.phase, tick.fault, tick.refusal) == ("Hold", None, None)
     assert tick.work == "Cartesian"
     command = tick.command
@@ -25,7 +25,7 @@ def test_it_holds_the_first_node_then_walks_through_the_phases(lateral: saltus.P
     )
     # A robot that does exactly what was planned.
     phases = []
-    for k in range(-299, int(1e3 * lateral.touchdown)):
+    for k in range(-899, int(1e3 * lateral.touchdown)):
         i = np.searchsorted(lateral.times, 1e-3 * k, side="right") - 1
         i = max(i, 0)
         forces = lateral.forces[i, :, 2]
