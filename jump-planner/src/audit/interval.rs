@@ -30,7 +30,6 @@ pub(super) struct Interval<'a> {
 }
 
 /// What was seen in intervals.
-#[derive(Clone)]
 pub(super) struct Watched {
     /// Time for which each joint's torque is at its limit, s.
     pub(super) saturation: [f64; JOINTS],
