@@ -1,4 +1,4 @@
-"""Jumps of quadrupeds: plan them, audit the plans, step the machine that flies them, simulate, and judge.
+"""Jumps of legged robots: plan a quadruped's, audit the plans, step the machine that flies them, simulate, and judge; iCub's on the spot.
 
     import saltus
 
@@ -12,6 +12,7 @@ from saltus._saltus import (
     Command,
     Envelope,
     Estimator,
+    IcubRecord,
     Machine,
     Observation,
     OcpSolution,
@@ -24,6 +25,7 @@ from saltus._saltus import (
     envelope,
     plan,
     run,
+    run_icub,
     solve_ocp,
     solve_qp,
 )
@@ -45,6 +47,7 @@ __all__ = [
     "Envelope",
     "Error",
     "Estimator",
+    "IcubRecord",
     "Infeasible",
     "Machine",
     "NoPlan",
@@ -62,6 +65,7 @@ __all__ = [
     "envelope",
     "plan",
     "run",
+    "run_icub",
     "solve_ocp",
     "solve_qp",
 ]

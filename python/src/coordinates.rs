@@ -60,7 +60,7 @@ pub(crate) fn effort(name: &str, tau: &Numbers<'_>) -> PyResult<Effort<f64, JOIN
 }
 
 /// Base and joints one after the other.
-fn joined<const K: usize>(base: &[f64], joints: &[f64; JOINTS]) -> [f64; K] {
+pub(crate) fn joined<const K: usize>(base: &[f64], joints: &[f64]) -> [f64; K] {
     let mut out = [0.0; K];
     for (to, from) in out.iter_mut().zip(base.iter().chain(joints)) {
         *to = *from;

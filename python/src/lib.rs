@@ -7,6 +7,7 @@ mod coordinates;
 mod envelope;
 mod errors;
 mod estimator;
+mod icub;
 mod json;
 mod machine;
 mod observation;
@@ -25,6 +26,8 @@ mod _saltus {
     use super::envelope::{Envelope, envelope};
     #[pymodule_export]
     use super::estimator::Estimator;
+    #[pymodule_export]
+    use super::icub::{IcubRecord, run_icub};
     #[pymodule_export]
     use super::machine::{Command, Machine, Tick};
     #[pymodule_export]

@@ -31,9 +31,21 @@ pub(crate) struct Conditions {
 }
 
 /// A value by its name, with the argument's in front of what is wrong with it.
-fn named<T: FromStr<Err = String>>(argument: &str, name: &str) -> PyResult<T> {
+pub(crate) fn named<T: FromStr<Err = String>>(argument: &str, name: &str) -> PyResult<T> {
     name.parse()
         .map_err(|error| bad(format!("{argument}: {error}")))
+}
+
+/// A simulator by its name that this build has.
+pub(crate) fn simulator(name: &str) -> PyResult<Sim> {
+    let sim: Sim = named("sim", name)?;
+    sim.check().map_err(|error| bad(format!("sim: {error}")))?;
+    Ok(sim)
+}
+
+/// What differs from the plan, by what the command line would take.
+pub(crate) fn plant(text: Option<&str>) -> PyResult<Option<PlantArgument>> {
+    text.map(|text| named("plant", text)).transpose()
 }
 
 impl Conditions {
@@ -44,12 +56,10 @@ impl Conditions {
         interface: &str,
         without: &[String],
     ) -> PyResult<Self> {
-        let sim: Sim = named("sim", sim)?;
-        sim.check().map_err(|error| bad(format!("sim: {error}")))?;
         let without = without.iter().map(|name| named("without", name));
         Ok(Self {
-            sim,
-            plant: plant.map(|plant| named("plant", plant)).transpose()?,
+            sim: simulator(sim)?,
+            plant: self::plant(plant)?,
             interface: named("interface", interface)?,
             without: without.collect::<PyResult<_>>()?,
         })

@@ -85,3 +85,36 @@ def test_an_error_of_progress_ends_a_study(lateral: saltus.Plan) -> None:
     assert threading.active_count() == before
     with pytest.raises(saltus.BadInput, match="jobs"):
         saltus.envelope(lateral, 1, jobs=0)
+
+
+def test_icub_jumps_on_the_spot() -> None:
+    record = saltus.run_icub("velocity", height=0.03)
+    count = len(record)
+    assert record.stands, record.summary
+    assert record.q.shape == (count, 30)
+    assert record.v.shape == (count, 29)
+    assert record.tau.shape == (count, len(record.joint_names))
+    assert record.forces.shape == (count, 2, 3)
+    assert record.com_gain == pytest.approx(0.03, abs=0.01)
+    assert record.takeoff < record.touchdown
+    # Before the push-off the soles carry the robot, in the air nothing does.
+    assert record.forces[0, :, 2].sum() == pytest.approx(9.81 * 33, rel=0.15)
+    flight = (record.times > record.contact_loss) & (record.times < record.touchdown)
+    assert (record.forces[flight, :, 2] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"level": "position"}, ["level", "position", "torque"]),
+        ({"height": -0.1}, ["height", "-0.1"]),
+        ({"height": float("nan")}, ["height", "NaN"]),
+        ({"torque_share": 2}, ["torque_share", "2"]),
+        ({"landing": "soft"}, ["landing", "soft", "stiff"]),
+        ({"plant": "wind=3"}, ["plant", "wind"]),
+    ],
+)
+def test_what_icub_cannot_is_named(wrong: dict, words: list[str]) -> None:
+    with pytest.raises(saltus.BadInput) as caught:
+        saltus.run_icub(**wrong)
+    assert all(word in str(caught.value) for word in words), caught.value

@@ -4,6 +4,7 @@ mod bare;
 mod bench;
 mod board;
 mod boards;
+mod book;
 mod c_abi;
 mod ci;
 mod cross;
@@ -89,6 +90,8 @@ enum Command {
     Fuzz(fuzz::Args),
     /// Build the Python package, install it in an environment of its own, and run its tests and example.
     Python(python::Args),
+    /// Make the book of the guide, the references and the crates' pages, and see that no link in it leads nowhere.
+    Book(book::Args),
     /// Fetch the MuJoCo library and run cargo with it.
     Mujoco(mujoco::Args),
     /// Write the tables of the model crates from their URDFs, or check that they are up to date.
@@ -117,6 +120,7 @@ fn main() -> ExitCode {
         Command::Examples(args) => examples::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Python(args) => python::run(&args),
+        Command::Book(args) => book::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),
         Command::GenModel(args) => gen_model::run(&args),
     };

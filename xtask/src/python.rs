@@ -12,7 +12,7 @@ use anyhow::{Context, Result, ensure};
 use crate::run;
 
 /// What the checks need beside the package: a version where another would change what is measured.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 10] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -21,9 +21,11 @@ const PACKAGES: [&str; 8] = [
     "matplotlib",
     "mujoco==3.17.0",
     "drake==1.51.1",
+    "nbclient",
+    "ipykernel",
 ];
 
-/// Longest time of an example.
+/// Longest time of an example or a notebook.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Arguments of `cargo xtask python`.
@@ -72,6 +74,19 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         print!("{}", run::stdout_within(&mut python, PATIENCE)?);
     }
     ensure!(picture.exists(), "mujoco_loop.py draws nothing");
+    notebooks(&home, tool)?;
+    Ok(())
+}
+
+/// Executes every notebook; what it drew stands in the folder of this command.
+fn notebooks(home: &Path, tool: impl Fn(&str) -> Command) -> Result<()> {
+    for entry in fs::read_dir(run::root().join("python/notebooks"))? {
+        let path = entry?.path();
+        let name = path.file_name().context("a notebook without a name")?;
+        let mut execute = tool("jupyter-execute");
+        execute.arg("--output").arg(home.join(name)).arg(&path);
+        run::stdout_within(&mut execute, PATIENCE).with_context(|| path.display().to_string())?;
+    }
     Ok(())
 }
 

@@ -169,7 +169,7 @@ pub(super) fn touches(
 /// Runs the jump; `progress` hears time and phase once per simulated 10 ms.
 ///
 /// # Errors
-/// A sentence: the machine refuses the jump, this build lacks the simulator, or that fails.
+/// A sentence: there is no such jump, the machine refuses it, this build lacks the simulator, or that fails.
 pub fn run(
     task: &Task,
     sim: Sim,
@@ -177,6 +177,7 @@ pub fn run(
     seed: u64,
     progress: impl FnMut(f64, Phase),
 ) -> Result<Run, String> {
+    task.check()?;
     let start = on_the_floor(squat());
     let (robot, motors) = (known(task)?, task.motors());
     let settings = control::settings(task);

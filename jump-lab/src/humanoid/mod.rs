@@ -150,6 +150,19 @@ impl Task {
         Some(task)
     }
 
+    /// That there is such a jump: height and share of the torques above 0, and up to 1.
+    ///
+    /// # Errors
+    /// What it is that cannot be, by the field's name.
+    pub fn check(&self) -> Result<(), String> {
+        for (name, x) in [("height", self.height), ("torque_share", self.torque_share)] {
+            if !(x > 0.0 && x <= 1.0) {
+                return Err(format!("{name}: {x} is not above 0 and up to 1"));
+            }
+        }
+        Ok(())
+    }
+
     /// The motors there are.
     #[must_use]
     pub fn motors(&self) -> [Motor<f64>; JOINTS] {
