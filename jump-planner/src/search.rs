@@ -34,7 +34,8 @@ pub(crate) fn searched<'a>(
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, 1.0)?;
-    let is_alone = thread::available_parallelism().is_ok_and(|cores| cores.get() == 1);
+    // As many threads as audits may take: the cores, unless the program that plans has asked for fewer.
+    let is_alone = rayon::current_num_threads() == 1;
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let mut beside = None;

@@ -52,11 +52,16 @@ pub(crate) fn tangent(name: &str, v: &Numbers<'_>) -> PyResult<Velocity> {
 
 /// Force on the base, and torques.
 pub(crate) fn effort(name: &str, tau: &Numbers<'_>) -> PyResult<Effort<f64, JOINTS>> {
-    let (base, joints) = split::<6>(&vector::<NV>(name, tau)?);
-    Ok(Effort {
+    Ok(effort_of(&vector::<NV>(name, tau)?))
+}
+
+/// A row over a velocity, or a force and torques.
+pub(crate) fn effort_of(row: &[f64]) -> Effort<f64, JOINTS> {
+    let (base, joints) = split::<6>(row);
+    Effort {
         base: Force::from_array(base),
         joints,
-    })
+    }
 }
 
 /// Base and joints one after the other.

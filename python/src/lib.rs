@@ -18,6 +18,7 @@ mod qp;
 mod robot;
 mod run;
 mod task;
+mod wbc;
 
 /// What Python imports.
 #[pyo3::pymodule]
@@ -46,4 +47,6 @@ mod _saltus {
     use super::run::{Record, run};
     #[pymodule_export]
     use super::task::Task;
+    #[pymodule_export]
+    use super::wbc::{TorqueAnswer, TorqueQp, WbTask};
 }

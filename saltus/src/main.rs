@@ -24,6 +24,9 @@ use std::sync::LazyLock;
 #[derive(Parser)]
 #[command(version = VERSION.as_str(), about, after_help = examples::PROGRAM)]
 struct Cli {
+    /// Runs and audits at the same time [default: as many as there are cores]. Results do not depend on it.
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = cmd::output::whole(1..=1024))]
+    jobs: Option<u64>,
     #[command(subcommand)]
     command: Command,
 }
@@ -83,10 +86,16 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    let command = match Cli::try_parse() {
-        Ok(cli) => cli.command,
+    let Cli { jobs, command } = match Cli::try_parse() {
+        Ok(cli) => cli,
         Err(error) => return stream::finish(grammar(&error)),
     };
+    if let Some(jobs) = jobs {
+        let threads = usize::try_from(jobs).unwrap_or(1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        // Fails only where a pool is there already: nothing has begun.
+        let _ = pool.build_global();
+    }
     let outcome = match &command {
         Command::Plan(args) => cmd::plan::run(args),
         Command::Verify(args) => cmd::verify::run(args),

@@ -19,13 +19,41 @@ fn read(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap()
 }
 
+/// The study in three parts at the same time, as the commands in `examples/cluster` run them.
+fn on_a_cluster(out: &Path) {
+    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/cluster");
+    let saltus = Path::new(env!("CARGO_BIN_EXE_saltus"));
+    let job = std::fs::read_to_string(files.join("kubernetes.yaml")).unwrap();
+    let mut lines = job.lines().map(|line| line.trim().trim_start_matches("- "));
+    let line = lines.find(|line| line.starts_with("exec saltus ")).unwrap();
+    let study = format!("a1/lateral --samples 4 --out {}", out.display());
+    let paths = [
+        saltus.parent().unwrap(),
+        Path::new("/usr/bin"),
+        Path::new("/bin"),
+    ];
+    let mut pod = Command::new("sh");
+    pod.args(["-c", line])
+        .env("PATH", std::env::join_paths(paths).unwrap());
+    pod.env("STUDY", &study).env("SHARDS", "3");
+    let mut parts = vec![pod.env("JOB_COMPLETION_INDEX", "2").spawn().unwrap()];
+    for task in ["1", "2"] {
+        let mut slurm = Command::new("bash");
+        slurm.arg(files.join("slurm.sh")).args(study.split(' '));
+        slurm.env("SALTUS", saltus).env("SLURM_ARRAY_TASK_ID", task);
+        parts.push(slurm.env("SLURM_ARRAY_TASK_COUNT", "3").spawn().unwrap());
+    }
+    for mut part in parts {
+        assert!(part.wait().unwrap().success());
+    }
+}
+
 #[test]
 #[ignore = "long: cargo xtask suites"]
 fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     let (whole, parts) = (folder("whole"), folder("parts"));
     assert!(envelope(&whole, &[]).status.success());
-    assert!(envelope(&parts, &["--shard", "2/2"]).status.success());
-    assert!(envelope(&parts, &["--shard", "1/2"]).status.success());
+    on_a_cluster(&parts);
     let table = read(&whole, "table.csv");
     assert_eq!(read(&parts, "table.csv"), table);
     assert!(table.contains("\nall,,,,,,4,"), "{table}");
@@ -40,6 +68,20 @@ fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     assert_eq!(read(&whole, "table.csv"), table);
     let now = std::fs::read_to_string(&file).unwrap();
     assert!(now.starts_with(cut) && now.lines().count() == text.lines().count() + 1);
+
+    // The folder says what it is, and another version does not mix with this one.
+    let manifest = read(&whole, "manifest.json");
+    let known: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(
+        (&known["seed"], &known["plant"]),
+        (&1.into(), &"lab".into())
+    );
+    let older = manifest.replace(env!("CARGO_PKG_VERSION"), "0.0.1");
+    std::fs::write(whole.join("manifest.json"), older).unwrap();
+    let refused = envelope(&whole, &[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("0.0.1"));
+    std::fs::write(whole.join("manifest.json"), manifest).unwrap();
 
     // Another study does not mix with this one.
     let other = envelope(&whole, &["--seed", "2"]);

@@ -37,6 +37,7 @@ fn one_plan(task: &str) -> Vec<u8> {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn what_is_planned_is_audited_and_flown() {
     one_plan("a1/lateral");
 }

@@ -94,6 +94,7 @@ fn standard_error_that_takes_nothing_is_no_panic() {
 
 /// The run is there, though nobody could read about it.
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn work_is_not_lost_with_its_text() {
     let folder = folder("work");
     let mut run = saltus(
@@ -166,6 +167,7 @@ fn a_solution_may_go_into_a_new_folder() {
 }
 
 #[test]
+#[ignore = "long: cargo xtask suites"]
 fn what_a_killed_process_leaves_is_removed_by_the_next() {
     let folder = folder("killed");
     let out = folder.join("out");

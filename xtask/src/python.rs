@@ -12,7 +12,7 @@ use anyhow::{Context, Result, ensure};
 use crate::run;
 
 /// What the checks need beside the package: a version where another would change what is measured.
-const PACKAGES: [&str; 10] = [
+const PACKAGES: [&str; 9] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
@@ -20,10 +20,12 @@ const PACKAGES: [&str; 10] = [
     "mypy",
     "matplotlib",
     "mujoco==3.17.0",
-    "drake==1.51.1",
     "nbclient",
     "ipykernel",
 ];
+
+/// What only an example needs.
+const DRAKE: &str = "drake==1.51.1";
 
 /// Longest time of an example or a notebook.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -34,6 +36,9 @@ pub(crate) struct Args {
     /// Python with pip.
     #[arg(long, env = "SALTUS_PYTHON", default_value = "python3")]
     python: PathBuf,
+    /// Also lint its Rust half, fly in Drake and print the table of costs, which take longer.
+    #[arg(long)]
+    more: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<()> {
@@ -46,7 +51,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     };
     run::succeed(tool("ruff").args(["check", "--quiet", "."]))?;
     run::succeed(tool("ruff").args(["format", "--check", "--quiet", "."]))?;
-    lints(&home)?;
+    if args.more {
+        lints(&home)?;
+    }
     let wheel = build(tool("maturin"), &home)?;
     let install = ["-m", "pip", "install", "--quiet", "--no-deps"];
     let forced = ["--force-reinstall", "--no-index"];
@@ -62,18 +69,20 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let picture = home.join("barrel-roll.png");
     let urdf = run::root().join("models/a1.urdf");
     let jump = [Path::new("a1/barrel-roll"), &urdf, &picture];
-    for (example, arguments) in [
-        ("mujoco_loop.py", &jump[..]),
-        ("drake_loop.py", &[]),
-        ("costs.py", &[]),
-    ] {
+    let example = |name: &str, arguments: &[&Path]| -> Result<()> {
         let mut python = tool("python");
-        python
-            .arg(Path::new("examples").join(example))
-            .args(arguments);
+        python.arg(Path::new("examples").join(name)).args(arguments);
         print!("{}", run::stdout_within(&mut python, PATIENCE)?);
-    }
+        Ok(())
+    };
+    example("mujoco_loop.py", &jump)?;
     ensure!(picture.exists(), "mujoco_loop.py draws nothing");
+    example("topics_loop.py", &[])?;
+    if args.more {
+        run::succeed(tool("pip").args(["install", "--quiet", DRAKE]))?;
+        example("drake_loop.py", &[])?;
+        example("costs.py", &[])?;
+    }
     notebooks(&home, tool)?;
     Ok(())
 }

@@ -8,7 +8,7 @@ mod folder;
 pub(crate) mod import;
 mod interrupt;
 mod leftovers;
-mod output;
+pub(crate) mod output;
 pub(crate) mod plan;
 pub(crate) mod reproduce;
 pub(crate) mod run;

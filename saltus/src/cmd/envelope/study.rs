@@ -18,11 +18,16 @@ use jump_planner::planned::Planner;
 use jump_planner::reference::Reference;
 use jump_planner::task::Task;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+
+/// File of a study's folder that says what it is.
+const MANIFEST: &str = "manifest.json";
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Part of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +95,44 @@ impl Study<'_> {
     /// Fails where the folder holds something else.
     pub(super) fn refuse_strangers(&self) -> Result<(), String> {
         refuse_strangers(&self.folder, "shard-")?;
+        self.refuse_versions()?;
         self.merge().map(|_| ())
+    }
+
+    /// Fails where another version of the program began the study: its samples may be others.
+    fn refuse_versions(&self) -> Result<(), String> {
+        let path = self.folder.join(MANIFEST);
+        let Ok(text) = fs::read_to_string(&path) else {
+            return Ok(());
+        };
+        let manifest: Value =
+            serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+        let version = &manifest["version"];
+        if *version == VERSION {
+            return Ok(());
+        }
+        Err(format!(
+            "{}: saltus {version} began this study, and this is {VERSION}: choose another --out",
+            path.display()
+        ))
+    }
+
+    /// What the folder's samples are of; all shards write the same but the command.
+    fn manifest(&self) -> Value {
+        let without: Vec<_> = self.without.iter().map(|measure| measure.name()).collect();
+        let plant = self.plant.as_ref();
+        json!({
+            "version": VERSION,
+            "command": std::env::args().collect::<Vec<_>>(),
+            "task": self.task.name,
+            "sim": self.sim.name(),
+            "planner": self.planner.name(),
+            "samples": self.samples,
+            "seed": self.seed,
+            "plant": plant.map_or_else(|| "lab".to_owned(), ToString::to_string),
+            "interface": self.interface.to_string(),
+            "without": without,
+        })
     }
 
     /// The plan that is executed.
@@ -106,6 +148,10 @@ impl Study<'_> {
     ) -> Result<Vec<Sample>, Failure> {
         let outside = |path: &Path, e: &std::io::Error| Failure::Outside(describe(path, e));
         fs::create_dir_all(&self.folder).map_err(|e| outside(&self.folder, &e))?;
+        if !self.folder.join(MANIFEST).exists() {
+            let text = format!("{:#}\n", self.manifest());
+            write(&self.folder, MANIFEST, text.as_bytes())?;
+        }
         let Shard { part, of } = self.shard;
         let path = self.folder.join(format!("shard-{part}-of-{of}.csv"));
         let done: HashSet<u64> = self.read(&path)?.iter().map(|s| s.index).collect();
