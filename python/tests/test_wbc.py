@@ -20,6 +20,12 @@ def standing(robot: saltus.Robot) -> np.ndarray:
     return q
 
 
+def contact_jacobians(robot: saltus.Robot, q: np.ndarray) -> np.ndarray:
+    """Of the lowest points of the feet's balls: that is where the ground pushes."""
+    down = np.array([0, 0, -robot.foot_radius])
+    return np.array([j[:3] + np.cross(j[3:].T, down).T for j in robot.foot_jacobians(q)])
+
+
 def begun(robot: saltus.Robot, **options: object) -> saltus.TorqueQp:
     """A program with what every tick has."""
     qp = saltus.TorqueQp(robot)
@@ -36,7 +42,7 @@ def test_the_answer_obeys_the_equations_of_motion(robot: saltus.Robot) -> None:
     qp.minimise(qp.trunk(), np.zeros(6), [0, 0, 0, 1e3, 1e3, 1e3])
     answer = qp.solve()
     q = standing(robot)
-    jacobians = robot.foot_jacobians(q)[:, :3]
+    jacobians = contact_jacobians(robot, q)
     pushed = sum(j.T @ f for j, f in zip(jacobians, answer.forces))
     effort = robot.rnea(q, STILL, answer.acceleration) - pushed
     np.testing.assert_allclose(effort, [0] * 6 + list(answer.tau), atol=1e-9)
