@@ -1,6 +1,7 @@
 //! A task's whole-body problem on a grid of intervals, and the ways in which it is solved there.
 
 use super::FOOT_COUNT;
+use super::kept::Kept;
 use super::pace::Pace;
 use super::setup::{N, NI, NU, NX, Setup, times};
 use super::task::{PHASES, SrbPlan, Task};
@@ -22,6 +23,10 @@ const PARTS_PATIENCE: usize = 60;
 const LESS_PATIENCE: usize = 40;
 /// Barrier to begin with where a plan is made again, or on parts of its intervals. With less the first steps go from bound to bound.
 const WARM_MU: f64 = 1e-2;
+/// The same where the task is another one.
+const NEAR_MU: f64 = 1e-4;
+/// Iterations in which a plan has to arrive that begins with that of another task; a plan from the start takes 10 to 25.
+const NEAR_PATIENCE: usize = 25;
 
 /// Coordinates of a state with durations.
 const TIMED: usize = NX + PHASES;
@@ -72,6 +77,30 @@ impl<'a> Grid<'a> {
             path: Vec::new(),
             setup,
         }
+    }
+
+    /// On the intervals of an earlier plan, from its motion and multipliers.
+    pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Result<Self, String> {
+        let setup = Setup::on(task, srb, &kept.intervals, kept.lengths)?;
+        let mut grid = Self::of(task, Timing::Given, setup);
+        grid.stages.clone_from(&kept.stages);
+        grid.torque_share = kept.torque_share;
+        Ok(grid)
+    }
+
+    /// What the last solve leaves for a task like this one, within these limits; nothing where there was no motion, or where the durations
+    /// were unknowns.
+    pub(crate) fn kept(self, drawn: Tightening) -> Option<Kept> {
+        let solved = self.path.last()?.status == Status::Solved;
+        (solved && self.timing == Timing::Given).then(|| Kept {
+            body: self.setup.srb.stages.clone(),
+            contacts: self.setup.phases.iter().map(|p| p.contacts).collect(),
+            intervals: self.setup.phases.iter().map(|p| p.intervals).collect(),
+            lengths: self.setup.lengths,
+            stages: self.stages,
+            torque_share: self.torque_share,
+            drawn,
+        })
     }
 
     /// The motion of the rigid body.
@@ -183,6 +212,19 @@ impl<'a> Grid<'a> {
         })
     }
 
+    /// Plans from the motion of a plan of another task.
+    pub(crate) fn moved(
+        &mut self,
+        drawn: &Tightening,
+        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<WholeBodyPlan, String> {
+        let mut settings = warm();
+        settings.initial_mu = NEAR_MU;
+        self.solve(&settings, drawn, observer, |progress| {
+            progress.iteration <= NEAR_PATIENCE
+        })
+    }
+
     /// Plans again from what the stages hold, with the torque of the last solve.
     pub(crate) fn again(
         &mut self,
@@ -281,7 +323,10 @@ fn settings() -> Settings<f64> {
 /// As [`settings`], from the multipliers that are there.
 fn warm() -> Settings<f64> {
     let mut settings = settings();
-    (settings.warm_start, settings.initial_mu) = (true, WARM_MU);
+    (settings.warm_start, settings.initial_mu) = (
+        true,
+        std::env::var("WMU").map_or(WARM_MU, |x| x.parse().unwrap()),
+    );
     settings
 }
 

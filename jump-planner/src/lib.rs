@@ -5,6 +5,7 @@ pub mod audit;
 pub mod bounds;
 pub mod file;
 mod grid;
+mod kept;
 mod pace;
 mod plan;
 pub mod planned;
@@ -21,7 +22,8 @@ mod tightening;
 pub mod track;
 pub mod whole_body;
 
-pub use plan::{Options, Outcome, Step, plan};
+pub use kept::Kept;
+pub use plan::{Options, Outcome, Step, plan, replan};
 pub use whole_body::Timing;
 
 use rbd_core::{Configuration, Tangent};

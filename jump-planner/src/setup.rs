@@ -51,7 +51,7 @@ pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 /// What the problem borrows, and the guess that comes with it.
 pub(crate) struct Setup<'a> {
     task: &'a Task,
-    srb: &'a SrbPlan,
+    pub(crate) srb: &'a SrbPlan,
     track: Track<Transform<f64>>,
     pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
     /// Times of the nodes, s.
@@ -63,7 +63,7 @@ pub(crate) struct Setup<'a> {
     goal: Pose<f64, N>,
     landing_intervals: usize,
     /// Length of the intervals over the usual one.
-    lengths: f64,
+    pub(crate) lengths: f64,
 }
 
 fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
@@ -106,6 +106,23 @@ impl<'a> Setup<'a> {
             });
         }
         Self::along(task, srb, phases, lengths)
+    }
+
+    /// On as many intervals as there were in every phase, of so many usual lengths.
+    pub(crate) fn on(
+        task: &'a Task,
+        srb: &'a SrbPlan,
+        intervals: &[usize],
+        lengths: f64,
+    ) -> Result<Self, String> {
+        let phases = task.problem.used_phases().iter();
+        let phases = phases.zip(durations(srb)).zip(intervals);
+        let phases = phases.map(|((phase, duration), intervals)| Phase {
+            contacts: phase.contacts,
+            intervals: *intervals,
+            dt: duration / *intervals as f64,
+        });
+        Self::along(task, srb, phases.collect(), lengths)
     }
 
     /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.

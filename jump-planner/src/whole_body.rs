@@ -6,6 +6,7 @@ use super::stored::{open, store};
 use super::task::{SrbPlan, Task};
 use crate::audit::Audit;
 use crate::grid::Grid;
+use crate::kept::Kept;
 use crate::search::searched;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
@@ -100,6 +101,8 @@ pub struct Audited {
     pub audit: Option<Audit>,
     /// Time of planning and auditing, ms.
     pub wall_ms: f64,
+    /// For the next plan like this one; nothing where the last solve found none, or where the durations were unknowns.
+    pub kept: Option<Kept>,
 }
 
 /// Plans the whole body and audits the plan.
@@ -120,19 +123,51 @@ pub fn audited(
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
     let clock = Instant::now();
+    let (grid, plan) = searched(task, srb, timing, &mut observer)?;
+    let none = Tightening::default();
+    finished(clock, task, grid, (plan, none), &mut observer)
+}
+
+/// As [`audited`], beginning with an earlier plan of the same phases in given durations; from the start where that leads nowhere.
+pub(crate) fn audited_near(
+    task: &Task,
+    srb: &SrbPlan,
+    kept: &Kept,
+    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<Audited, String> {
+    let clock = Instant::now();
     let observer = &mut observer;
-    let (mut grid, plan) = searched(task, srb, timing, observer)?;
-    let mut told = tightened(task, &mut grid, plan, observer)?;
+    let mut near = Grid::near(task, srb, kept)?;
+    let plan = near.moved(&kept.drawn, observer)?;
+    if matches!(plan.outcome.status, Status::Solved | Status::Cancelled) {
+        return finished(clock, task, near, (plan, kept.drawn), observer);
+    }
+    let (grid, plan) = searched(task, srb, Timing::Given, observer)?;
+    let none = Tightening::default();
+    finished(clock, task, grid.after(near), (plan, none), observer)
+}
+
+/// Audits a plan, and makes it again where the audit asks for it.
+fn finished<'a>(
+    clock: Instant,
+    task: &'a Task,
+    mut grid: Grid<'a>,
+    (plan, mut drawn): (WholeBodyPlan, Tightening),
+    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+) -> Result<Audited, String> {
+    let mut told = tightened(task, &mut grid, (plan, &mut drawn), observer)?;
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
         grid = grid.split(2)?;
-        let plan = grid.again(&Tightening::default(), observer)?;
-        let fine = tightened(task, &mut grid, plan, observer)?;
+        drawn = Tightening::default();
+        let plan = grid.again(&drawn, observer)?;
+        let fine = tightened(task, &mut grid, (plan, &mut drawn), observer)?;
         if fine.audit.is_some() {
             told = fine;
         }
     }
-    told.path = grid.path;
+    told.path.clone_from(&grid.path);
+    told.kept = grid.kept(drawn);
     told.wall_ms = clock.elapsed().as_secs_f64() * 1e3;
     Ok(told)
 }
@@ -141,17 +176,16 @@ pub fn audited(
 fn tightened(
     task: &Task,
     grid: &mut Grid<'_>,
-    plan: WholeBodyPlan,
+    (plan, drawn): (WholeBodyPlan, &mut Tightening),
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
     let mut told = plan.audited(task)?;
-    let mut drawn = Tightening::default();
     for _ in 0..TIGHTENINGS {
         let Some(next) = told.audit.as_ref().and_then(|audit| drawn.after(audit)) else {
             break;
         };
-        drawn = next;
-        let again = grid.again(&drawn, observer)?.audited(task)?;
+        *drawn = next;
+        let again = grid.again(drawn, observer)?.audited(task)?;
         if again.audit.is_none() {
             break;
         }
@@ -175,6 +209,7 @@ impl WholeBodyPlan {
             bytes,
             audit,
             wall_ms: 0.0,
+            kept: None,
         })
     }
 }

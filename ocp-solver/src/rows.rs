@@ -173,25 +173,51 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         }
     }
 
-    /// Places slacks inside bounds that may have moved since the last solve, and keeps its multipliers within
-    /// a factor of ten of the central path of `mu`.
-    pub(crate) fn resume_rows(&mut self, push: T, mu: T) {
-        let kept = (self.rows.below, self.rows.above);
-        self.start_rows(min(push, so3::math::sqrt(mu)), T::ONE, Some(mu));
-        let ten = T::of(10.0);
+    /// Puts every row on the central path of `mu` where it is nearest to the row's value, whose bounds may have moved since the last solve, and
+    /// to its multiplier: of a distance d to the bound and a multiplier z there, s z⁺ = µ with s − z⁺ = d − z,
+    ///
+    /// s = ½ (d − z + √((d − z)² + 4 µ)).
+    ///
+    /// A row that was active keeps its multiplier, one that was not its distance. Of two bounds the one that pushed counts.
+    pub(crate) fn resume_rows(&mut self, mu: T) {
         for i in 0..self.row_count() {
             let rows = &mut self.rows;
-            if rows.is_equality(i) {
-                rows.above[i] = kept.1[i];
+            let (l, h, c) = (rows.lower[i], rows.upper[i], self.values.rows[i]);
+            if l == h {
+                rows.slack[i] = l;
                 continue;
             }
-            for (z, kept) in [
-                (&mut rows.below[i], kept.0[i]),
-                (&mut rows.above[i], kept.1[i]),
-            ] {
-                let central = *z;
-                *z = max(min(kept, central * ten), central / ten);
-            }
+            let on_path = |distance: T, multiplier: T| {
+                let both = distance - multiplier;
+                let root = so3::math::sqrt(both * both + T::of(4.0) * mu);
+                // The sum of what cancels least.
+                if both > T::ZERO {
+                    (both + root) * T::HALF
+                } else {
+                    T::of(2.0) * mu / (root - both)
+                }
+            };
+            let (below, above) = (rows.below[i], rows.above[i]);
+            let is_above = h.is_finite_number() && (above > below || !l.is_finite_number());
+            let s = if is_above {
+                h - min(on_path(h - c, above), T::of(0.9) * (h - l))
+            } else if l.is_finite_number() {
+                l + min(on_path(c - l, below), T::of(0.9) * (h - l))
+            } else {
+                c
+            };
+            rows.slack[i] = rows.inside(i, s);
+            let (below, above) = rows.distances(i);
+            rows.below[i] = if l.is_finite_number() {
+                mu / below
+            } else {
+                T::ZERO
+            };
+            rows.above[i] = if h.is_finite_number() {
+                mu / above
+            } else {
+                T::ZERO
+            };
         }
     }
 
@@ -411,6 +437,57 @@ mod tests {
         };
         node.accept_rows(&step, 1e-3, 1e-3);
         (node.rows.slack[0], node.rows.below[0])
+    }
+
+    /// Slack and both multipliers of a row with value `c` and kept multipliers, on the path of `mu`.
+    fn resumed([l, h]: [f64; 2], c: f64, [below, above]: [f64; 2], mu: f64) -> (f64, f64, f64) {
+        let mut node = crate::stage::Stage::<f64, (), 1, 1, 1>::new(()).node;
+        node.dims = Dims {
+            control_rows: 1,
+            ..Dims::default()
+        };
+        (node.rows.lower, node.rows.upper) = ([l], [h]);
+        (node.rows.below, node.rows.above) = ([below], [above]);
+        node.values.rows = [c];
+        node.resume_rows(mu);
+        (node.rows.slack[0], node.rows.below[0], node.rows.above[0])
+    }
+
+    #[test]
+    fn a_row_resumes_on_the_path_nearest_to_what_it_was() {
+        const MU: f64 = 1e-6;
+        // Active, inactive, violated, neither, far apart, and exact at the bound.
+        for (c, z) in [
+            (0.0, 2.0),
+            (3.0, 0.0),
+            (-0.5, 1.0),
+            (1e-3, 1e-3),
+            (1e6, 0.0),
+            (0.0, 0.0),
+        ] {
+            let bounds = [5.0, f64::INFINITY];
+            let (s, below, above) = resumed(bounds, 5.0 + c, [z, 0.0], MU);
+            let d = s - 5.0;
+            assert!(d > 0.0 && above == 0.0, "{c} {z}: {s}");
+            assert!((d * below / MU - 1.0).abs() < 1e-12, "{c} {z}: {d} {below}");
+            // To what ten digits of a slack five away from zero leave.
+            let apart = (d - below) - (c - z);
+            assert!(apart.abs() < 1e-8 * (1.0 + c.abs()), "{c} {z}: {apart}");
+            // The same from above.
+            let (low, none, mirrored) = resumed([-f64::INFINITY, -5.0], -5.0 - c, [0.0, z], MU);
+            assert_eq!((low, none, mirrored), (-s, 0.0, below));
+        }
+        // Of two bounds the one that pushed counts, and the other has what is left.
+        let (s, below, above) = resumed([0.0, 1.0], 0.999, [0.0, 4.0], MU);
+        assert!((above - 4.0).abs() < 0.01 && s < 1.0, "{s} {above}");
+        assert!((below - MU / s).abs() < 1e-12);
+        // However far the value is, the slack stays between both.
+        let (s, ..) = resumed([0.0, 1.0], 7.0, [1e-3, 0.0], MU);
+        assert_eq!(s, 0.9);
+        // An equality is where it is, a row without bounds has no multipliers.
+        assert_eq!(resumed([2.0, 2.0], 9.0, [0.0, 3.0], MU), (2.0, 0.0, 3.0));
+        let free = [-f64::INFINITY, f64::INFINITY];
+        assert_eq!(resumed(free, 9.0, [0.0, 0.0], MU), (9.0, 0.0, 0.0));
     }
 
     #[test]

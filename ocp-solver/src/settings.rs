@@ -39,7 +39,7 @@ pub struct Settings<T> {
     /// First µ of the monotone rule.
     pub initial_mu: T,
     /// The first attempt keeps the multipliers that the last solve left in the stages, for a problem that has
-    /// changed little: combine it with the monotone rule, or the portfolio, and an `initial_mu` of 1e-5
+    /// changed little: every row begins on the central path where it is nearest to its value and its multiplier. Combine it with the monotone rule, or the portfolio, and an `initial_mu` of 1e-5
     /// (nearly the same problem) to 1e-2.
     pub warm_start: bool,
     /// The monotone rule multiplies µ by this, or raises it to the power of `mu_power`, whichever is less.

@@ -90,7 +90,7 @@ impl<T: Scalar> Solver<T> {
             (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
             if i == 0 && self.settings.warm_start {
                 for stage in stages.iter_mut() {
-                    stage.node.resume_rows(self.settings.bound_push, mu);
+                    stage.node.resume_rows(mu);
                 }
                 run.warm = true;
             }

@@ -241,7 +241,7 @@ fn a_warm_start_follows_a_problem_that_has_changed_little() {
     };
     let same = again(10.0);
     assert!((same.cost - cold.cost).abs() < 1e-5);
-    assert!(2 * same.iterations < cold.iterations, "{same:?} {cold:?}");
+    assert!(same.iterations <= 3, "{same:?} {cold:?}");
     let higher = again(10.01);
     assert!(higher.iterations < cold.iterations, "{higher:?} {cold:?}");
     let (wanted, _) = solve(&problem, [10.01, -2.0, 3.0]);

@@ -111,6 +111,7 @@ def plan(
     *,
     timing: str = "given",
     within: float | None = None,
+    near: Plan | None = None,
 ) -> Plan: ...
 
 @final

@@ -10,7 +10,7 @@ use jump_planner::audit::Audit;
 use jump_planner::robot::State;
 use jump_planner::stored::{Stored, open};
 use jump_planner::task::Task as Wanted;
-use jump_planner::{FOOT_COUNT, JOINTS, file};
+use jump_planner::{FOOT_COUNT, JOINTS, Kept, file};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::types::PyBytes;
 use pyo3::{Bound, Py, PyAny, PyResult, Python, pyclass, pymethods};
@@ -29,17 +29,21 @@ use crate::task::Task;
 /// Arrays have one row per node, and are made anew at every access. Torques, forces and contacts hold from their node to the next. The first node, at a time below zero,
 /// is the posture that waits.
 #[pyclass(frozen, module = "saltus")]
-pub(crate) struct Plan(pub(crate) Arc<Planned>);
+pub(crate) struct Plan(
+    pub(crate) Arc<Planned>,
+    /// Where a plan like this one can begin.
+    pub(crate) Option<Arc<Kept>>,
+);
 
 /// A node as it is stored.
 type Node = PlanNode<JOINTS, FOOT_COUNT>;
 
 impl Plan {
     /// The plan in these bytes.
-    pub(crate) fn of(task: Wanted, bytes: &[u8]) -> PyResult<Self> {
+    pub(crate) fn of(task: Wanted, bytes: &[u8], kept: Option<Kept>) -> PyResult<Self> {
         let robot = task.robot;
         Planned::open(&robot, bytes, |_| Ok::<_, String>(task))
-            .map(|planned| Self(Arc::new(planned)))
+            .map(|planned| Self(Arc::new(planned), kept.map(Arc::new)))
             .map_err(bad)
     }
 
@@ -84,7 +88,7 @@ impl Plan {
                     .map_err(|error| named(format!("{error}; or give the plan's task")))?
             }
         };
-        Self::of(task, &bytes).map_err(|error| named(error.value(py).to_string()))
+        Self::of(task, &bytes, None).map_err(|error| named(error.value(py).to_string()))
     }
 
     /// Writes the plan where `saltus run --plan`, `saltus verify`, C and firmware read it.

@@ -4,6 +4,7 @@ use core::ops::ControlFlow;
 use core::time::Duration;
 
 use jump_planner::{Options, Step, Timing};
+use ocp_solver::Progress;
 use pyo3::{FromPyObject, Py, PyAny, PyErr, PyResult, Python, pyfunction};
 
 use crate::errors::{bad, failed, no_plan};
@@ -55,11 +56,12 @@ fn timing(name: &str) -> PyResult<Timing> {
 /// `task` is a Task, or what Task.load takes; `robot` jumps in the place of its own. `progress(step, iteration, violation)` is called
 /// after every iteration of a solver; whatever it raises stops the planner and is raised here. `timing` is "given", from the rigid
 /// body's plan, or "free", unknowns of the whole body's problem. `within` is the time there is, s, which ends an iteration or an audit
-/// late; None: as much as it takes.
+/// late; None: as much as it takes. `near` is a plan of a task that differs little, in its goal, friction or robot: planning begins with what it
+/// found, where phases are the same and timings given.
 ///
 /// Raises Infeasible with the proof, NotFound or AuditFailed with the reason, OutOfTime with what stood in the way, and BadInput.
 #[pyfunction]
-#[pyo3(signature = (task, robot = None, progress = None, *, timing = "given", within = None), name = "plan")]
+#[pyo3(signature = (task, robot = None, progress = None, *, timing = "given", within = None, near = None), name = "plan")]
 pub(crate) fn plan(
     py: Python<'_>,
     task: Asked,
@@ -67,6 +69,7 @@ pub(crate) fn plan(
     progress: Option<Py<PyAny>>,
     timing: &str,
     within: Option<f64>,
+    near: Option<Py<Plan>>,
 ) -> PyResult<Plan> {
     let task = task.task(robot.as_ref())?;
     let within = within.map(Duration::try_from_secs_f64).transpose();
@@ -76,7 +79,7 @@ pub(crate) fn plan(
     };
     let mut stopped: Option<PyErr> = None;
     let found = py.detach(|| {
-        jump_planner::plan(&task, &options, |step, at| {
+        let watch = |step, at: Option<&Progress<f64>>| {
             let told = Python::attach(|py| {
                 py.check_signals()?;
                 if let (Some(progress), Some(at)) = (&progress, at) {
@@ -91,7 +94,11 @@ pub(crate) fn plan(
                     ControlFlow::Break(())
                 }
             }
-        })
+        };
+        match near.as_ref().and_then(|near| near.get().1.as_ref()) {
+            Some(kept) => jump_planner::replan(&task, kept, &options, watch),
+            None => jump_planner::plan(&task, &options, watch),
+        }
     });
     if let Some(error) = stopped {
         return Err(error);
@@ -99,6 +106,6 @@ pub(crate) fn plan(
     let found = found.map_err(failed)?;
     match found.answer {
         Some(answer) => Err(no_plan(&answer)),
-        None => Plan::of(task, &found.bytes),
+        None => Plan::of(task, &found.bytes, found.kept),
     }
 }

@@ -140,3 +140,17 @@ def test_other_threads_run_meanwhile() -> None:
 def test_timing_is_named() -> None:
     with pytest.raises(saltus.BadInput, match="timing"):
         saltus.plan("a1/lateral", timing="loose")
+
+
+def test_a_plan_near_another_one_is_found_sooner_and_audited(lateral: saltus.Plan) -> None:
+    task = replace(LATERAL, goal_m=(0.1, 0.3, 0.0)).task()
+    told: dict = {"whole body": []}
+    near = saltus.plan(
+        task, progress=lambda step, i, _: told.setdefault(step, []).append(i), near=lateral
+    )
+    afar: dict = {"whole body": []}
+    same = saltus.plan(task, progress=lambda step, i, _: afar.setdefault(step, []).append(i))
+    assert len(told["whole body"]) < len(afar["whole body"])
+    assert len(told["body"]) < len(afar["body"])
+    assert near.audit()["passes"]
+    np.testing.assert_allclose(near.q[-1], same.q[-1], atol=2e-3)

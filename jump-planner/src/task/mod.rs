@@ -276,9 +276,21 @@ impl Task {
         settings: &Settings<f64>,
         observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
     ) -> Result<SrbPlan, String> {
+        self.attempt_from(self.guess()?.stages, settings, observer)
+    }
+
+    /// As [`Task::attempt`], from these nodes instead of the guess.
+    ///
+    /// # Errors
+    /// What the solver cannot begin with.
+    pub fn attempt_from(
+        &self,
+        mut stages: Vec<SrbStage>,
+        settings: &Settings<f64>,
+        observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
+    ) -> Result<SrbPlan, String> {
         let problem = &self.problem;
         let clock = std::time::Instant::now();
-        let mut stages = self.guess()?.stages;
         let solution = Solver::new(*settings)
             .solve(problem, &mut stages, observer)
             .map_err(|error| error.to_string())?;

@@ -1,0 +1,38 @@
+//! What a plan leaves for the next one like it.
+
+use super::FOOT_COUNT;
+use super::setup::{N, NI, NU, NX};
+use super::task::{SrbStage, Task};
+use crate::tightening::Tightening;
+use ocp_solver::SparseStage;
+use wb_opt::State;
+
+/// The motions of a plan's two stages and the multipliers of their limits: where [`replan`](crate::replan) begins.
+///
+/// About as large as the solver's own storage, some 10 MB.
+#[derive(Clone)]
+pub struct Kept {
+    /// Nodes of the rigid body's plan.
+    pub(crate) body: Vec<SrbStage>,
+    /// Feet on the ground, and number of intervals, of every phase.
+    pub(crate) contacts: Vec<[bool; FOOT_COUNT]>,
+    pub(crate) intervals: Vec<usize>,
+    /// Length of the intervals over the usual one.
+    pub(crate) lengths: f64,
+    /// Nodes of the whole body's plan.
+    pub(crate) stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
+    /// Share of the torque limits.
+    pub(crate) torque_share: f64,
+    /// Limits that the audit had asked to be drawn in.
+    pub(crate) drawn: Tightening,
+}
+
+impl Kept {
+    /// Whether a task has the same phases, so that its nodes are these.
+    #[must_use]
+    pub fn is_of_phases(&self, task: &Task) -> bool {
+        let phases = task.problem.used_phases();
+        let contacts = phases.iter().map(|phase| &phase.contacts);
+        contacts.eq(&self.contacts) && task.problem.intervals() + 1 == self.body.len()
+    }
+}
