@@ -323,10 +323,7 @@ fn settings() -> Settings<f64> {
 /// As [`settings`], from the multipliers that are there.
 fn warm() -> Settings<f64> {
     let mut settings = settings();
-    (settings.warm_start, settings.initial_mu) = (
-        true,
-        std::env::var("WMU").map_or(WARM_MU, |x| x.parse().unwrap()),
-    );
+    (settings.warm_start, settings.initial_mu) = (true, WARM_MU);
     settings
 }
 
