@@ -38,6 +38,58 @@ pub(crate) fn lines(verdict: &Verdict) -> Vec<Line> {
     lines
 }
 
+/// The verdict as a sentence, for the top of a page.
+pub(crate) fn sentence(verdict: &Verdict) -> String {
+    let Some(first) = verdict.failures.first() else {
+        return "On target: flown as planned, standing where it should, hardware within its budgets.".to_owned();
+    };
+    let more = match verdict.failures.len() - 1 {
+        0 => String::new(),
+        1 => " One more measure fails.".to_owned(),
+        n => format!(" {n} more measures fail."),
+    };
+    format!(
+        "Not on target: {}: {} at {:.3} s ({}).{more}",
+        meaning(&first.name),
+        first.found,
+        first.time,
+        first.name
+    )
+}
+
+/// What the name of a failure means.
+fn meaning(name: &str) -> String {
+    let known = match name {
+        "flight.position_m" => "too far from the plan at the planned touchdown",
+        "flight.rotation_deg" => "turned away from the plan at the planned touchdown",
+        "flight.com_gain_m" => "the flight is not as high as asked for",
+        "flight.sole_clearance_m" => "the soles do not rise enough",
+        "stand.upright" => "it fell",
+        "stand.feet_m" => "the feet stand too far from the goal",
+        "stand.heading_deg" => "it heads elsewhere in the end",
+        "stand.height_m" => "it stands too low or too high",
+        "stand.rotation_deg" => "it stands askew",
+        "hardware.saturation_ms.push_off" => "motors at their limits too long in the push-off, ms",
+        "hardware.saturation_ms.flight" => "motors at their limits too long in the flight, ms",
+        "hardware.saturation_ms.landing" => "motors at their limits too long in the landing, ms",
+        "hardware.stop_ms" => "joints at their stops too long, ms",
+        "hardware.stop_torque_nm" => "a joint hits its stop too hard, N m",
+        "hardware.overspeed_ms" => "joints faster than their motors too long, ms",
+        "hardware.ground_force_10ms_weights" => "the ground pushes too hard, weights",
+        "hardware.heat_share" => "a winding gets too warm, share",
+        "hardware.supply_power_w" => "more power than the supply has, W",
+        "fault" => "the machine gave up",
+        "no_takeoff" => "it did not take off",
+        "no_touchdown" => "it did not come down",
+        _ => "",
+    };
+    match name.strip_prefix("hardware.links_touched.") {
+        Some(link) => format!("{link} touched something"),
+        None if known.is_empty() => name.to_owned(),
+        None => known.to_owned(),
+    }
+}
+
 /// In one line.
 fn words(found: &Found) -> String {
     let [push_off, flight, landing] = found.saturation.map(|x| 1e3 * x);

@@ -161,6 +161,24 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     ),
     (&["verify", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["verify", "nowhere"], &["nowhere", "check the path"]),
+    (&["watch"], &["<RUN>"]),
+    (&["watch", "nowhere"], &["nowhere", "check the path"]),
+    (
+        &["watch", "short.bin"],
+        &["short.bin is a file", "give the folder"],
+    ),
+    (
+        &["watch", "folder.urdf"],
+        &["folder.urdf has no report.html", "give a folder"],
+    ),
+    (
+        &["watch", ".", "--out", "here"],
+        &["--out is for several runs"],
+    ),
+    (
+        &["watch", "a", "b", "c", "d", "e", "f", "g"],
+        &["7 runs", "up to 6"],
+    ),
     (&["import", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["import", "urdf.txt"], &["urdf.txt", "not XML"]),
     (&["completions", "tcl"], &["bash", "zsh"]),

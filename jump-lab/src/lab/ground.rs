@@ -44,6 +44,12 @@ impl<const N: usize, const C: usize> Ground<N, C> {
         q
     }
 
+    /// By how much the floor has moved upwards, m.
+    #[must_use]
+    pub const fn moved(&self) -> f64 {
+        self.moved
+    }
+
     /// How it moves.
     #[must_use]
     pub fn velocity(&self) -> &Tangent<f64, N> {
