@@ -155,5 +155,7 @@ window.SALTUS = {
     }
     camera.position.copy(kept[0]);
     camera.quaternion.copy(kept[1]);
+    // It stays until something changes.
+    dirty = false;
   },
 };
