@@ -166,12 +166,16 @@ class Stage {
 
   /// How much of the world is seen, and around which height: all of a jump that fits, else what is around the robot.
   see() {
-    const F = this.run.frames, tops = F.origins.map((links, i) => Math.max(F.position[i][2], ...links.map(p => p[2])));
-    const start = F.position[0], low = this.height(start[0], start[1], F.t[0]);
-    const high = Math.max(...tops) + 0.1, bottom = Math.min(low, this.run.scene.floor);
-    this.rises = high - bottom > 1.6;
-    this.extent = this.rises ? 2.2 * (tops[0] + 0.1 - low) : high - bottom;
-    this.middle = (high + bottom) / 2;
+    const F = this.run.frames, tops = F.t.map((t, i) => {
+      this.body.pose(F, [i, i, 0]);
+      this.world.updateMatrixWorld(true);
+      return Math.max(...this.body.ends.map(([link, end, radius]) => end.clone().applyMatrix4(link.matrixWorld).z + radius));
+    });
+    const start = F.position[0], stands = this.height(start[0], start[1], F.t[0]);
+    const high = Math.max(...tops), low = Math.min(stands, this.run.scene.floor);
+    this.rises = high - low > 1.7;
+    this.extent = this.rises ? 2.2 * (tops[0] - stands) : high - low;
+    this.middle = (high + low) / 2;
   }
 
   /// By how much the floor has moved.

@@ -239,7 +239,16 @@ fn quiet_says_nothing_but_errors() {
 
 #[test]
 fn every_command_explains_itself_and_its_exit_codes() {
-    for command in ["plan", "verify", "import", "run", "envelope", "reproduce"] {
+    for command in [
+        "plan",
+        "verify",
+        "import",
+        "run",
+        "watch",
+        "envelope",
+        "verdicts",
+        "reproduce",
+    ] {
         let help = String::from_utf8(saltus(&[command, "--help"]).stdout).unwrap();
         assert!(
             help.contains("Examples:") && help.contains("Exit codes:"),

@@ -231,6 +231,39 @@ fn opens(root: &Path) {
 #[cfg(not(target_os = "linux"))]
 fn opens(_: &Path) {}
 
+/// A gallery has a page with every task, a report of every run that can be watched, and the verdicts as `--json` tells them.
+#[test]
+fn a_gallery_shows_every_task() {
+    let root = folder("gallery");
+    let lateral = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+    let far = lateral.replace("goal_m = [0.0, 0.3, 0.0]", "goal_m = [0.0, 30.0, 0.0]");
+    assert_ne!(far, lateral);
+    fs::write(root.join("far <b>.toml"), far).unwrap();
+    let tasks = ["verdicts", "a1/lateral", "far <b>.toml", "--sim", "native"];
+    let output = saltus(&root, &[&tasks[..], &["--json", "--out", "all"]].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let all = root.join("all");
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let kept: Value = serde_json::from_slice(&fs::read(all.join("gallery.json")).unwrap()).unwrap();
+    assert_eq!(told, kept);
+    let page = fs::read_to_string(all.join("index.html")).unwrap();
+    assert_eq!(page.matches("class=\"card\"").count(), 2);
+    assert!(page.contains("1 of 2 runs are on target"));
+    assert!(
+        page.contains("<td class=\"good\"><a href=\"a1-lateral-native/report.html\">On target:")
+    );
+    assert!(page.contains("No run: ") && !page.contains("<b>"));
+    for outside in ["src=", "href=\"http", "url(", "<script"] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    // The picture stands in the page and beside the report.
+    let strip = fs::read_to_string(all.join("a1-lateral-native/strip.svg")).unwrap();
+    assert!(page.contains(&strip));
+    let watched = saltus(&root, &["watch", "all/a1-lateral-native", "--no-open"]);
+    assert_eq!(watched.status.code(), Some(0), "{}", said(&watched));
+    refused(&root, &["all"], &["all is a gallery", "give folders in it"]);
+}
+
 /// Humanoids go together as quadrupeds do, and a quadruped from a URDF is one.
 #[test]
 #[ignore = "long: cargo xtask suites"]

@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
                 differences,
             };
             let labels: Vec<&str> = data.runs.iter().map(|run| run.label.as_str()).collect();
-            let title = labels.join(" beside ");
+            let title = labels.join(" · ");
             let page = report::page(&title, compare::INTRO, compare::TABLE, &data)?;
             runs = data.runs;
             let files = [(compare::PAGE, page.as_bytes())];
