@@ -418,6 +418,20 @@ mod tests {
             "{}",
             reference.base_residual
         );
+        // Between its nodes it goes from one to the next, and at its ends it stays.
+        let pose = |time: f64| reference.pose(time).unwrap();
+        for pair in reference.nodes.windows(2) {
+            let [(a, _), (b, _)] = [state(&pair[0]), state(&pair[1])];
+            let middle = pose(0.5 * (pair[0].time + pair[1].time));
+            let both = [&a, &b].map(|q| (middle.base.translation - q.base.translation).norm());
+            let way = (b.base.translation - a.base.translation).norm();
+            assert!((both[0] - both[1]).abs() < 1e-3 * way.max(1e-3), "{both:?}");
+            assert!((pose(pair[1].time).joints[0] - b.joints[0]).abs() < 1e-12);
+        }
+        let ends = [reference.nodes.first(), reference.nodes.last()];
+        let ends = ends.map(|node| state(node.unwrap()).0);
+        assert!((pose(-9.0).base.translation - ends[0].base.translation).norm() < 1e-12);
+        assert!((pose(9.0).base.translation - ends[1].base.translation).norm() < 1e-12);
         let stance = reference
             .nodes
             .iter()

@@ -59,7 +59,7 @@ renderer.setScissorTest(true);
 view.prepend(renderer.domElement);
 const camera = new THREE.PerspectiveCamera(34, 1, 0.05, 60);
 camera.up.set(0, 0, 1);
-const far = Math.max(...RUNS.map(run => run.stage.extent)) * 2.35;
+const far = Math.max(...RUNS.map(run => run.stage.extent)) * 2.5;
 camera.position.set(0.77 * far, -0.6 * far, 0.3 * far);
 const controls = new THREE.OrbitControls(camera, view);
 let dirty = true;

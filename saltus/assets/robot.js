@@ -175,7 +175,8 @@ class Stage {
     const high = Math.max(...tops), low = Math.min(stands, this.run.scene.floor);
     this.rises = high - low > 1.7;
     this.extent = this.rises ? 2.2 * (tops[0] - stands) : high - low;
-    this.middle = (high + low) / 2;
+    // What is nearer stands lower in the picture.
+    this.middle = (high + low) / 2 - 0.05 * this.extent;
   }
 
   /// By how much the floor has moved.

@@ -111,6 +111,7 @@ mod tests {
                 touched = touched.or(Some(now));
             }
         }
+        assert_eq!(ground.moved(), 0.05);
         // Legs hang down 0.2486 m below the base in this posture, with a ball of 0.02 m at their ends.
         let leg = 2.0 * 0.2 * so3::math::cos(0.9_f64) + 0.02;
         assert!((touched.unwrap() - leg - 0.05).abs() < 5e-3, "{touched:?}");
