@@ -67,7 +67,10 @@ controls.addEventListener("change", () => { dirty = true; });
 function resize() {
   const wide = view.clientWidth, columns = Math.min(RUNS.length, Math.max(1, Math.floor(wide / 340)), RUNS.length === 4 ? 2 : 3);
   byId("panes").style.gridTemplateColumns = `repeat(${columns}, 1fr)`;
-  RUNS.forEach(run => { run.pane.style.height = `${many ? 340 : 440}px`; });
+  // As high as leaves the buttons in sight, as far as that can be.
+  const rows = Math.ceil(RUNS.length / columns), room = window.innerHeight - (window.scrollY + view.getBoundingClientRect().top) - 60;
+  const high = many ? Math.min(340, Math.max(220, room / rows)) : 440;
+  RUNS.forEach(run => { run.pane.style.height = `${Math.round(high)}px`; });
   renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
   renderer.setSize(wide, byId("panes").clientHeight);
   dirty = true;
