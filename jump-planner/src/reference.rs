@@ -8,11 +8,11 @@
 use super::planned::{Origin, follow};
 use super::stored::Content;
 use super::task::{PHASES, SrbPlan, SrbStage, Task};
-use super::{FOOT_COUNT, JOINTS, Node, State, Velocity};
+use super::{FOOT_COUNT, JOINTS, Node, State, Velocity, state};
 use crate::robot::Quadruped;
 use nalgebra::{Matrix6, Vector3, Vector6};
 use rbd_core::{
-    Force, GRAVITY, Model, Motion, Posture, Transform, integrate, joint_friction, rnea,
+    Force, GRAVITY, Model, Motion, Posture, Transform, integrate, interpolate, joint_friction, rnea,
 };
 
 /// Longest integration step of the kinematics, s.
@@ -48,6 +48,22 @@ pub struct Reference {
     pub base_residual: f64,
     /// Where it comes from.
     pub origin: Origin,
+}
+
+impl Reference {
+    /// Where the plan has the robot at a time, between two nodes along the geodesic; its ends before and after. `None` without nodes.
+    #[must_use]
+    pub fn pose(&self, time: f64) -> Option<State> {
+        let after = self.nodes.partition_point(|node| node.time <= time);
+        let next = self.nodes.get(after).or(self.nodes.last())?;
+        let last = self.nodes.get(after.saturating_sub(1))?;
+        let (from, to) = (state(last).0, state(next).0);
+        let span = next.time - last.time;
+        if span <= 0.0 {
+            return Some(to);
+        }
+        Some(interpolate(&from, &to, (time - last.time) / span))
+    }
 }
 
 /// Motion of the single rigid body over one interval.
@@ -402,6 +418,20 @@ mod tests {
             "{}",
             reference.base_residual
         );
+        // Between its nodes it goes from one to the next, and at its ends it stays.
+        let pose = |time: f64| reference.pose(time).unwrap();
+        for pair in reference.nodes.windows(2) {
+            let [(a, _), (b, _)] = [state(&pair[0]), state(&pair[1])];
+            let middle = pose(0.5 * (pair[0].time + pair[1].time));
+            let both = [&a, &b].map(|q| (middle.base.translation - q.base.translation).norm());
+            let way = (b.base.translation - a.base.translation).norm();
+            assert!((both[0] - both[1]).abs() < 1e-3 * way.max(1e-3), "{both:?}");
+            assert!((pose(pair[1].time).joints[0] - b.joints[0]).abs() < 1e-12);
+        }
+        let ends = [reference.nodes.first(), reference.nodes.last()];
+        let ends = ends.map(|node| state(node.unwrap()).0);
+        assert!((pose(-9.0).base.translation - ends[0].base.translation).norm() < 1e-12);
+        assert!((pose(9.0).base.translation - ends[1].base.translation).norm() < 1e-12);
         let stance = reference
             .nodes
             .iter()

@@ -52,6 +52,19 @@ Exit codes: 0 on target (flown as planned, standing 2 s later within 0.10 m and 
 and high enough); 2 not on target, or proven to be impossible, or a file or an option is refused; 1 the results cannot be
 written. The folder appears only when it is complete.";
 
+pub(crate) const WATCH: &str = "\
+Examples:
+  saltus watch out/a1-lateral                         its report in your browser
+  saltus watch out/a1-lateral out/a1-lateral-2        both on one page: animated in step, curves in the same plots, what differs
+  saltus watch gallery/a1-barrel-roll-native gallery/a1-barrel-roll-mujoco
+  saltus watch out/a1-lateral --no-open               only the address, where there is no screen
+
+The page is one file that needs no network; its clock is zero at the planned take-off of every run. `saltus verdicts --out gallery` makes
+many runs at once.
+
+Exit codes: 0 the page is there (its address is told, whether a browser opens it or not); 2 a folder is no run, or damaged, or runs of
+quadrupeds and humanoids are mixed; 1 the page cannot be written.";
+
 pub(crate) const ENVELOPE: &str = "\
 Examples:
   saltus envelope a1/lateral --samples 20
@@ -69,7 +82,8 @@ Examples:
   saltus verdicts jump-planner/tasks/extra/*.toml            tasks of your own
   saltus verdicts --conditions --lab 100               what each condition does, and a hundred seeds of the lab
   saltus verdicts --ranges                             what may differ from the plan, and the lab's ranges
-  saltus verdicts --expect saltus/verdicts.toml        the gate: every verdict as expected
+  saltus verdicts --expect jump-planner/tasks/expected.toml      the gate: every verdict as expected
+  saltus verdicts a1/lateral icub/velocity --out gallery         also a page with pictures, and a report of every run
 
 Exit codes: 0 all on target, or all as expected; 2 one is not: it is named, or a task is refused; 130 stopped by Ctrl-C.";
 

@@ -14,6 +14,7 @@ mod plant;
 mod quadruped;
 mod recording;
 mod report;
+mod strip;
 mod verdict;
 
 use clap::error::ErrorKind;
@@ -45,6 +46,9 @@ enum Command {
     /// Plan a jump or take a stored plan, execute it in simulation, and report.
     #[command(after_help = examples::RUN)]
     Run(cmd::run::Args),
+    /// Watch runs in a browser: one's report, or several side by side.
+    #[command(after_help = examples::WATCH)]
+    Watch(cmd::watch::Args),
     /// Run a jump many times, each disturbed otherwise, and tell how often it succeeds.
     #[command(after_help = examples::ENVELOPE)]
     Envelope(cmd::envelope::Args),
@@ -77,6 +81,7 @@ impl Command {
             Self::Verify(args) => args.output.json,
             Self::Import(args) => args.output.json,
             Self::Run(args) => args.output.json,
+            Self::Watch(args) => args.output.json,
             Self::Envelope(args) => args.output.json,
             Self::Verdicts(args) => args.output.json,
             Self::Reproduce(args) => args.output.json,
@@ -101,6 +106,7 @@ fn main() -> ExitCode {
         Command::Verify(args) => cmd::verify::run(args),
         Command::Import(args) => cmd::import::run(args),
         Command::Run(args) => cmd::run::run(args),
+        Command::Watch(args) => cmd::watch::run(args),
         Command::Envelope(args) => cmd::envelope::run(args),
         Command::Verdicts(args) => cmd::verdicts::run(args),
         Command::Reproduce(args) => cmd::reproduce::run(args),

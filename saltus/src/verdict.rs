@@ -38,6 +38,53 @@ pub(crate) fn lines(verdict: &Verdict) -> Vec<Line> {
     lines
 }
 
+/// The verdict as a sentence, for the top of a page.
+pub(crate) fn sentence(verdict: &Verdict) -> String {
+    let Some(first) = verdict.failures.first() else {
+        return "On target: flown as planned, standing where it should, hardware within its budgets.".to_owned();
+    };
+    let more = match verdict.failures.len() - 1 {
+        0 => String::new(),
+        1 => " One more measure fails.".to_owned(),
+        n => format!(" {n} more measures fail."),
+    };
+    let (meaning, unit) = meaning(&first.name);
+    format!(
+        "Not on target: {meaning}: {}{unit} at {:.3} s ({}).{more}",
+        first.found, first.time, first.name
+    )
+}
+
+/// What the name of a failure means, and the unit where what was found has none.
+fn meaning(name: &str) -> (&str, &str) {
+    match name {
+        "flight.position_m" => ("too far from the plan at its touchdown", ""),
+        "flight.rotation_deg" => ("turned away from the plan at its touchdown", ""),
+        "flight.com_gain_m" => ("the flight is not as high as asked for", ""),
+        "flight.sole_clearance_m" => ("the soles do not rise enough", ""),
+        "stand.upright" => ("it fell", ""),
+        "stand.feet_m" => ("the feet stand too far from the goal", ""),
+        "stand.heading_deg" => ("it heads elsewhere in the end", ""),
+        "stand.height_m" => ("it stands too low or too high", ""),
+        "stand.rotation_deg" => ("it stands askew", ""),
+        "hardware.saturation_ms.push_off" => ("motors at their limits in the push-off", " ms"),
+        "hardware.saturation_ms.flight" => ("motors at their limits in the flight", " ms"),
+        "hardware.saturation_ms.landing" => ("motors at their limits in the landing", " ms"),
+        "hardware.stop_ms" => ("joints at their stops", " ms"),
+        "hardware.stop_torque_nm" => ("a joint hits its stop", " N m"),
+        "hardware.overspeed_ms" => ("joints faster than their motors", " ms"),
+        "hardware.ground_force_10ms_weights" => ("the ground pushes too hard", " weights"),
+        "hardware.heat_share" => ("a winding gets too warm", " of what it bears"),
+        "hardware.supply_power_w" => ("more power than the supply has", " W"),
+        "fault" => ("the machine gave up", ""),
+        "no_takeoff" | "no_touchdown" => ("there was no jump", ""),
+        _ => {
+            let link = name.strip_prefix("hardware.links_touched.");
+            (link.unwrap_or(name), "")
+        }
+    }
+}
+
 /// In one line.
 fn words(found: &Found) -> String {
     let [push_off, flight, landing] = found.saturation.map(|x| 1e3 * x);

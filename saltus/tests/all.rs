@@ -22,3 +22,4 @@ mod run_robot;
 mod run_stored;
 mod streams;
 mod values;
+mod watch;

@@ -161,6 +161,24 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     ),
     (&["verify", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["verify", "nowhere"], &["nowhere", "check the path"]),
+    (&["watch"], &["<RUN>"]),
+    (&["watch", "nowhere"], &["nowhere", "check the path"]),
+    (
+        &["watch", "short.bin"],
+        &["short.bin is a file", "give the folder"],
+    ),
+    (
+        &["watch", "folder.urdf"],
+        &["folder.urdf has no report.html", "give a folder"],
+    ),
+    (
+        &["watch", ".", "--out", "here"],
+        &["--out is for several runs"],
+    ),
+    (
+        &["watch", "a", "b", "c", "d", "e", "f", "g"],
+        &["7 runs", "up to 6"],
+    ),
     (&["import", "folder.urdf"], &["folder.urdf", "give a file"]),
     (&["import", "urdf.txt"], &["urdf.txt", "not XML"]),
     (&["completions", "tcl"], &["bash", "zsh"]),
@@ -221,7 +239,16 @@ fn quiet_says_nothing_but_errors() {
 
 #[test]
 fn every_command_explains_itself_and_its_exit_codes() {
-    for command in ["plan", "verify", "import", "run", "envelope", "reproduce"] {
+    for command in [
+        "plan",
+        "verify",
+        "import",
+        "run",
+        "watch",
+        "envelope",
+        "verdicts",
+        "reproduce",
+    ] {
         let help = String::from_utf8(saltus(&[command, "--help"]).stdout).unwrap();
         assert!(
             help.contains("Examples:") && help.contains("Exit codes:"),

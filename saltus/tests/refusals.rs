@@ -124,6 +124,8 @@ fn what_cannot_be_is_said_before_the_work() {
             &["run", "a1/lateral", "--out", out],
             &["envelope", "a1/lateral", "--out", out],
             &["reproduce", "--quick", "--out", out],
+            &["verdicts", "--out", out],
+            &["watch", "one", "another", "--out", out],
             &["import", robot, "--out", out],
         ] {
             refused(&folder, arguments, &[out.get(..8).unwrap()]);

@@ -79,8 +79,9 @@ fn the_report_has_the_figures_of_the_paper() {
     assert!(crate::recording::agrees_with_csv(&folder) > 100);
     let path = folder.join("report.html");
     let page = std::fs::read_to_string(path).unwrap();
-    let data = page.split("const DATA = ").nth(1).unwrap();
-    let data: Value = serde_json::from_str(data.split(";</script>").next().unwrap()).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap();
+    let data: Value = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let data = &data["runs"][0];
     let titles: Vec<&str> = data["plots"]
         .as_array()
         .unwrap()
@@ -109,8 +110,8 @@ fn the_report_has_the_figures_of_the_paper() {
         high - low
     };
     assert!(spread(1) > 2.0 * spread(0), "{} {}", spread(0), spread(1));
-    let points = &data["frames"]["points"][0];
-    assert_eq!(points.as_array().unwrap().len(), 16);
+    let links = &data["frames"]["origins"][0];
+    assert_eq!(links.as_array().unwrap().len(), 23);
     for outside in ["src=\"http", "href=\"http", "import(\"http"] {
         assert!(!page.contains(outside), "{outside}");
     }

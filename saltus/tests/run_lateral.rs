@@ -73,7 +73,7 @@ fn lateral_lands_upright_on_its_target_and_leaves_a_report() {
     assert!(flight >= 0.25);
 
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("const DATA = {") && !report.contains("@DATA@"));
+    assert!(report.contains("id=\"data\">{\"version\":1,") && !report.contains("@DATA@"));
     for outside in ["src=\"http", "href=\"http", "@import"] {
         assert!(
             !report.contains(outside),

@@ -141,6 +141,8 @@ fn targets_are_tried_before_the_work() {
         &["envelope", "a1/lateral", "--out", "/proc/self"],
         &["envelope", "a1/lateral", "--out", "/proc/saltus"],
         &["reproduce", "--quick", "--out", "/proc/saltus"],
+        &["verdicts", "a1/lateral", "--out", "/proc/saltus"],
+        &["watch", "one", "another", "--out", "/proc/saltus"],
     ] {
         let output = saltus(&folder, arguments).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();

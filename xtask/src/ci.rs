@@ -86,7 +86,11 @@ const RELEASE: &[Step<'_>] = &[
         "long suites of the program",
         &["xtask", "suites", "program"],
     ),
-    ("the report in a browser", &["xtask", "report"]),
+    (
+        "pages in a browser",
+        // Of the runs whose verdicts were looked at before.
+        &["xtask", "report", "--gallery", "target/verdicts-check"],
+    ),
     ("instruction counts", &["xtask", "icount"]),
     ("the Python package", &["xtask", "python"]),
     ("publishable crates", &["xtask", "package"]),

@@ -72,7 +72,7 @@ enum Command {
     Icount(icount::Args),
     /// Import many robots, compile what comes out, and compare it with Pinocchio.
     ImportCheck(import_check::Args),
-    /// Look at the report of a run with a real browser: not blank, moving, no complaint on the console.
+    /// Look at reports, comparisons and the gallery with a real browser: not blank, moving, nothing under the ground, no complaint.
     Report(report::Args),
     /// Run both papers at their quick size and see that every item is there.
     Reproduce(reproduce::Args),

@@ -1,5 +1,7 @@
 //! `cargo xtask verdicts`: every task in both simulators ends as `jump-planner/tasks/expected.toml` says, and the document shows what came out.
 //!
+//! The same runs leave a gallery, so that nothing is simulated twice.
+//!
 //! A verdict that differs, for better or worse, fails and is named with its task: whoever changed it looks at the run and writes the new
 //! one down.
 
@@ -12,6 +14,8 @@ use crate::{mujoco, run};
 
 /// The file of expected verdicts.
 pub(crate) const EXPECTED: &str = "jump-planner/tasks/expected.toml";
+/// Where the runs' reports and their page are left, which `cargo xtask report` looks at.
+const GALLERY: &str = "target/verdicts-check";
 /// Where the table of verdicts stands.
 const DOCUMENT: &str = "docs/JUMPS.md";
 
@@ -20,8 +24,11 @@ const DOCUMENT: &str = "docs/JUMPS.md";
 pub(crate) struct Args {}
 
 pub(crate) fn run(_: &Args) -> Result<()> {
+    let gallery = run::root().join(GALLERY);
+    run::remove_folder(&gallery)?;
     let mut saltus = mujoco::saltus()?;
-    saltus.args(["verdicts", "--expect", EXPECTED]);
+    saltus.args(["verdicts", "--expect", EXPECTED, "--out"]);
+    saltus.arg(&gallery);
     let output = saltus.stderr(Stdio::inherit()).output()?;
     let table = String::from_utf8(output.stdout)?;
     print!("{table}");

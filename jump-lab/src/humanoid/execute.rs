@@ -40,6 +40,8 @@ pub struct Usage {
 pub struct Run {
     /// One per millisecond.
     pub samples: Vec<Sample>,
+    /// Of the robot that was planned for, N.
+    pub weight: f64,
     /// Of the machine, in the end.
     pub final_phase: Phase,
     /// Planned, s.
@@ -74,6 +76,7 @@ impl Run {
     fn new(task: &Task, jump: &Jump, weight: f64, tick: f64) -> Self {
         Self {
             samples: Vec::new(),
+            weight,
             final_phase: Phase::Hold,
             takeoff: jump.profile.duration,
             wanted_speed: jump.profile.speed,
@@ -275,6 +278,7 @@ fn record(world: &World, phase: Phase, wanted_height: f64, time: f64) -> Sample 
         torques: *world.plant().delivered(),
         forces_w: sole_forces(world),
         clearance: heights.into_iter().fold(f64::INFINITY, f64::min),
+        floor: world.moved(),
     }
 }
 

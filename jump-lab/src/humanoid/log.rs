@@ -39,6 +39,8 @@ pub struct Sample {
     pub forces_w: [Vector3<f64>; 2],
     /// Height of the lowest corner of both soles.
     pub clearance: f64,
+    /// By how much the floor has moved upwards, m.
+    pub floor: f64,
 }
 
 impl Sample {

@@ -44,6 +44,12 @@ impl<const N: usize, const C: usize> Ground<N, C> {
         q
     }
 
+    /// By how much the floor has moved upwards, m.
+    #[must_use]
+    pub const fn moved(&self) -> f64 {
+        self.moved
+    }
+
     /// How it moves.
     #[must_use]
     pub fn velocity(&self) -> &Tangent<f64, N> {
@@ -105,6 +111,7 @@ mod tests {
                 touched = touched.or(Some(now));
             }
         }
+        assert_eq!(ground.moved(), 0.05);
         // Legs hang down 0.2486 m below the base in this posture, with a ball of 0.02 m at their ends.
         let leg = 2.0 * 0.2 * so3::math::cos(0.9_f64) + 0.02;
         assert!((touched.unwrap() - leg - 0.05).abs() < 5e-3, "{touched:?}");

@@ -70,6 +70,8 @@ pub struct Run {
     pub plan_checksum: u32,
     /// One per millisecond.
     pub samples: Vec<Sample>,
+    /// Of the robot that was planned for, N.
+    pub weight: f64,
     /// Of the machine, in the end.
     pub final_phase: Phase,
     /// Why the machine gave up, where it did.
@@ -102,6 +104,7 @@ impl Run {
             robot: *robot,
             plan_checksum,
             samples: Vec::new(),
+            weight,
             final_phase: Phase::Hold,
             fault: None,
             first_contact: None,
@@ -382,8 +385,10 @@ pub(super) fn record(
         joint_velocities: v.joints,
         torques: *world.plant().delivered(),
         forces_w: *world.plant().contact_forces_w(),
+        floor: world.moved(),
         planned_position: node.map_or_else(Vector3::zeros, |n| n.base.translation),
         planned_joints: planned.joints,
+        planned_torques: planned.torques,
         planned_forces_w: node.map_or([Vector3::zeros(); FOOT_COUNT], |n| n.forces_w),
         commanded_forces_w: [Vector3::zeros(); FOOT_COUNT],
     }

@@ -173,8 +173,10 @@ mod tests {
             joint_velocities: [0.0; 12],
             torques: [0.0; 12],
             forces_w: [Vector3::zeros(); OWNERS],
+            floor: 0.0,
             planned_position: Vector3::zeros(),
             planned_joints: [0.0; 12],
+            planned_torques: [0.0; 12],
             planned_forces_w: [Vector3::zeros(); 4],
             commanded_forces_w: [Vector3::zeros(); 4],
         }

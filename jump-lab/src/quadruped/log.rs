@@ -32,10 +32,14 @@ pub struct Sample {
     pub torques: [f64; JOINTS],
     /// Of the ground on feet and links, world axes, N.
     pub forces_w: [Vector3<f64>; OWNERS],
+    /// By how much the floor has moved upwards, m.
+    pub floor: f64,
     /// Of the base in the world, m.
     pub planned_position: Vector3<f64>,
     /// Positions, rad.
     pub planned_joints: [f64; JOINTS],
+    /// Feed-forward of the plan, N m.
+    pub planned_torques: [f64; JOINTS],
     /// On the feet, by the plan's last node.
     pub planned_forces_w: [Vector3<f64>; FOOT_COUNT],
     /// What the landing's quadratic program commanded in this millisecond; zero where there was none.

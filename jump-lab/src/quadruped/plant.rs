@@ -26,12 +26,18 @@ fn settings(robot: &Quadruped, disturbance: &Disturbance) -> Settings<f64, JOINT
     settings
 }
 
+/// The ground at the start of a task: a box is as high as it is, a floor where it is known until it moves.
+#[must_use]
+pub fn ground(task: &Task, disturbance: &Disturbance) -> Terrain<f64> {
+    terrain(task, height_error(disturbance))
+}
+
 /// The plant at the start of a task.
 ///
 /// # Errors
 /// What stands against the disturbed robot or the simulator.
 pub fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
-    let terrain = terrain(task, height_error(disturbance));
+    let terrain = ground(task, disturbance);
     let mut plant = simulator(sim, &task.robot, (&terrain, &task.start), disturbance)?;
     plant.reset(&task.start, &Tangent::ZERO);
     // A box has its own height; a floor that is start and landing has to move.

@@ -14,3 +14,4 @@ pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod verdicts;
 pub(crate) mod verify;
+pub(crate) mod watch;

@@ -2,4 +2,5 @@
 
 pub(crate) mod json;
 pub(crate) mod report;
+pub(crate) mod strip;
 pub(crate) mod table;

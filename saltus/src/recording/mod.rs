@@ -100,10 +100,10 @@ fn write(
     for (k, row) in log.rows.iter().enumerate() {
         let nanoseconds = ((row.time - begin) * 1e9).round() as u64;
         let mut fields = Map::new();
-        fields.insert("time".to_owned(), round(row.time, 4));
+        fields.insert("time".to_owned(), json!(round(row.time, 4)));
         fields.insert("phase".to_owned(), json!(row.phase));
         let numbers = log.columns.iter().zip(&row.numbers);
-        fields.extend(numbers.map(|(name, x)| (name.clone(), round(*x, 6))));
+        fields.extend(numbers.map(|(name, x)| (name.clone(), json!(round(*x, 6)))));
         say(&mut writer, 0, nanoseconds, &Value::Object(fields))?;
         if !k.is_multiple_of(FRAME) {
             continue;

@@ -77,6 +77,8 @@ const COMMANDS: &[&str] = &[
     "import MJCF --out new --base fixed",
     "import MJCF --json",
     "verdicts --expect EXPECTED TASK",
+    "watch TASK",
+    "watch TASK ROBOT --no-open --out new",
     "reproduce --quick --expect EXPECTED --out EXPECTED",
     "envelope TASK --out TASK",
     "completions bash",

@@ -143,7 +143,10 @@ fn half_made(folder: &Path) -> Option<String> {
         let begun = fs::read_dir(&path).into_iter().flatten().flatten();
         let empty = begun.count() == 0;
         let plan = has("plan.bin") == has("plan.json");
-        let run = has("log.csv") == has("result.json") && has("log.csv") == has("report.html");
+        // A gallery keeps of a run its report and its picture alone.
+        let kept = has("report.html") && has("strip.svg");
+        let run =
+            has("log.csv") == has("result.json") && (kept || has("log.csv") == has("report.html"));
         let model = has("Cargo.toml") == has("src/lib.rs");
         if empty || !(plan && run && model) {
             return Some(format!("the folder {name} is half made"));

@@ -9,6 +9,7 @@ use super::interrupt;
 use super::output::Output;
 use crate::humanoid::{report as pushed, table};
 use crate::quadruped::report as flown;
+use crate::report::{About, Line, words};
 use core::ops::ControlFlow;
 use indicatif::ProgressBar;
 use jump_lab::Sim;
@@ -18,6 +19,7 @@ use jump_lab::lab::Disturbance;
 use jump_lab::papers::{self, Row, Watch};
 use jump_lab::quadruped::Planned;
 use jump_lab::quadruped::execute::Run;
+use jump_lab::verdict::Verdict;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -139,14 +141,25 @@ impl Watch for Reports<'_> {
             ("task", jump.task.name.clone(), None),
             ("result", end.to_owned(), None),
         ];
-        let html = flown::html(&jump.task, &jump.reference, run, &table);
-        self.write(name, Ok(html));
+        let about = about(&jump.judge(run).verdict, &table);
+        self.write(name, flown::html(&jump.task, &jump.reference, run, about));
     }
 
     fn pushed(&mut self, name: &str, task: &Task, sim: Sim, [held, free]: [&Push; 2]) {
         let judged = judge::Judged::of(task, held);
         let table = table::table(&judged, task, held, sim.name(), &Disturbance::NOMINAL);
-        self.write(name, pushed::html(task, held, Some(free), &table));
+        let about = about(&judged.verdict, &table);
+        self.write(name, pushed::html(task, held, Some(free), about));
+    }
+}
+
+/// Of a nominal run, which has no result of its own.
+fn about<'a>(verdict: &Verdict, table: &'a [Line]) -> About<'a> {
+    About {
+        disturbance: &Disturbance::NOMINAL,
+        verdict: words(verdict),
+        result: Value::Null,
+        table,
     }
 }
 

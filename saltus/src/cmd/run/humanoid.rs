@@ -3,7 +3,8 @@
 use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::check_new;
-use crate::humanoid::{json, report, table};
+use crate::humanoid::{json, report, strip, table};
+use crate::report::{About, words};
 use jump_lab::humanoid::{Task, execute, judge::Judged, log};
 use jump_lab::lab::Lab;
 use std::process::ExitCode;
@@ -42,13 +43,19 @@ pub(super) fn run(args: &Args, task: &Task) -> Result<ExitCode, Failure> {
         }
     }
     let log = log::table(&run.samples);
+    let about = About {
+        disturbance: &disturbance,
+        verdict: words(&judged.verdict),
+        result: result.clone(),
+        table: &table,
+    };
     let files = Files {
         task: task.name(),
         mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
         log: &log,
+        report: report::html(task, &run, free.as_ref(), about)?,
         result: &result,
-        report: report::html(task, &run, free.as_ref(), &table)?,
-        strip: None,
+        strip: strip::svg(&run),
     };
     files.publish(args)?;
     Ok(code(judged.verdict.on_target()))

@@ -149,8 +149,8 @@ struct Files<'a> {
     mcap: Vec<u8>,
     result: &'a Value,
     report: String,
-    /// The jump in one picture, where there is one.
-    strip: Option<String>,
+    /// The jump in one picture.
+    strip: String,
 }
 
 impl Files<'_> {
@@ -158,14 +158,13 @@ impl Files<'_> {
     fn publish(&self, args: &Args) -> Result<(), Failure> {
         let result = format!("{:#}\n", self.result);
         let csv = self.log.csv();
-        let mut files = vec![
+        let files = [
             ("log.csv", csv.as_bytes()),
             ("log.mcap", self.mcap.as_slice()),
             ("result.json", result.as_bytes()),
             ("report.html", self.report.as_bytes()),
+            ("strip.svg", self.strip.as_bytes()),
         ];
-        let strip = self.strip.iter();
-        files.extend(strip.map(|svg| ("strip.svg", svg.as_bytes())));
         let folder = publish(args.out.as_deref(), self.task, &files)?;
         if args.output.json {
             say!("{}", self.result);

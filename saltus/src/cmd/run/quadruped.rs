@@ -4,7 +4,7 @@ use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{check_file, check_new, describe, write_file};
 use crate::quadruped::{json as result_json, report, strip};
-use crate::report::Line;
+use crate::report::{About, Line, words};
 use crate::verdict;
 use indicatif::ProgressBar;
 use jump_lab::lab::Lab;
@@ -87,13 +87,19 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         }
     }
     let log = log::table(&task.robot, &run.samples);
+    let about = About {
+        disturbance: &trial.disturbance,
+        verdict: words(&judged.verdict),
+        result: result.clone(),
+        table: &table,
+    };
     let files = Files {
         task: &task.name,
-        mcap: report::mcap(task, &run, &log).map_err(Failure::Outside)?,
+        mcap: report::mcap(task, &run, &trial.disturbance, &log).map_err(Failure::Outside)?,
         log: &log,
+        report: report::html(task, reference, &run, about)?,
         result: &result,
-        report: report::html(task, reference, &run, &table),
-        strip: Some(strip::svg(task, &run, reference.takeoff)),
+        strip: strip::svg(task, &run, &trial.disturbance, reference.takeoff),
     };
     files.publish(args)?;
     Ok(code(judged.verdict.on_target()))

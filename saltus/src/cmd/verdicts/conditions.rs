@@ -49,7 +49,7 @@ pub(super) fn run(
             ("", interface) => interface.to_string(),
             (plant, _) => plant.to_owned(),
         };
-        let cells = judge(subjects, sims, &condition, bar);
+        let cells = judge(subjects, sims, &condition, None, bar)?;
         let word = |cell: &Cell| {
             let word = if cell.on_target() {
                 "yes"
@@ -67,7 +67,7 @@ pub(super) fn run(
         }
     }
     if args.lab > 0 && !interrupt::asked() {
-        columns.push(lab(args.lab, subjects, sims, bar));
+        columns.push(lab(args.lab, subjects, sims, bar)?);
     }
     bar.finish_and_clear();
     let rows: Vec<(&str, Sim)> = subjects
@@ -90,7 +90,12 @@ pub(super) fn run(
 const TOLD: usize = 3;
 
 /// So many seeds of the lab: how many are on target, and what failed first in the others.
-fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Column {
+fn lab(
+    seeds: u64,
+    subjects: &[Subject],
+    sims: &[Sim],
+    bar: &ProgressBar,
+) -> Result<Column, Failure> {
     let mut good = vec![0_u64; subjects.len() * sims.len()];
     let mut failed = vec![BTreeMap::<String, u64>::new(); good.len()];
     let mut done = 0;
@@ -102,7 +107,10 @@ fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Col
             seed,
             ..Condition::NOMINAL
         };
-        for (i, cell) in judge(subjects, sims, &condition, bar).iter().enumerate() {
+        for (i, cell) in judge(subjects, sims, &condition, None, bar)?
+            .iter()
+            .enumerate()
+        {
             if cell.on_target() {
                 good[i] += 1;
             } else {
@@ -128,10 +136,10 @@ fn lab(seeds: u64, subjects: &[Subject], sims: &[Sim], bar: &ProgressBar) -> Col
         };
         (text, *good == done)
     });
-    Column {
+    Ok(Column {
         title: format!("{seeds} labs"),
         cells: cells.collect(),
-    }
+    })
 }
 
 fn markdown(rows: &[(&str, Sim)], columns: &[Column]) -> String {

@@ -2,14 +2,17 @@
 
 mod agreement;
 mod conditions;
+mod gallery;
 mod measures;
 mod ranges;
 mod subject;
 
 use super::expected::{Expected, Found};
 use super::failure::Failure;
+use super::folder::check_new;
 use super::interrupt;
 use super::output::{Output, sims, whole};
+use gallery::Gallery;
 use indicatif::ProgressBar;
 use jump_lab::Sim;
 use jump_lab::lab::{Interface, PlantArgument};
@@ -49,6 +52,9 @@ pub(crate) struct Args {
     /// A file of expected verdicts, which replaces the tasks: exit code 2 where one differs, and its name.
     #[arg(long, conflicts_with_all = ["tasks", "conditions"])]
     expect: Option<PathBuf>,
+    /// New folder for a gallery: a page of all tasks with their pictures, and the report of every run.
+    #[arg(long, conflicts_with_all = ["conditions", "agreement"])]
+    out: Option<PathBuf>,
     /// Print what may differ from the plan and the lab's ranges, and nothing else.
     #[arg(long, exclusive = true)]
     ranges: bool,
@@ -91,6 +97,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         None if args.tasks.is_empty() => subject::A1.map(str::to_owned).to_vec(),
         None => args.tasks.clone(),
     };
+    args.out
+        .as_deref()
+        .map_or(Ok(()), |out| check_new(Some(out)))?;
     let bar = args.output.bar(
         names.len() as u64,
         "{msg:9} [{bar:40}] {pos}/{len} {elapsed}",
@@ -113,15 +122,20 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     if args.conditions {
         return conditions::run(args, &subjects, &sims, &bar);
     }
-    let cells = judge(&subjects, &sims, &args.condition(), &bar);
+    let gallery = args.out.as_deref().map(|out| Gallery::create(out, &names));
+    let gallery = gallery.transpose()?;
+    let cells = judge(&subjects, &sims, &args.condition(), gallery.as_ref(), &bar)?;
     bar.finish_and_clear();
+    let verdicts = json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() });
+    let page = gallery.map(|gallery| gallery.finish(&cells, &verdicts));
+    let page = page.transpose()?;
     if args.output.json {
-        say!(
-            "{}",
-            json!({ "verdicts": cells.iter().map(Cell::json).collect::<Vec<_>>() })
-        );
+        say!("{verdicts}");
     } else if !args.output.quiet {
         put!("{}", measures::table(&cells));
+        if let Some(page) = page {
+            tell!("gallery: {}", page.display());
+        }
     }
     match expected {
         Some(expected) => {
@@ -138,8 +152,9 @@ fn judge(
     subjects: &[Subject],
     sims: &[Sim],
     condition: &Condition,
+    gallery: Option<&Gallery>,
     bar: &ProgressBar,
-) -> Vec<Cell> {
+) -> Result<Vec<Cell>, Failure> {
     let pairs: Vec<(&Subject, Sim)> = subjects
         .iter()
         .flat_map(|subject| sims.iter().map(move |sim| (subject, *sim)))
@@ -148,7 +163,7 @@ fn judge(
     bar.set_length(pairs.len() as u64);
     bar.set_position(0);
     let cells = pairs.par_iter().map(|(subject, sim)| {
-        let cell = subject.judge(*sim, condition);
+        let cell = subject.judge(*sim, condition, gallery);
         bar.inc(1);
         cell
     });

@@ -1,6 +1,10 @@
 //! What is judged: a task with its plan, run under a condition.
 
+use super::gallery::{Gallery, Kept};
 use crate::cmd::expected::Found;
+use crate::cmd::failure::Failure;
+use crate::report::{About, words};
+use crate::{humanoid as told, quadruped, verdict};
 use jump_lab::Sim;
 use jump_lab::humanoid;
 use jump_lab::lab::{Interface, Lab, PlantArgument};
@@ -62,7 +66,7 @@ impl Subject {
     pub(super) fn load(name: &str) -> Result<Self, String> {
         let kind = match humanoid::Task::variant(name) {
             Some(task) => Kind::Humanoid(task),
-            None => quadruped(Task::load(name)?),
+            None => planned(Task::load(name)?),
         };
         Ok(Self {
             name: name.to_owned(),
@@ -74,18 +78,29 @@ impl Subject {
         matches!(self.kind, Kind::Humanoid(_))
     }
 
-    /// Runs it.
-    pub(super) fn judge(&self, sim: Sim, condition: &Condition) -> Cell {
-        let verdict = match &self.kind {
+    /// Runs it; a gallery keeps its report.
+    pub(super) fn judge(
+        &self,
+        sim: Sim,
+        condition: &Condition,
+        gallery: Option<&Gallery>,
+    ) -> Result<Cell, Failure> {
+        let shown = gallery.is_some();
+        let flown = match &self.kind {
             Kind::NoPlan(why) => Err(why.clone()),
-            Kind::Quadruped(task, reference) => fly(task, reference, sim, condition),
-            Kind::Humanoid(task) => rise(task, sim, condition),
+            Kind::Quadruped(task, reference) => fly(task, reference, sim, condition, shown),
+            Kind::Humanoid(task) => rise(task, sim, condition, shown),
         };
-        Cell {
+        let (verdict, pages) = flown.map_or_else(|why| (Err(why), None), |(v, p)| (Ok(v), p));
+        let keep = |(gallery, pages): (&Gallery, Pages)| {
+            gallery.keep(&self.name, sim, &pages.report, pages.strip)
+        };
+        Ok(Cell {
             task: self.name.clone(),
             sim,
             verdict,
-        }
+            kept: gallery.zip(pages).map(keep).transpose()?,
+        })
     }
 }
 
@@ -121,7 +136,7 @@ impl Subject {
     }
 }
 
-fn quadruped(task: Task) -> Kind {
+fn planned(task: Task) -> Kind {
     if let Some(proof) = impossible(&task) {
         return Kind::NoPlan(Answer::proven(proof).text());
     }
@@ -139,7 +154,8 @@ fn fly(
     reference: &Reference,
     sim: Sim,
     condition: &Condition,
-) -> Result<Verdict, String> {
+    shown: bool,
+) -> Result<Flown, String> {
     let trial = Trial {
         disturbance: PlantArgument::plant(condition.plant.as_ref(), Lab::A1, condition.seed),
         seed: condition.seed,
@@ -147,23 +163,72 @@ fn fly(
         ..Trial::nominal(sim)
     };
     let run = execute::run_watched(task, reference, trial, |_, _| {}, |_, _| {}, |_| {})?;
-    Ok(Judged::of(task, reference, &run).verdict)
+    let judged = Judged::of(task, reference, &run);
+    if !shown {
+        return Ok((judged.verdict, None));
+    }
+    let mut table = vec![("task", task.name.clone(), None)];
+    table.extend(verdict::lines(&judged.verdict));
+    let how = format!("{} simulator, interface {}", sim.name(), trial.interface);
+    table.push(("simulated", how, None));
+    let about = About {
+        disturbance: &trial.disturbance,
+        verdict: words(&judged.verdict),
+        result: quadruped::json::json(&judged, task, None, reference, &run, &trial),
+        table: &table,
+    };
+    let pages = Pages {
+        report: quadruped::report::html(task, reference, &run, about)?,
+        strip: quadruped::strip::svg(task, &run, &trial.disturbance, reference.takeoff),
+    };
+    Ok((judged.verdict, Some(pages)))
 }
 
-fn rise(task: &humanoid::Task, sim: Sim, condition: &Condition) -> Result<Verdict, String> {
+fn rise(
+    task: &humanoid::Task,
+    sim: Sim,
+    condition: &Condition,
+    shown: bool,
+) -> Result<Flown, String> {
     if condition.interface != Interface::Torque {
         return Err("iCub's joints take torques".to_owned());
     }
     let plant = PlantArgument::plant(condition.plant.as_ref(), Lab::Icub, condition.seed);
     let run = humanoid::execute::run(task, sim, &plant, condition.seed, |_, _| {})?;
-    Ok(humanoid::judge::Judged::of(task, &run).verdict)
+    let judged = humanoid::judge::Judged::of(task, &run);
+    if !shown {
+        return Ok((judged.verdict, None));
+    }
+    let from = (sim.name(), condition.seed);
+    let about = About {
+        disturbance: &plant,
+        verdict: words(&judged.verdict),
+        result: told::json::json(&judged, task, &run, from, &plant),
+        table: &told::table::table(&judged, task, &run, sim.name(), &plant),
+    };
+    let pages = Pages {
+        report: told::report::html(task, &run, None, about)?,
+        strip: told::strip::svg(&run),
+    };
+    Ok((judged.verdict, Some(pages)))
 }
+
+/// What a gallery keeps of a run.
+struct Pages {
+    report: String,
+    strip: String,
+}
+
+/// A run's verdict, with its pages where they are wanted.
+type Flown = (Verdict, Option<Pages>);
 
 /// One verdict of the table; an error where there was nothing to judge.
 pub(super) struct Cell {
     pub(super) task: String,
     pub(super) sim: Sim,
     pub(super) verdict: Result<Verdict, String>,
+    /// What a gallery has of it.
+    pub(super) kept: Option<Kept>,
 }
 
 impl Cell {
@@ -181,6 +246,14 @@ impl Cell {
         match &self.verdict {
             Ok(verdict) => verdict.first(),
             Err(why) => format!("NO: {}", why.replace('\n', " ")),
+        }
+    }
+
+    /// The same as a sentence.
+    pub(super) fn sentence(&self) -> String {
+        match &self.verdict {
+            Ok(verdict) => verdict::sentence(verdict),
+            Err(why) => format!("No run: {}", why.replace('\n', " ")),
         }
     }
 
