@@ -19,6 +19,8 @@ def world(urdf: str, robot: saltus.Robot) -> mujoco.MjModel:
     """The URDF on a floor, with an IMU in its base; of its shapes those of the feet alone, as the planner knows them."""
     spec = mujoco.MjSpec.from_file(urdf)
     spec.option.timestep = 1e-4
+    # As public models of quadrupeds have it: with MuJoCo's defaults feet creep under load, and estimate and jump go astray.
+    spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100
     base = spec.worldbody.first_body()
     base.add_freejoint()
     base.add_site(name="imu")
