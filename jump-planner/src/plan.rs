@@ -72,7 +72,7 @@ pub fn plan(
 }
 
 /// As [`plan`], for a task that differs little from the one that `kept` is of: in its goal, friction, masses or posture. Both stages begin
-/// with the motions and multipliers that are kept, on the same intervals, and take a third to two thirds of the iterations.
+/// with the motions and multipliers that are kept, on the same intervals, and take about half of the iterations.
 ///
 /// Where that leads nowhere the task is planned from the start; so it is where its phases are others or its durations free.
 ///
