@@ -123,8 +123,8 @@ fn plans_are_made_again_where_the_first_way_ends() {
     // Whose durations, and whether it takes the search.
     let cases = [
         (
-            "spin-270",
-            longer.replace("90.0", "270.0"),
+            "spin-240",
+            longer.replace("90.0", "240.0"),
             "whole body",
             true,
         ),
