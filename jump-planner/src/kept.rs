@@ -9,7 +9,7 @@ use wb_opt::State;
 
 /// The motions of a plan's two stages and the multipliers of their limits: where [`replan`](crate::replan) begins.
 ///
-/// About as large as the solver's own storage, some 10 MB.
+/// As large as the solver's own storage.
 #[derive(Clone)]
 pub struct Kept {
     /// Nodes of the rigid body's plan.

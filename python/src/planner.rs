@@ -57,7 +57,7 @@ fn timing(name: &str) -> PyResult<Timing> {
 /// after every iteration of a solver; whatever it raises stops the planner and is raised here. `timing` is "given", from the rigid
 /// body's plan, or "free", unknowns of the whole body's problem. `within` is the time there is, s, which ends an iteration or an audit
 /// late; None: as much as it takes. `near` is a plan of a task that differs little, in its goal, friction or robot: planning begins with what it
-/// found, where phases are the same and timings given.
+/// found, where phases are the same and timings given. A plan that was loaded keeps nothing to begin with.
 ///
 /// Raises Infeasible with the proof, NotFound or AuditFailed with the reason, OutOfTime with what stood in the way, and BadInput.
 #[pyfunction]

@@ -129,8 +129,7 @@ impl WbTask {
 /// `solve`. Where everything together is impossible, first held tasks yield, then limits on motion, then contacts; torque limits and friction
 /// always hold. It has room for 24 rows of one's own, and for 8 with slack.
 ///
-/// Sizes are those of a robot with twelve joints, fixed when the package is built. A tick from Python takes some ten microseconds per task
-/// beside the search.
+/// Sizes are those of a robot with twelve joints, fixed when the package is built.
 #[pyclass(module = "saltus")]
 pub(crate) struct TorqueQp {
     robot: Quadruped,
