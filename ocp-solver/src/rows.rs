@@ -208,16 +208,8 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
             };
             rows.slack[i] = rows.inside(i, s);
             let (below, above) = rows.distances(i);
-            rows.below[i] = if l.is_finite_number() {
-                mu / below
-            } else {
-                T::ZERO
-            };
-            rows.above[i] = if h.is_finite_number() {
-                mu / above
-            } else {
-                T::ZERO
-            };
+            // Nothing where there is no bound: its distance is infinite.
+            (rows.below[i], rows.above[i]) = (mu / below, mu / above);
         }
     }
 
