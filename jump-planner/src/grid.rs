@@ -273,7 +273,11 @@ impl<'a> Grid<'a> {
         settings: &Settings<f64>,
         watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
     ) -> Result<WholeBodyPlan, String> {
-        let mut problem = self.setup.problem(drawn);
+        let clearances = self.setup.clearances(drawn);
+        let mut problem = Problem {
+            clearances: &clearances,
+            ..self.setup.problem(drawn)
+        };
         for limit in problem.robot.limits.iter_mut().skip(BASE) {
             limit.effort *= self.torque_share;
         }

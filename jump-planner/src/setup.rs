@@ -191,7 +191,22 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// The problem, with all the torque there is, within limits drawn in.
+    /// How much higher limits drawn in keep the robot over the ground, m.
+    fn rise(&self, drawn: &Tightening) -> f64 {
+        drawn.height * self.task.robot.leg_length
+    }
+
+    /// What stays clear of the ground, of [`Self::problem`] within limits drawn in.
+    pub(crate) fn clearances(&self, drawn: &Tightening) -> Vec<Clearance<f64>> {
+        let rise = self.rise(drawn);
+        let raised = |clearance: &Clearance<f64>| Clearance {
+            height: clearance.height + rise,
+            ..*clearance
+        };
+        self.clearances.iter().map(raised).collect()
+    }
+
+    /// The problem, with all the torque there is, within limits drawn in but those of [`Self::clearances`].
     pub(crate) fn problem(&self, drawn: &Tightening) -> Problem<'_, f64, N, FOOT_COUNT> {
         let task = self.task;
         let rigid = &task.problem;
@@ -206,11 +221,12 @@ impl<'a> Setup<'a> {
             clearances: &self.clearances,
             // A foot that grazes the edge of a box turns the robot over.
             swing_height: task.robot.foot_radius,
-            swing_rise: if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
-                ONTO_RISE
-            } else {
-                0.0
-            },
+            swing_rise: self.rise(drawn)
+                + if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
+                    ONTO_RISE
+                } else {
+                    0.0
+                },
             edge: cautious(task),
             phases: &self.phases,
             reference: &self.reference,

@@ -9,7 +9,7 @@ use crate::audit::{Audit, Limit};
 /// How much more than what was exceeded limits are drawn in, since the plan that follows is another one.
 const FACTOR: f64 = 1.5;
 
-/// Shares of their ranges by which limits are drawn in.
+/// Shares of their ranges by which limits are drawn in; of heights, of the leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tightening {
     /// Ranges of the joints, at both ends.
@@ -20,6 +20,8 @@ pub struct Tightening {
     pub torque: f64,
     /// The friction cone, whose apex rises by that share of the largest normal force.
     pub friction: f64,
+    /// Heights over the ground: of feet on their way, of knees and of the trunk.
+    pub height: f64,
 }
 
 impl Tightening {
@@ -29,7 +31,7 @@ impl Tightening {
         let (mut before, mut next) = (*self, *self);
         // Links that pass through each other are no matter of margins, and the plan is a motion all the same.
         let exceeded = audit.exceeded()?;
-        for margin in exceeded.filter(|margin| margin.limit != Limit::Clearance) {
+        for margin in exceeded.filter(|margin| margin.limit != Limit::Robot) {
             let drawn = *before.share(margin.limit)? - FACTOR * margin.value;
             let share = next.share(margin.limit)?;
             *share = share.max(drawn);
@@ -43,7 +45,8 @@ impl Tightening {
             Limit::Speed => Some(&mut self.speed),
             Limit::Torque => Some(&mut self.torque),
             Limit::Friction => Some(&mut self.friction),
-            Limit::NormalForce | Limit::Height | Limit::Clearance => None,
+            Limit::Height | Limit::Ground => Some(&mut self.height),
+            Limit::NormalForce | Limit::Robot => None,
         }
     }
 }
@@ -55,6 +58,7 @@ impl core::fmt::Display for Tightening {
             (self.speed, "speeds"),
             (self.torque, "torques"),
             (self.friction, "friction"),
+            (self.height, "heights"),
         ] {
             if share > 0.0 {
                 write!(f, ", {limit} drawn in by {:.1} %", 100.0 * share)?;
@@ -108,12 +112,31 @@ mod tests {
     }
 
     #[test]
+    fn a_link_in_the_ground_raises_all_heights() {
+        let margins = [
+            (Limit::Ground, -0.03),
+            (Limit::Height, -0.02),
+            (Limit::Robot, -0.5),
+        ];
+        let raised = Tightening::default().after(&audit(&margins)).unwrap();
+        let height = FACTOR * 0.03;
+        assert_eq!(
+            raised,
+            Tightening {
+                height,
+                ..Tightening::default()
+            }
+        );
+        assert_eq!(raised.to_string(), ", heights drawn in by 4.5 %");
+    }
+
+    #[test]
     fn nothing_is_drawn_in_where_that_is_no_remedy() {
         let none = |margins: &[(Limit, f64)]| Tightening::default().after(&audit(margins));
         assert_eq!(none(&[(Limit::Friction, -0.005)]), None);
-        assert_eq!(none(&[(Limit::Clearance, -0.5)]), None);
+        assert_eq!(none(&[(Limit::Robot, -0.5)]), None);
         assert_eq!(
-            none(&[(Limit::Height, -0.1), (Limit::Friction, -0.1)]),
+            none(&[(Limit::NormalForce, -0.1), (Limit::Friction, -0.1)]),
             None
         );
         let mut untrue = audit(&[(Limit::Friction, -0.1)]);

@@ -244,6 +244,7 @@ impl Attempt {
                 "speed": drawn.speed,
                 "torque": drawn.torque,
                 "friction": drawn.friction,
+                "height": drawn.height,
             },
             "status": format!("{:?}", self.status),
             "iterations": self.iterations,

@@ -1,5 +1,6 @@
 //! Whether the robot, with the shapes of all its links, passes through the ground, a box or itself.
 
+use super::Limit;
 use super::interval::Held;
 use crate::robot::{JOINTS, LEGS, OWNER_COUNT, Quadruped, SHAPE_COUNT, State};
 use crate::terrain::over_edge;
@@ -10,8 +11,11 @@ use rbd_core::Kinematics;
 
 /// How far a box reaches, m: beyond everything.
 const FAR: f64 = 10.0;
-/// What ends the names of these margins.
-const KINDS: [&str; 2] = ["to the ground", "to the robot"];
+/// The kinds of these margins, and what ends their names.
+const KINDS: [(Limit, &str); 2] = [
+    (Limit::Ground, "to the ground"),
+    (Limit::Robot, "to the robot"),
+];
 
 /// The shapes of a robot in the world of a plan.
 pub(crate) struct Clearance {
@@ -44,12 +48,12 @@ impl Clearance {
         }
     }
 
-    /// Names of the margins: of every link to the ground and to the rest of the robot.
-    pub(crate) fn names(&self) -> impl Iterator<Item = String> + use<> {
+    /// Kinds and names of the margins: of every link to the ground and to the rest of the robot.
+    pub(crate) fn names(&self) -> impl Iterator<Item = (Limit, String)> + use<> {
         self.robot
             .owners
             .into_iter()
-            .flat_map(|owner| KINDS.map(|kind| format!("{owner} {kind}")))
+            .flat_map(|owner| KINDS.map(|(kind, name)| (kind, format!("{owner} {name}"))))
     }
 
     /// The smallest gaps in the order of the names, m. Feet that stand touch the ground, and so may all in the last interval.

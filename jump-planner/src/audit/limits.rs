@@ -58,7 +58,7 @@ impl<'a> Limits<'a> {
             limits: names
                 .chain(feet)
                 .chain([(Limit::Height, "trunk height".to_owned())])
-                .chain(clearance.names().map(|name| (Limit::Clearance, name)))
+                .chain(clearance.names())
                 .collect(),
             clearance,
         }

@@ -53,8 +53,17 @@ pub enum Limit {
     NormalForce,
     /// Height over the ground of a foot, a knee or the trunk.
     Height,
-    /// Gap of a link to the ground or to the rest of the robot.
-    Clearance,
+    /// Gap of a link to the ground.
+    Ground,
+    /// Gap of a link to the rest of the robot.
+    Robot,
+}
+
+impl Limit {
+    /// Whether it is a gap between shapes, which a plan may lack and be a motion all the same.
+    pub(crate) const fn is_gap(self) -> bool {
+        matches!(self, Self::Ground | Self::Robot)
+    }
 }
 
 /// The smallest distance from one limit over the whole plan.
@@ -166,7 +175,7 @@ impl Audit {
     #[must_use]
     pub fn is_a_motion(&self) -> bool {
         self.exceeded()
-            .is_some_and(|mut beyond| beyond.all(|margin| margin.limit == Limit::Clearance))
+            .is_some_and(|mut beyond| beyond.all(|margin| margin.limit.is_gap()))
     }
 
     /// The limits that are exceeded; none is told of a plan that is not true to the dynamics.
@@ -222,7 +231,7 @@ impl Audit {
         }
         let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
         told.extend(beyond.map(|m| {
-            if m.limit == Limit::Clearance {
+            if m.limit.is_gap() {
                 let deep = -1e3 * m.value * self.leg_length;
                 let through = m.name.replace(" to ", " passes through ");
                 return format!("{through} by {deep:.0} mm at {:.3} s", m.time);
