@@ -76,15 +76,11 @@ impl Image<'_> {
         self.build_with(self.board.rustflags, &[])
     }
 
-    /// As [`Image::build`], with other compiler flags and with features.
-    pub(crate) fn build_with(&self, rustflags: &[&str], features: &[&str]) -> Result<PathBuf> {
+    /// As [`Image::build`], with other compiler flags and more arguments of cargo.
+    pub(crate) fn build_with(&self, rustflags: &[&str], arguments: &[&str]) -> Result<PathBuf> {
         let mut build = self.command_with(rustflags);
-        build.args([
-            "--quiet",
-            "--message-format=json-render-diagnostics",
-            "--features",
-        ]);
-        build.arg(features.join(",")).stderr(Stdio::inherit());
+        build.args(["--quiet", "--message-format=json-render-diagnostics"]);
+        build.args(arguments).stderr(Stdio::inherit());
         let messages = run::stdout(&mut build)?;
         let executable = run::executables(&messages).next();
         executable.with_context(|| format!("cargo built no executable of {}", self.name))

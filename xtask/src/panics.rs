@@ -10,10 +10,18 @@ use object::{Object, ObjectSection, ObjectSymbol, RelocationTarget};
 use crate::image::Image;
 use crate::run;
 
+/// Arguments of cargo for the image that is searched: whoever started this program may do without line tables.
+const FINDING: [&str; 4] = [
+    "--features",
+    "find_panics",
+    "--config",
+    "profile.release.debug=\"line-tables-only\"",
+];
+
 /// Every place, as the chain of inlined calls around it, innermost first.
 pub(crate) fn find(image: &Image<'_>) -> Result<Vec<String>> {
     let flags = [image.board.rustflags, &["-Clink-arg=--emit-relocs"]].concat();
-    let path = image.build_with(&flags, &["find_panics"])?;
+    let path = image.build_with(&flags, &FINDING)?;
     let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
     let elf = object::File::parse(&*bytes)?;
     let lines = Loader::new(&path).map_err(|e| anyhow!("{}: {e}", path.display()))?;
