@@ -181,7 +181,7 @@ impl Material {
             trial.arguments.push(word);
         }
         if random.once_in(3) {
-            self.disturb(&mut trial.arguments, random);
+            self.disturb(&mut trial, random);
         }
         trial
     }
@@ -212,8 +212,10 @@ impl Material {
         name.into_bytes()
     }
 
-    /// A command line with one more option, or without a word, or with another.
-    fn disturb(&self, arguments: &mut Vec<Vec<u8>>, random: &mut Random) {
+    /// A command line with one more option, or with another word. Targets that are taken stay: work that is right may take minutes.
+    fn disturb(&self, trial: &mut Trial, random: &mut Random) {
+        let taken = trial.taken_target();
+        let arguments = &mut trial.arguments;
         let name = arguments.first().cloned().unwrap_or_default();
         let options = self
             .options
@@ -224,9 +226,10 @@ impl Material {
         // No argument holds a zero byte.
         let value = value.replace('\0', "\u{1}").into_bytes();
         let at = random.below(arguments.len());
+        let may_change = at > 0 && taken != Some(at);
         match random.below(4) {
-            0 if at > 0 => arguments[at] = value,
-            1 if at > 0 => arguments[at] = vec![0xff, b'x'],
+            0 if may_change => arguments[at] = value,
+            1 if may_change => arguments[at] = vec![0xff, b'x'],
             _ => {
                 arguments.extend(option.map(String::into_bytes));
                 if random.once_in(2) {
@@ -238,6 +241,14 @@ impl Material {
 }
 
 impl Trial {
+    /// The place of the argument that names a target which is there already.
+    fn taken_target(&self) -> Option<usize> {
+        let target = 1 + self.arguments.iter().position(|word| word == b"--out")?;
+        let name = self.arguments.get(target)?;
+        let is_there = |(file, _): &(String, Vec<u8>)| file.as_bytes() == name;
+        self.files.iter().any(is_there).then_some(target)
+    }
+
     /// For people.
     fn shown(&self) -> String {
         let words = self
