@@ -1,6 +1,12 @@
 """Runs in the MuJoCo of Python's own package."""
 
+import os
+import signal
 import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -33,14 +39,54 @@ def test_icub_jumps_in_mujoco() -> None:
 
 
 def test_a_study_is_the_same_on_one_core_and_on_two(lateral: saltus.Plan) -> None:
-    told = []
+    told: list[tuple[int, int]] = []
     one = saltus.envelope(lateral, 2, sim="mujoco", jobs=1)
     two = saltus.envelope(lateral, 2, lambda *x: told.append(x), sim="mujoco", jobs=2)
     assert told == [(1, 2), (2, 2)]
     assert (one.seeds, one.outcomes) == (two.seeds, two.outcomes)
     assert np.array_equal(one.feet_error, two.feet_error, equal_nan=True)
+    # Of the program that is linked with MuJoCo 3.17.0: `saltus envelope a1/lateral --sim mujoco --samples 2`.
+    assert one.seeds == [12323649364400974661, 7095607484609012044]
+    assert one.outcomes == ["target", "target"]
+    assert one.feet_error == pytest.approx([0.013628, 0.023383], abs=1e-3)
+    assert one.rotation_error == pytest.approx([1.5533, 1.7459], abs=0.1)
+    # Any sample can be looked at.
     record = saltus.run(lateral, sim="mujoco", seed=one.seeds[1])
     assert record.outcome == one.outcomes[1]
+
+
+def test_ctrl_c_ends_a_run_after_its_end_and_a_study_between_two(lateral: saltus.Plan) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        saltus.envelope(
+            lateral, 1_000_000, lambda *_: os.kill(os.getpid(), signal.SIGINT), sim="mujoco", jobs=2
+        )
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        saltus.run(lateral, sim="mujoco")
+    timer.join()
+
+
+def test_other_threads_run_meanwhile(lateral: saltus.Plan) -> None:
+    worker = threading.Thread(target=saltus.run, args=(lateral,), kwargs={"sim": "mujoco"})
+    worker.start()
+    turns = 0
+    while worker.is_alive():
+        time.sleep(1e-3)
+        turns += 1
+    assert turns > 50
+
+
+def test_a_robot_that_mujoco_refuses_is_refused_in_its_words(urdf: Path, tmp_path: Path) -> None:
+    # A hip that is a point: to our own dynamics, which turn it with its rotor, a body like any other.
+    words = urdf.read_text().split('ixx="0.000469246"', 1)
+    zero = 'ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"'
+    point = tmp_path / "point.urdf"
+    point.write_text(f"{words[0]}{zero}{words[1][words[1].index('/>') :]}")
+    plan = saltus.plan("a1/lateral", saltus.Robot.load(point))
+    assert saltus.run(plan).stands
+    with pytest.raises(saltus.Error, match=r"MuJoCo refused the model: .*inertia"):
+        saltus.run(plan, sim="mujoco")
 
 
 def test_without_the_package_the_remedy_is_named(
@@ -74,7 +120,7 @@ def test_what_mujoco_raises_in_a_step_is_told(
         mujoco.mj_forward(model, data)
         data.time += 0.1
 
-    told = []
+    told: list[Any] = []
     monkeypatch.setattr(sys, "unraisablehook", told.append)
     monkeypatch.setattr(mujoco, "mj_step", step)
     with pytest.raises(saltus.Error, match="MuJoCo"):
