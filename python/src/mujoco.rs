@@ -4,8 +4,9 @@
 //! the interpreter once, and MuJoCo's own functions release it while they compute.
 
 use contact_sim::{ContactPoint, Engine, EngineFailed, NoEngine};
+use numpy::ndarray::ArrayView1;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::types::{PyAnyMethods, PyModule};
 use pyo3::{Bound, Py, PyAny, PyErr, PyResult, Python, intern};
 
@@ -187,24 +188,33 @@ impl PackageEngine {
         let geoms = geoms.cast::<PyArray2<i32>>()?.try_readonly()?;
         let frames = contact.getattr(intern!(py, "frame"))?;
         let frames = frames.cast::<PyArray2<f64>>()?.try_readonly()?;
-        let rows = geoms.as_array().into_iter();
-        let (mut geom, mut axis) = (rows.copied(), frames.as_array().into_iter().copied());
-        let mut index = 0_usize;
-        while let (Some(first), Some(second)) = (geom.next(), geom.next()) {
+        let (geoms, frames) = (geoms.as_array(), frames.as_array());
+        let rows = geoms.rows().into_iter().zip(frames.rows());
+        for (index, (geom, frame)) in rows.enumerate() {
             let arguments = (&self.model, &self.data, index, &self.force);
             self.functions.contact_force.call1(py, arguments)?;
-            let mut point = ContactPoint {
-                geoms: [first, second],
-                frame: core::array::from_fn(|_| axis.next().unwrap_or_default()),
-                force: [0.0; 6],
-            };
             let force = self.force.bind(py).try_readonly()?;
-            point.force.copy_from_slice(force.as_slice()?);
-            self.contacts.push(point);
-            index += 1;
+            self.contacts.push(ContactPoint {
+                geoms: numbers(geom)?,
+                frame: numbers(frame)?,
+                force: numbers(force.as_array())?,
+            });
         }
         Ok(())
     }
+}
+
+/// The numbers of a row, as many as there must be.
+fn numbers<T: Copy + Default, const K: usize>(row: ArrayView1<'_, T>) -> PyResult<[T; K]> {
+    if row.len() != K {
+        let words = format!("a contact has {} numbers in the place of {K}", row.len());
+        return Err(PyTypeError::new_err(words));
+    }
+    let mut out = [T::default(); K];
+    for (to, from) in out.iter_mut().zip(row) {
+        *to = *from;
+    }
+    Ok(out)
 }
 
 impl Engine for PackageEngine {
