@@ -76,7 +76,7 @@ impl Conditions {
 /// `seed` 0 is the nominal run; any other draws a lab that differs from the plan, as `saltus run --seed` does. `plant` says what differs
 /// instead, as `--plant` does ("mass=0.9,ground=soft"); `interface` is "torque", "joint-pd" or "joint-pd@500"; `without` are measures of
 /// the controller to do without. `sim` is "native" or "mujoco", the MuJoCo that the package `mujoco` has (`pip install mujoco`, 3.2.7 or
-/// newer), in which a run takes 1.8 times as long (`python python/examples/costs.py`); its error in a step goes to sys.unraisablehook, and
+/// newer), in which a run takes twice as long (`python python/examples/costs.py`); its error in a step goes to sys.unraisablehook, and
 /// this raises Error.
 ///
 /// Raises BadInput that names the argument, and Error where the machine refuses the plan or MuJoCo the robot.
