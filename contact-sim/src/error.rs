@@ -10,6 +10,8 @@ pub enum Error {
     TorqueNotFinite(usize),
     /// The state is no longer finite: the step is too long for the stiffness. Reset, and shorten the step.
     StateNotFinite,
+    /// The simulator behind this one, MuJoCo, stopped with an error of its own, of which it has told more.
+    EngineFailed,
 }
 
 impl fmt::Display for Error {
@@ -24,6 +26,7 @@ impl fmt::Display for Error {
             Self::StateNotFinite => {
                 f.write_str("the simulated state is not finite: reset it, and shorten the step")
             }
+            Self::EngineFailed => f.write_str("MuJoCo stopped with an error of its own"),
         }
     }
 }

@@ -6,11 +6,15 @@ extern crate std;
 
 mod collide;
 mod contact;
+#[cfg(feature = "mjcf")]
+mod engine;
 mod error;
 mod joints;
+#[cfg(feature = "mujoco")]
+mod linked;
 #[cfg(feature = "mjcf")]
 mod mjcf;
-#[cfg(feature = "mujoco")]
+#[cfg(feature = "mjcf")]
 mod mujoco;
 mod native;
 mod settings;
@@ -20,12 +24,16 @@ mod terrain;
 
 pub use collide::{MOST_SHAPES, effective_mass, gaps, self_contacts};
 pub use contact::{ContactLaw, ContactMass, ContactState};
+#[cfg(feature = "mjcf")]
+pub use engine::{Compile, ContactPoint, Engine, EngineFailed, NoEngine};
 pub use error::Error;
 pub use joints::Stops;
+#[cfg(feature = "mujoco")]
+pub use linked::{linked, mujoco_version};
 #[cfg(feature = "mjcf")]
 pub use mjcf::{Geom, mjcf};
-#[cfg(feature = "mujoco")]
-pub use mujoco::{ModelRefused, MujocoSimulator, mujoco_version};
+#[cfg(feature = "mjcf")]
+pub use mujoco::MujocoSimulator;
 pub use native::NativeSimulator;
 pub use rbd_core::Shape;
 pub use settings::Settings;

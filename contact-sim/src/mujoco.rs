@@ -4,12 +4,9 @@
 //! Coulomb friction, stops and contacts are MuJoCo's own, with the softness and friction of
 //! [`Settings::contact`](crate::Settings::contact).
 
-use core::fmt;
 use std::boxed::Box;
-use std::string::{String, ToString};
 use std::vec::Vec;
 
-use mujoco_rs::prelude::{MjData, MjModel, MjtObjBase};
 use nalgebra::Vector3;
 use rbd_core::convert::{
     acceleration_from_mujoco, base_from_mujoco, base_to_mujoco, velocity_from_mujoco,
@@ -18,24 +15,21 @@ use rbd_core::convert::{
 use rbd_core::{BaseKind, Configuration, Tangent, Tree};
 use so3::math;
 
+use crate::engine::{Compile, Engine, EngineFailed, NoEngine};
 use crate::mjcf::{Geom, geom_name, mjcf, stopped};
 use crate::{Error, Settings, Simulator, Terrain};
-
-/// The version of the MuJoCo library that is linked, such as `3.17.0`.
-#[must_use]
-pub fn mujoco_version() -> &'static str {
-    mujoco_rs::mujoco_version()
-}
 
 /// A robot with `N` joints and `C` owners of shapes in MuJoCo.
 #[derive(Debug)]
 pub struct MujocoSimulator<const N: usize, const C: usize> {
     settings: Settings<f64, N>,
-    data: MjData<Box<MjModel>>,
+    engine: Box<dyn Engine>,
     /// The owner that each of MuJoCo's geoms counts for.
     owners: Vec<Option<usize>>,
     /// Length of the base's part of the positions and of the velocities.
     base: (usize, usize),
+    /// Generalised forces of the next call: none on the base.
+    applied: Vec<f64>,
     configuration: Configuration<f64, N>,
     velocity: Tangent<f64, N>,
     mean_forces_w: [Vector3<f64>; C],
@@ -47,48 +41,37 @@ pub struct MujocoSimulator<const N: usize, const C: usize> {
     ticks: u64,
 }
 
-/// MuJoCo refused the model, in its own words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ModelRefused(String);
-
-impl fmt::Display for ModelRefused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "MuJoCo refused the model: {}", self.0)
-    }
-}
-
-impl core::error::Error for ModelRefused {}
-
 impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
-    /// A robot at the world's origin, at rest; `geoms` whose owner is not below `C` touch, but nobody sees their
-    /// force. Of `pairs`, bit j of number i says that geoms i and j touch each other ([`self_contacts`](crate::self_contacts)).
+    /// A robot at the world's origin, at rest; `compile` says where MuJoCo comes from. `geoms` whose owner is not below `C` touch, but nobody
+    /// sees their force. Of `pairs`, bit j of number i says that geoms i and j touch each other
+    /// ([`self_contacts`](crate::self_contacts)).
     ///
     /// # Errors
-    /// [`ModelRefused`] for tables that are no robot to MuJoCo, such as an inertia that no mass distribution has.
+    /// [`NoEngine`] for tables that are no robot to MuJoCo, such as an inertia that no mass distribution has, or where there is no MuJoCo.
     pub fn new<M: Tree<f64, N>>(
+        compile: Compile,
         model: &M,
         (geoms, pairs): (&[Geom], &[u64]),
         terrain: &Terrain<f64>,
         settings: Settings<f64, N>,
-    ) -> Result<Self, ModelRefused> {
-        let xml = mjcf(model, (geoms, pairs), terrain, &settings);
-        let compiled = MjModel::from_xml_string(&xml).map_err(|e| ModelRefused(e.to_string()))?;
+    ) -> Result<Self, NoEngine> {
+        let engine = compile(&mjcf(model, (geoms, pairs), terrain, &settings))?;
         let mut owners = Vec::new();
         for (index, geom) in geoms.iter().enumerate() {
-            if let Some(id) = compiled.name_to_id(MjtObjBase::mjOBJ_GEOM, &geom_name(index)) {
+            if let Some(id) = engine.geom_id(&geom_name(index)) {
                 owners.resize(owners.len().max(id + 1), None);
                 owners[id] = Some(geom.owner());
             }
         }
-        let mut data = MjData::new(Box::new(compiled));
-        data.forward();
+        let base = match model.base_kind() {
+            BaseKind::Floating => (7, 6),
+            BaseKind::Fixed => (0, 0),
+        };
         Ok(Self {
-            data,
+            engine,
             owners,
-            base: match model.base_kind() {
-                BaseKind::Floating => (7, 6),
-                BaseKind::Fixed => (0, 0),
-            },
+            base,
+            applied: std::vec![0.0; base.1 + model.joint_count()],
             configuration: Configuration::NEUTRAL,
             velocity: Tangent::ZERO,
             mean_forces_w: [Vector3::zeros(); C],
@@ -102,34 +85,34 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
     }
 
     /// The acceleration in the present state under these joint torques, whatever the motors can do; no step is taken.
-    pub fn acceleration(&mut self, torques: &[f64; N]) -> Tangent<f64, N> {
+    ///
+    /// # Errors
+    /// [`Error::EngineFailed`].
+    pub fn acceleration(&mut self, torques: &[f64; N]) -> Result<Tangent<f64, N>, Error> {
         self.apply(torques);
-        self.data.forward();
+        self.engine.forward(&self.applied)?;
         let mut acceleration = Tangent::ZERO;
-        let (base, joints) = self.data.qacc().split_at(self.base.1);
+        let (base, joints) = self.engine.qacc().split_at(self.base.1);
         if let Some(qacc) = base.first_chunk() {
             acceleration.base =
                 acceleration_from_mujoco(&self.configuration.base, &self.velocity.base, qacc);
         }
         copy(&mut acceleration.joints, joints);
-        acceleration
+        Ok(acceleration)
     }
 
     fn apply(&mut self, torques: &[f64; N]) {
-        let slots = self.data.qfrc_applied_mut().iter_mut().skip(self.base.1);
-        for (slot, tau) in slots.zip(torques) {
-            *slot = *tau;
-        }
+        copy(
+            self.applied.get_mut(self.base.1..).unwrap_or_default(),
+            torques,
+        );
     }
 
     /// Adds the contact forces of the last MuJoCo step, and reads the stops' torques.
     fn add_forces(&mut self, share: f64) {
-        for (index, contact) in self.data.contact().iter().enumerate() {
-            let Ok(force) = self.data.try_contact_force(index) else {
-                continue;
-            };
+        for contact in self.engine.contacts() {
             let mut force_w = Vector3::zeros();
-            for (axis, f) in contact.frame.chunks(3).zip(force) {
+            for (axis, f) in contact.frame.chunks(3).zip(contact.force) {
                 force_w += Vector3::from_row_slice(axis) * (share * f);
             }
             let owner = |geom: i32| {
@@ -137,7 +120,7 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
                 *self.owners.get(id)?
             };
             // The force acts on the second geom.
-            match contact.geom.map(owner) {
+            match contact.geoms.map(owner) {
                 [Some(a), Some(b)] => {
                     for owner in [a, b] {
                         if let Some(sum) = self.mean_link_forces.get_mut(owner) {
@@ -150,7 +133,7 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
                 [None, None] => {}
             }
         }
-        for (joint, torque) in self.stopped.iter().zip(self.data.sensordata()) {
+        for (joint, torque) in self.stopped.iter().zip(self.engine.sensordata()) {
             if let Some(stop) = self.stops.get_mut(*joint) {
                 *stop = *torque;
             }
@@ -159,7 +142,7 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
 
     /// Reads MuJoCo's state; whether it is finite.
     fn read(&mut self) -> bool {
-        let (base, joints) = self.data.qpos().split_at(self.base.0);
+        let (base, joints) = self.engine.qpos().split_at(self.base.0);
         let mut good = true;
         if let Some(qpos) = base.first_chunk() {
             match base_from_mujoco(qpos) {
@@ -168,13 +151,19 @@ impl<const N: usize, const C: usize> MujocoSimulator<N, C> {
             }
         }
         copy(&mut self.configuration.joints, joints);
-        let (base, joints) = self.data.qvel().split_at(self.base.1);
+        let (base, joints) = self.engine.qvel().split_at(self.base.1);
         if let Some(qvel) = base.first_chunk() {
             self.velocity.base = velocity_from_mujoco(&self.configuration.base, qvel);
         }
         copy(&mut self.velocity.joints, joints);
         let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
-        good && finite(self.data.qpos()) && finite(self.data.qvel())
+        good && finite(self.engine.qpos()) && finite(self.engine.qvel())
+    }
+}
+
+impl From<EngineFailed> for Error {
+    fn from(_: EngineFailed) -> Self {
+        Self::EngineFailed
     }
 }
 
@@ -194,16 +183,14 @@ impl<const N: usize, const C: usize> Simulator<f64, N, C> for MujocoSimulator<N,
     type Error = Error;
 
     fn reset(&mut self, configuration: &Configuration<f64, N>, velocity: &Tangent<f64, N>) {
-        self.data.reset();
-        let (base, joints) = self.data.qpos_mut().split_at_mut(self.base.0);
-        copy(base, &base_to_mujoco(&configuration.base));
-        copy(joints, &configuration.joints);
-        let (base, joints) = self.data.qvel_mut().split_at_mut(self.base.1);
-        copy(
-            base,
-            &velocity_to_mujoco(&configuration.base, &velocity.base),
+        let (q, v) = (&configuration.joints, &velocity.joints);
+        let base = base_to_mujoco(&configuration.base);
+        let moving = velocity_to_mujoco(&configuration.base, &velocity.base);
+        let joined = |base: &[f64], joints: &[f64]| -> Vec<f64> { [base, joints].concat() };
+        self.engine.reset(
+            &joined(&base[..self.base.0], q),
+            &joined(&moving[..self.base.1], v),
         );
-        copy(joints, &velocity.joints);
         self.configuration = *configuration;
         self.velocity = *velocity;
         self.mean_forces_w = [Vector3::zeros(); C];
@@ -229,7 +216,7 @@ impl<const N: usize, const C: usize> Simulator<f64, N, C> for MujocoSimulator<N,
             }
             self.delivered = delivered;
             self.apply(&delivered);
-            self.data.step();
+            self.engine.step(&self.applied)?;
             self.add_forces(1.0 / f64::from(count));
             if !self.read() {
                 return Err(Error::StateNotFinite);

@@ -4,6 +4,7 @@
 use a1_model::{A1, A1Geared, FEET, MOTORS, a1};
 use contact_sim::{
     Block, Error, Geom, MujocoSimulator, NativeSimulator, Settings, Shape, Simulator, Terrain,
+    linked,
 };
 use icub_model::{Icub23, Icub23Cad, Icub23Geared, SOLES};
 use nalgebra::{Rotation3, Vector3};
@@ -36,7 +37,7 @@ fn smooth<M: Tree<f64, N>, const N: usize>(
     });
     let mut s = Settings::new(&free, &[MOTORS[0]; N]);
     s.substeps = 1;
-    MujocoSimulator::new(model, (&[], &[]), &FLOOR_FAR_BELOW, s).unwrap()
+    MujocoSimulator::new(linked, model, (&[], &[]), &FLOOR_FAR_BELOW, s).unwrap()
 }
 
 /// Some state and torques from a list of numbers.
@@ -63,7 +64,7 @@ fn disagreement<M: Tree<f64, N>, const N: usize>(
 ) -> f64 {
     let (q, v, torques) = state::<N>(x);
     sim.reset(&q, &v);
-    let theirs = sim.acceleration(&torques);
+    let theirs = sim.acceleration(&torques).unwrap();
     let posture = Posture::new(model, &q);
     let effort = Effort {
         joints: core::array::from_fn(|i| torques[i] - limits[i].damping * v.joints[i]),
@@ -115,7 +116,14 @@ fn a1_geoms() -> Vec<Geom> {
 type A1Sim = MujocoSimulator<12, 5>;
 
 fn a1_sim(terrain: &Terrain<f64>) -> A1Sim {
-    MujocoSimulator::new(&A1Geared, (&a1_geoms(), &[]), terrain, settings(&A1Geared)).unwrap()
+    MujocoSimulator::new(
+        linked,
+        &A1Geared,
+        (&a1_geoms(), &[]),
+        terrain,
+        settings(&A1Geared),
+    )
+    .unwrap()
 }
 
 fn standing(height: f64) -> Configuration<f64, 12> {
@@ -220,7 +228,7 @@ fn sliding_friction_is_mu_times_the_load() {
     let mut s = settings(&A1Geared);
     s.contact.friction = 0.4;
     let mut sim: A1Sim =
-        MujocoSimulator::new(&A1Geared, (&a1_geoms(), &[]), &Terrain::FLAT, s).unwrap();
+        MujocoSimulator::new(linked, &A1Geared, (&a1_geoms(), &[]), &Terrain::FLAT, s).unwrap();
     let start = standing(0.33);
     sim.reset(&start, &Tangent::ZERO);
     hold(&mut sim, &start.joints, (200.0, 5.0), 8_000);
@@ -241,8 +249,14 @@ fn icub_stands_on_its_soles() {
         .enumerate()
         .map(|(i, s)| Geom::of(s, i))
         .collect();
-    let mut sim: MujocoSimulator<23, 2> =
-        MujocoSimulator::new(&Icub23, (&geoms, &[]), &Terrain::FLAT, settings(&Icub23)).unwrap();
+    let mut sim: MujocoSimulator<23, 2> = MujocoSimulator::new(
+        linked,
+        &Icub23,
+        (&geoms, &[]),
+        &Terrain::FLAT,
+        settings(&Icub23),
+    )
+    .unwrap();
     let mut start = Configuration::NEUTRAL;
     let mut poses = rbd_core::Kinematics::IDENTITY;
     rbd_core::forward_kinematics(&Icub23, &Posture::new(&Icub23, &start), &mut poses);
@@ -345,6 +359,6 @@ fn tables_that_are_no_robot_are_refused_with_mujocos_words() {
     )
     .unwrap();
     let s = Settings::new(&[JointLimits::NONE], &[MOTORS[0]]);
-    let refused = MujocoSimulator::<1, 0>::new(&model, (&[], &[]), &Terrain::FLAT, s);
+    let refused = MujocoSimulator::<1, 0>::new(linked, &model, (&[], &[]), &Terrain::FLAT, s);
     assert!(refused.unwrap_err().to_string().contains("inertia"));
 }

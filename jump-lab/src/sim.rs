@@ -2,25 +2,34 @@
 
 use core::str::FromStr;
 
+use contact_sim::Compile;
+#[cfg(feature = "mujoco")]
+use contact_sim::linked;
+#[cfg(not(feature = "mujoco"))]
+use contact_sim::{Engine, NoEngine};
+
 /// The simulators.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Sim {
     /// Our own contact simulator.
     Native,
-    /// MuJoCo, in builds with the feature `mujoco`.
-    Mujoco,
+    /// MuJoCo, from where this says: [`Sim::MUJOCO`], or an interpreter's package.
+    Mujoco(Compile),
 }
 
 impl Sim {
     /// All of them, also those that this build does not have.
-    pub const ALL: [Self; 2] = [Self::Native, Self::Mujoco];
+    pub const ALL: [Self; 2] = [Self::Native, Self::MUJOCO];
+
+    /// The MuJoCo that builds with the feature `mujoco` are linked with; others tell in its place how to get one.
+    pub const MUJOCO: Self = Self::Mujoco(linked);
 
     /// Its name on the command line and in results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Native => "native",
-            Self::Mujoco => "mujoco",
+            Self::Mujoco(_) => "mujoco",
         }
     }
 
@@ -29,19 +38,20 @@ impl Sim {
     pub const fn what(self) -> &'static str {
         match self {
             Self::Native => "Our own contact simulator",
-            Self::Mujoco => "MuJoCo, in builds with the feature `mujoco`",
+            Self::Mujoco(_) => "MuJoCo, in builds with the feature `mujoco`",
         }
     }
 
-    /// Fails where this build does not have it, before the work that needs it.
+    /// Fails where it is not there, before the work that needs it: MuJoCo compiles its smallest model.
     ///
     /// # Errors
-    /// How to get a build that has it.
+    /// How to get it.
     pub fn check(self) -> Result<(), String> {
         match self {
-            #[cfg(not(feature = "mujoco"))]
-            Self::Mujoco => Err(NO_MUJOCO.to_owned()),
-            _ => Ok(()),
+            Self::Native => Ok(()),
+            Self::Mujoco(compile) => compile("<mujoco/>")
+                .map(|_| ())
+                .map_err(|error| error.to_string()),
         }
     }
 }
@@ -60,7 +70,10 @@ impl FromStr for Sim {
 
 /// What a build without MuJoCo says.
 #[cfg(not(feature = "mujoco"))]
-pub(crate) const NO_MUJOCO: &str = "this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`";
+fn linked(_: &str) -> Result<Box<dyn Engine>, NoEngine> {
+    let remedy = "this build has no MuJoCo: use `cargo xtask mujoco run --release -p saltus --features mujoco -- run ...`";
+    Err(NoEngine::Missing(remedy.to_owned()))
+}
 
 #[cfg(test)]
 mod tests {
@@ -69,7 +82,8 @@ mod tests {
     #[test]
     fn names_are_read_back() {
         for sim in Sim::ALL {
-            assert_eq!(sim.name().parse(), Ok(sim));
+            let read: Result<Sim, String> = sim.name().parse();
+            assert_eq!(read.map(Sim::name), Ok(sim.name()));
         }
         assert!("gazebo".parse::<Sim>().is_err());
     }

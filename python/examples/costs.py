@@ -52,6 +52,7 @@ def main() -> None:
         ("`plan`, `a1/barrel-roll`", once(lambda: saltus.plan("a1/barrel-roll"))),
         ("`Plan.audit`", once(plan.audit)),
         ("`run`", once(lambda: saltus.run(plan))),
+        ('`run`, `sim="mujoco"`', once(lambda: saltus.run(plan, sim="mujoco"))),
         ("`Machine.tick`", least(lambda: machine.tick(float(next(now)), told), 10_000)),
         ("`Machine.joint_tick`", least(lambda: machine.joint_tick(joints, speeds), 10_000)),
         ("`Estimator.step`", least(step, 10_000)),

@@ -27,7 +27,7 @@ const NV: usize = 6 + JOINTS;
 /// `level` is of the push-off's program: "velocity" or "torque". `height` is what the centre of mass gains in flight, m; with `momentum`
 /// the angular momentum is controlled; `torque_share` is how much of the joints' torque limits there is, above 0 and up to 1; `landing`
 /// is "qp", one torque program through flight and landing, "hold", servos, or "stiff", the paper's own. `seed` and `plant` are as in
-/// `run`, drawn from iCub's lab; `sim` is "native": wheels are built without MuJoCo.
+/// `run`, drawn from iCub's lab; `sim` is as there.
 ///
 /// Raises BadInput that names the argument, and Error where the controller refuses the jump.
 #[pyfunction]

@@ -10,6 +10,7 @@ mod estimator;
 mod icub;
 mod json;
 mod machine;
+mod mujoco;
 mod observation;
 mod ocp;
 mod plan;

@@ -20,6 +20,7 @@ use crate::arrays::{List, Table, Tables, table, tables};
 use crate::coordinates::{NQ, NV, of_configuration, of_tangent};
 use crate::errors::{bad, failed};
 use crate::json::object;
+use crate::mujoco::compile;
 use crate::plan::Plan;
 
 /// What differs from the plan in a run, and how its motors are commanded.
@@ -36,9 +37,12 @@ pub(crate) fn named<T: FromStr<Err = String>>(argument: &str, name: &str) -> PyR
         .map_err(|error| bad(format!("{argument}: {error}")))
 }
 
-/// A simulator by its name that this build has.
+/// A simulator by its name that is there: MuJoCo is that of Python's package.
 pub(crate) fn simulator(name: &str) -> PyResult<Sim> {
-    let sim: Sim = named("sim", name)?;
+    let sim = match named("sim", name)? {
+        Sim::Mujoco(_) => Sim::Mujoco(compile),
+        native @ Sim::Native => native,
+    };
     sim.check().map_err(|error| bad(format!("sim: {error}")))?;
     Ok(sim)
 }
@@ -71,9 +75,11 @@ impl Conditions {
 ///
 /// `seed` 0 is the nominal run; any other draws a lab that differs from the plan, as `saltus run --seed` does. `plant` says what differs
 /// instead, as `--plant` does ("mass=0.9,ground=soft"); `interface` is "torque", "joint-pd" or "joint-pd@500"; `without` are measures of
-/// the controller to do without. `sim` is "native": wheels are built without MuJoCo.
+/// the controller to do without. `sim` is "native" or "mujoco", the MuJoCo that the package `mujoco` has (`pip install mujoco`, 3.2.7 or
+/// newer), in which a run takes twice as long (`python python/examples/costs.py`); its error in a step goes to sys.unraisablehook, and
+/// this raises Error.
 ///
-/// Raises BadInput that names the argument, and Error where the machine refuses the plan.
+/// Raises BadInput that names the argument, and Error where the machine refuses the plan or MuJoCo the robot.
 #[pyfunction]
 #[pyo3(signature = (plan, *, sim = "native", seed = 0, plant = None, interface = "torque", without = Vec::new()))]
 pub(crate) fn run(

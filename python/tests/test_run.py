@@ -46,7 +46,6 @@ def test_heavier_differs(lateral: saltus.Plan) -> None:
     ("wrong", "words"),
     [
         ({"sim": "gazebo"}, ["sim", "gazebo", "native"]),
-        ({"sim": "mujoco"}, ["sim", "no MuJoCo"]),
         ({"plant": "wind=3"}, ["plant", "wind", "mass"]),
         ({"interface": "bus"}, ["interface", "joint-pd"]),
         ({"without": ["luck"]}, ["without", "luck", "weighing"]),

@@ -99,7 +99,7 @@ fn main() -> Result<(), String> {
     };
     let (count, seed) = (number(100)?, number(1)?);
     let sim = if cfg!(feature = "mujoco") {
-        Sim::Mujoco
+        Sim::MUJOCO
     } else {
         Sim::Native
     };

@@ -71,10 +71,10 @@ fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
 #[cfg(feature = "mujoco")]
 #[test]
 fn mujoco_says_the_same() {
-    assert_eq!(good(Sim::Mujoco, eighteen(1.0)), 18);
+    assert_eq!(good(Sim::MUJOCO, eighteen(1.0)), 18);
     let stuck = eighteen(0.5).enumerate().map(|(i, drop)| Drop {
         fault: Some((i % 4, Wrong::Stuck)),
         ..drop
     });
-    assert!(good(Sim::Mujoco, stuck) >= 17);
+    assert!(good(Sim::MUJOCO, stuck) >= 17);
 }

@@ -7,7 +7,9 @@ pub mod log;
 
 use crate::Sim;
 use crate::lab::{self, Disturbance, Key};
-use contact_sim::{NativeSimulator, Settings, Shape, Terrain, self_contacts};
+use contact_sim::{
+    Compile, Geom, MujocoSimulator, NativeSimulator, Settings, Shape, Terrain, self_contacts,
+};
 use core::str::FromStr;
 use icub_model::{Icub23GazeboGeared, LIMITS, MOTORS, SOLES, profile, shapes};
 use jump_control::ComProfile;
@@ -322,20 +324,18 @@ pub fn plant(
             let native = NativeSimulator::new(robot, all, Terrain::FLAT, settings);
             Box::new(native.colliding(pairs))
         }
-        Sim::Mujoco => mujoco(&robot, settings)?,
+        Sim::Mujoco(compile) => mujoco(compile, &robot, settings)?,
     };
     plant.reset(start, &Tangent::ZERO);
     Ok(World::new(plant, disturbance.get(Key::GroundHeight)))
 }
 
 /// MuJoCo, with the soles as boxes and the same links.
-#[cfg(feature = "mujoco")]
 fn mujoco(
+    compile: Compile,
     robot: &TableModel<f64, JOINTS>,
     mut settings: Settings<f64, JOINTS>,
 ) -> Result<Plant, String> {
-    use contact_sim::{Geom, MujocoSimulator};
-
     // Each sole is one box; its force counts for the first of its corners.
     let soles = SOLES.iter().enumerate();
     let mut geoms: Vec<Geom> = soles.map(|(i, sole)| Geom::of(sole, 4 * i)).collect();
@@ -344,13 +344,8 @@ fn mujoco(
     pairs.extend(pairs_of_links(&links).map(|bits| bits << SOLES.len()));
     geoms.extend(links.map(Geom::Swept));
     settings.substeps = 1;
-    let sim = MujocoSimulator::new(robot, (&geoms, &pairs), &Terrain::FLAT, settings);
+    let sim = MujocoSimulator::new(compile, robot, (&geoms, &pairs), &Terrain::FLAT, settings);
     Ok(Box::new(sim.map_err(|error| error.to_string())?))
-}
-
-#[cfg(not(feature = "mujoco"))]
-fn mujoco(_: &TableModel<f64, JOINTS>, _: Settings<f64, JOINTS>) -> Result<Plant, String> {
-    Err(crate::sim::NO_MUJOCO.into())
 }
 
 // Jumps in both simulators take long to compile and to run: `cargo xtask suites`.

@@ -49,7 +49,7 @@ fn touched(start: &State, ticks: u32, sim: Sim) -> Vec<&'static str> {
 #[test]
 fn links_touch_the_ground_and_each_other() {
     let sims: &[Sim] = if cfg!(feature = "mujoco") {
-        &[Sim::Native, Sim::Mujoco]
+        &[Sim::Native, Sim::MUJOCO]
     } else {
         &[Sim::Native]
     };
@@ -227,8 +227,8 @@ fn both_jumps_land_softly() {
 #[cfg(feature = "mujoco")]
 #[test]
 fn mujoco_agrees_on_both_jumps() {
-    lands_softly("icub/velocity", Sim::Mujoco);
-    lands_softly("icub/torque", Sim::Mujoco);
+    lands_softly("icub/velocity", Sim::MUJOCO);
+    lands_softly("icub/torque", Sim::MUJOCO);
 }
 
 /// The same states through the torque program in both precisions, tasks held: torques of a whole push-off. Where a limit is

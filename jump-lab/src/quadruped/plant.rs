@@ -3,11 +3,11 @@
 use super::{JOINTS, OWNERS, State, World};
 use crate::Sim;
 use crate::lab::{self, Disturbance, Key};
-use contact_sim::{NativeSimulator, Settings, Terrain};
-use jump_planner::robot::{Quadruped, SHAPE_COUNT, Shapes};
+use contact_sim::{Geom, MujocoSimulator, NativeSimulator, Settings, Terrain};
+use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use jump_planner::terrain::terrain;
-use rbd_core::{Model, TableModel, Tangent};
+use rbd_core::{Model, Tangent};
 
 /// A simulator of a quadruped.
 pub type Plant = lab::Plant<JOINTS, OWNERS>;
@@ -61,7 +61,7 @@ pub fn simulator(
     (terrain, free): (&Terrain<f64>, &State),
     disturbance: &Disturbance,
 ) -> Result<Plant, String> {
-    let settings = settings(robot, disturbance);
+    let mut settings = settings(robot, disturbance);
     let pairs = contact_sim::self_contacts(robot, &robot.shapes, free);
     let disturbed = lab::robot(disturbance, robot)?;
     match sim {
@@ -69,34 +69,13 @@ pub fn simulator(
             let native = NativeSimulator::new(disturbed, robot.shapes, *terrain, settings);
             Ok(Box::new(native.colliding(pairs)))
         }
-        Sim::Mujoco => mujoco(&disturbed, (&robot.shapes, &pairs), terrain, settings),
+        Sim::Mujoco(compile) => {
+            settings.substeps = 1;
+            let geoms = (&robot.shapes.map(Geom::Swept)[..], &pairs[..]);
+            let sim = MujocoSimulator::new(compile, &disturbed, geoms, terrain, settings);
+            Ok(Box::new(sim.map_err(|error| error.to_string())?))
+        }
     }
-}
-
-/// MuJoCo, with the same shapes.
-#[cfg(feature = "mujoco")]
-fn mujoco(
-    robot: &TableModel<f64, JOINTS>,
-    (shapes, pairs): (&Shapes, &[u64; SHAPE_COUNT]),
-    terrain: &Terrain<f64>,
-    mut settings: Settings<f64, JOINTS>,
-) -> Result<Plant, String> {
-    use contact_sim::{Geom, MujocoSimulator};
-
-    settings.substeps = 1;
-    let geoms = shapes.map(Geom::Swept);
-    let sim = MujocoSimulator::new(robot, (&geoms, pairs), terrain, settings);
-    Ok(Box::new(sim.map_err(|error| error.to_string())?))
-}
-
-#[cfg(not(feature = "mujoco"))]
-fn mujoco(
-    _: &TableModel<f64, JOINTS>,
-    _: (&Shapes, &[u64; SHAPE_COUNT]),
-    _: &Terrain<f64>,
-    _: Settings<f64, JOINTS>,
-) -> Result<Plant, String> {
-    Err(crate::sim::NO_MUJOCO.into())
 }
 
 /// By how much the landing's ground is higher than known, m.

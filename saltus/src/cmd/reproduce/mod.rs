@@ -46,7 +46,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let sims: &[Sim] = match (args.quick, cfg!(feature = "mujoco")) {
         (true, _) => &[Sim::Native],
-        (false, true) => &[Sim::Native, Sim::Mujoco],
+        (false, true) => &[Sim::Native, Sim::MUJOCO],
         (false, false) => {
             return Err(
                 "this build has no MuJoCo: `--quick`, or `cargo xtask mujoco run --release -p saltus --features mujoco -- reproduce`"

@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args, subjects: &[Subject]) -> Result<ExitCode, Failure
     for ground in GROUNDS {
         let plant = ground.parse()?;
         for subject in subjects {
-            let poses = [Sim::Native, Sim::Mujoco].map(|sim| subject.poses(sim, plant));
+            let poses = [Sim::Native, Sim::MUJOCO].map(|sim| subject.poses(sim, plant));
             let [native, mujoco] = poses;
             let (native, mujoco) = (native?, mujoco?);
             let apart = core::array::from_fn(|i| {

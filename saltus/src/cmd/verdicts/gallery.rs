@@ -205,7 +205,7 @@ mod tests {
             verdict: Err("no plan".to_owned()),
             kept: None,
         };
-        let page = page(&[cell(Sim::Native), cell(Sim::Mujoco)]);
+        let page = page(&[cell(Sim::Native), cell(Sim::MUJOCO)]);
         assert!(page.contains("<h2>my &lt;task></h2>") && page.contains("no plan"));
         assert!(page.contains("0 of 2 runs") && !page.contains("<a "));
         assert_eq!(page.matches("class=\"card\"").count(), 1);

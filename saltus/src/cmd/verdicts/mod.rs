@@ -65,7 +65,7 @@ pub(crate) struct Args {
 impl Args {
     fn sims(&self) -> Vec<Sim> {
         match (self.sim.as_slice(), cfg!(feature = "mujoco")) {
-            ([], true) => vec![Sim::Native, Sim::Mujoco],
+            ([], true) => vec![Sim::Native, Sim::MUJOCO],
             ([], false) => vec![Sim::Native],
             (given, _) => given.to_vec(),
         }
@@ -88,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     }
     args.sim.iter().try_for_each(|sim| sim.check())?;
     if args.agreement {
-        Sim::Mujoco.check()?;
+        Sim::MUJOCO.check()?;
     }
     interrupt::listen()?;
     let expected = args.expect.as_deref().map(Expected::read).transpose()?;
