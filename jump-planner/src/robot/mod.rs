@@ -117,7 +117,8 @@ impl Quadruped {
     }
 
     /// The same robot with all its mass in the trunk: the single rigid body with its legs where they are at the `start`, on legs that weigh
-    /// nothing and whose torques have no limit.
+    /// nothing and whose torques have no limit. The joints' rotors stay: they load their own motors alone, and without them nothing holds
+    /// the legs' accelerations.
     ///
     /// # Errors
     /// Tables that are no model.
@@ -138,7 +139,6 @@ impl Quadruped {
             mass: 0.0,
             first: [0.0; 3],
             second: [0.0; 6],
-            rotor_inertia: 0.0,
             ..body
         });
         Ok(Self::leak(Data {
