@@ -82,7 +82,7 @@ def callgrind(command, inside):
 
 def instructions_of_ours(recorded, path, way):
     """Of each program, `way` being cold or warm."""
-    return callgrind([recorded, str(path), "/dev/null", way], f"recorded::{way}*")
+    return callgrind([recorded, str(path), "/dev/null", way], f"recorded::{way}")
 
 
 def instructions_of_daqp(path):
