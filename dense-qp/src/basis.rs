@@ -12,7 +12,8 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, dot, head, head_mut, put, span, span_mut, sub_scaled};
+use crate::kernels::{at, ceil4, dot, dot_in, floor4, head, put, span, span_mut};
+use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
 
@@ -87,6 +88,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         let n = factor.dim;
         self.dim = n;
+        let end = ceil4(n, N);
         for (i, u) in factor.u.iter().enumerate().take(n).rev() {
             let Some((upper, lower)) = self.j.split_at_mut_checked(i + 1) else {
                 break;
@@ -94,12 +96,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             let Some(row) = upper.last_mut() else { break };
             row.fill(T::ZERO);
             put(row, i, T::ONE);
-            for (k, below) in lower.iter().take(n - i - 1).enumerate() {
-                let f = at(u, i + 1 + k);
-                if f != T::ZERO {
-                    sub_scaled(span_mut(row, i + 1 + k, n), f, span(below, i + 1 + k, n));
-                }
-            }
+            sub_triangle(row, span(u, i + 1, n), lower, i + 1, end);
         }
         for (k, w) in factor.weight.iter().take(n).enumerate() {
             put(&mut self.cos, k, math::sqrt(*w));
@@ -111,11 +108,13 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
     }
 
-    /// d ← d + f·Jᵀeᵢ for free variable i.
-    #[inline(always)]
-    pub(crate) fn add_coordinates(&self, i: usize, f: T, d: &mut [T; N]) {
-        if let Some(row) = self.j.get(i) {
-            sub_scaled(head_mut(d, self.dim), -f, row);
+    /// d ← −Jᵀa, a being `entries` on the free variables from `first`, and zero on the others.
+    pub(crate) fn coordinates(&self, first: usize, entries: &[T], d: &mut [T; N]) {
+        d.fill(T::ZERO);
+        let used = |a: &T| *a != T::ZERO;
+        if let (Some(from), Some(last)) = (entries.iter().position(used), entries.iter().rposition(used)) {
+            let rows = span(&self.j, first + from, self.dim);
+            sub_rows(d, span(entries, from, last + 1), rows, 0, ceil4(self.dim, N));
         }
     }
 
@@ -133,9 +132,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         free_variables: &[usize],
         step: &mut [T; N],
     ) {
-        let d = span(d, from, self.dim);
+        let (d, end) = (tail(d, from), ceil4(self.dim, N));
         for (row, v) in self.j.iter().zip(free_variables) {
-            put(step, *v, dot(span(row, from, self.dim), d));
+            put(step, *v, dot_in(row, &d, floor4(from), end));
         }
     }
 
@@ -153,11 +152,13 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         // u = d₂ + signed·e, and I − u uᵀ/(uᵀd₂) turns d₂ into −signed·e.
         put(&mut c.d, k, first + signed);
         let share = T::ONE / (c.free + math::abs(first) * length);
-        let u = span(&c.d, k, n);
-        for (row, v) in self.j.iter_mut().zip(elimination.free_variables()) {
-            let f = (at(step, *v) + signed * at(row.as_slice(), k)) * share;
-            sub_scaled(span_mut(row, k, n), f, u);
+        let rows = self.j.iter().zip(elimination.free_variables());
+        let mut shares = [T::ZERO; N];
+        for (f, (row, v)) in shares.iter_mut().zip(rows) {
+            *f = (at(step, *v) + signed * at(row, k)) * share;
         }
+        let rows = self.j.get_mut(..n).unwrap_or(&mut []);
+        sub_outer(rows, &shares, &tail(&c.d, k), floor4(k), ceil4(n, N));
         if let Some(column) = self.r.get_mut(k) {
             for (r, d) in column.iter_mut().zip(&c.d).take(k) {
                 *r = *d;
@@ -253,4 +254,14 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             }
         }
     }
+}
+
+/// d with zeros before entry `from`, as far as kernels look that start at full width.
+#[inline(always)]
+fn tail<T: Scalar, const N: usize>(d: &[T; N], from: usize) -> [T; N] {
+    let mut tail = *d;
+    for i in floor4(from)..from {
+        put(&mut tail, i, T::ZERO);
+    }
+    tail
 }

@@ -3,7 +3,7 @@
 use so3::{Scalar, math};
 
 use super::violated::Look;
-use super::{Search, is_range, scale_inverse, signed};
+use super::{Search, is_range, scale_inverse};
 use crate::Status;
 use crate::kernels::{at, head, head_mut, max_abs, put};
 use crate::settings::row_tolerance;
@@ -180,7 +180,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         } else {
             row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
         };
-        let sign = signed(side, T::ONE);
+        // −d first.
         let (basis, d) = (&w.basis, &mut w.candidate.d);
         if w.elimination.has_basic() {
             if id < M {
@@ -191,25 +191,31 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
             let reduced = head(&w.vec_a, w.factor.dim);
             if max_abs(reduced) > least {
-                for (i, a) in reduced.iter().enumerate() {
-                    if *a != T::ZERO {
-                        basis.add_coordinates(i, sign * *a, d);
-                    }
-                }
+                basis.coordinates(0, reduced, d);
             }
         } else if id < M {
             let (from, row) = self.p.entries(id);
-            let free = |k: usize| w.elimination.free_index(from + k);
-            let large = |(k, a): (usize, &T)| math::abs(*a) > least && free(k).is_some();
-            if least == T::ZERO || row.iter().enumerate().any(large) {
+            if w.elimination.rank == 0 {
+                basis.coordinates(from, row, d);
+            } else {
+                w.vec_a.fill(T::ZERO);
                 for (k, a) in row.iter().enumerate() {
-                    if let (true, Some(i)) = (*a != T::ZERO, free(k)) {
-                        basis.add_coordinates(i, sign * *a, d);
+                    if let Some(i) = w.elimination.free_index(from + k) {
+                        put(&mut w.vec_a, i, *a);
                     }
+                }
+                let reduced = head(&w.vec_a, w.factor.dim);
+                if max_abs(reduced) > least {
+                    basis.coordinates(0, reduced, d);
                 }
             }
         } else if let Some(i) = w.elimination.free_index(id - M) {
-            basis.add_coordinates(i, sign, d);
+            basis.coordinates(i, &[T::ONE], d);
+        }
+        if side > 0 {
+            for d in head_mut(d, w.factor.dim) {
+                *d = -*d;
+            }
         }
         let w = &mut *self.w;
         w.basis.project(&mut w.candidate);

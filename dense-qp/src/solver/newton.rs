@@ -4,7 +4,7 @@ use so3::Scalar;
 
 use super::Search;
 use crate::Workspace;
-use crate::kernels::{at, put};
+use crate::kernels::{at, head, put};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops
@@ -128,9 +128,10 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
     #[inline(always)]
     pub(super) fn gradient_coordinates(&mut self) {
         self.elimination.reduce(&self.gradient, &mut self.vec_a);
-        self.candidate.d.fill(T::ZERO);
-        for (i, g) in self.vec_a.iter().enumerate().take(self.factor.dim) {
-            self.basis.add_coordinates(i, *g, &mut self.candidate.d);
+        let reduced = head(&self.vec_a, self.factor.dim);
+        self.basis.coordinates(0, reduced, &mut self.candidate.d);
+        for d in &mut self.candidate.d {
+            *d = -*d;
         }
     }
 }
