@@ -12,7 +12,7 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, dot, dot_in, floor4, head, put, span, span_mut};
+use crate::kernels::{at, ceil4, dot, dots, floor4, head, head_mut, put, rotate, span};
 use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
@@ -27,7 +27,7 @@ pub(crate) struct Candidate<T, const N: usize> {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Basis<T, const N: usize> {
-    /// J, a row per free variable.
+    /// J by columns, an entry per free variable.
     j: [[T; N]; N],
     /// R by columns.
     r: [[T; N]; N],
@@ -89,33 +89,34 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let n = factor.dim;
         self.dim = n;
         let end = ceil4(n, N);
-        for (i, u) in factor.u.iter().enumerate().take(n).rev() {
-            let Some((upper, lower)) = self.j.split_at_mut_checked(i + 1) else {
+        // Column c of U⁻¹ is eₖ less the columns before it, each times what U has in its row.
+        let mut shares = [T::ZERO; N];
+        for c in 0..n {
+            let Some((before, [column, ..])) = self.j.split_at_mut_checked(c) else {
                 break;
             };
-            let Some(row) = upper.last_mut() else { break };
-            row.fill(T::ZERO);
-            put(row, i, T::ONE);
-            sub_triangle(row, span(u, i + 1, n), lower, i + 1, end);
+            for (f, u) in shares.iter_mut().zip(&factor.u).take(c) {
+                *f = at(u, c);
+            }
+            column.fill(T::ZERO);
+            sub_triangle(column, &shares, before, end);
+            put(column, c, T::ONE);
         }
-        for (k, w) in factor.weight.iter().take(n).enumerate() {
-            put(&mut self.cos, k, math::sqrt(*w));
-        }
-        for (i, row) in self.j.iter_mut().take(n).enumerate() {
-            for (x, s) in span_mut(row, i, n).iter_mut().zip(span(&self.cos, i, n)) {
-                *x *= *s;
+        for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
+            let scale = math::sqrt(*w);
+            for x in head_mut(column, c + 1) {
+                *x *= scale;
             }
         }
     }
 
-    /// d ← −Jᵀa, a being `entries` on the free variables from `first`, and zero on the others.
-    pub(crate) fn coordinates(&self, first: usize, entries: &[T], d: &mut [T; N]) {
-        d.fill(T::ZERO);
+    /// d ← Jᵀa for a row over the free variables, with zeros up to the kernels' width.
+    pub(crate) fn coordinates(&self, row: &[T; N], d: &mut [T; N]) {
         let used = |a: &T| *a != T::ZERO;
-        if let (Some(from), Some(last)) = (entries.iter().position(used), entries.iter().rposition(used)) {
-            let rows = span(&self.j, first + from, self.dim);
-            sub_rows(d, span(entries, from, last + 1), rows, 0, ceil4(self.dim, N));
-        }
+        let entries = head(row, self.dim);
+        let first = entries.iter().position(used).unwrap_or(0);
+        let end = entries.iter().rposition(used).map_or(0, |last| last + 1);
+        dots(d, head(&self.j, self.dim), row, [floor4(first), ceil4(end, N)]);
     }
 
     /// Measures a candidate whose `d` is set.
@@ -132,9 +133,11 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         free_variables: &[usize],
         step: &mut [T; N],
     ) {
-        let (d, end) = (tail(d, from), ceil4(self.dim, N));
-        for (row, v) in self.j.iter().zip(free_variables) {
-            put(step, *v, dot_in(row, &d, floor4(from), end));
+        let mut z = [T::ZERO; N];
+        let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
+        sub_rows(&mut z, d, columns, 0, ceil4(self.dim, N));
+        for (z, v) in z.iter().zip(free_variables) {
+            put(step, *v, -*z);
         }
     }
 
@@ -152,13 +155,13 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         // u = d₂ + signed·e, and I − u uᵀ/(uᵀd₂) turns d₂ into −signed·e.
         put(&mut c.d, k, first + signed);
         let share = T::ONE / (c.free + math::abs(first) * length);
-        let rows = self.j.iter().zip(elimination.free_variables());
-        let mut shares = [T::ZERO; N];
-        for (f, (row, v)) in shares.iter_mut().zip(rows) {
-            *f = (at(step, *v) + signed * at(row, k)) * share;
+        let columns = self.j.get_mut(k..n).unwrap_or(&mut []);
+        let Some(first) = columns.first() else { return };
+        let mut shares = *first;
+        for (f, v) in shares.iter_mut().zip(elimination.free_variables()) {
+            *f = (at(step, *v) + signed * *f) * share;
         }
-        let rows = self.j.get_mut(..n).unwrap_or(&mut []);
-        sub_outer(rows, &shares, &tail(&c.d, k), floor4(k), ceil4(n, N));
+        sub_outer(columns, span(&c.d, k, n), &shares, 0, ceil4(n, N));
         if let Some(column) = self.r.get_mut(k) {
             for (r, d) in column.iter_mut().zip(&c.d).take(k) {
                 *r = *d;
@@ -200,24 +203,16 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
                 put(column, i + 1, cos * y - sin * x);
             }
         }
-        let turns = || {
-            let cos = span(&self.cos, k, last);
-            cos.iter().zip(span(&self.sin, k, last))
-        };
-        let turn = |row: &mut [T; N]| {
-            let row = span_mut(row, k, last + 1);
-            let mut carried = at(row, 0);
-            for (i, (cos, sin)) in turns().enumerate() {
-                let next = at(row, i + 1);
-                put(row, i, *cos * carried + *sin * next);
-                carried = *cos * next - *sin * carried;
-            }
-            put(row, last - k, carried);
-        };
-        for row in self.j.iter_mut().take(self.dim) {
-            turn(row);
+        for i in k..last {
+            let (cos, sin) = (at(&self.cos, i), at(&self.sin, i));
+            let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut()) else {
+                break;
+            };
+            rotate(first, second, cos, sin, ceil4(self.dim, N));
+            let (x, y) = (at(&c.d, i), at(&c.d, i + 1));
+            put(&mut c.d, i, cos * x + sin * y);
+            put(&mut c.d, i + 1, cos * y - sin * x);
         }
-        turn(&mut c.d);
         self.len = last;
         c.measure(last, self.dim);
     }
@@ -254,14 +249,4 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             }
         }
     }
-}
-
-/// d with zeros before entry `from`, as far as kernels look that start at full width.
-#[inline(always)]
-fn tail<T: Scalar, const N: usize>(d: &[T; N], from: usize) -> [T; N] {
-    let mut tail = *d;
-    for i in floor4(from)..from {
-        put(&mut tail, i, T::ZERO);
-    }
-    tail
 }

@@ -281,10 +281,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// [`Elimination::reduce`] of the unit row of `variable`.
     pub(crate) fn reduce_unit(&self, variable: usize, y: &mut [T; N]) {
         y.fill(T::ZERO);
+        if let Some(i) = self.free_index(variable) {
+            put(y, i, T::ONE);
+            return;
+        }
         let column = at(&self.place, variable);
-        if column >= self.rank {
-            put(y, column - self.rank, T::ONE);
-        } else if column >= self.fixed {
+        if column >= self.fixed {
             sub_scaled(y, T::ONE, span(row(&self.lu, column), self.rank, N));
         }
     }

@@ -153,29 +153,31 @@ fn sub_block<T: Scalar, const N: usize, const W: usize>(
     s
 }
 
-/// Columns `from..to` of y ← y − Σ fᵢ·aᵢ, block by block, the rows up to `reach` of a block's end being those that are not zero in it.
+/// Columns `from..to` of y ← y − Σ fᵢ·aᵢ, block by block, without the rows before `first` of a block's column.
 #[inline(always)]
 fn sub_blocks<T: Scalar, const N: usize>(
     y: &mut [T; N],
     factors: &[T],
     rows: &[[T; N]],
     [from, to]: [usize; 2],
-    reach: impl Fn(usize) -> usize,
+    first: impl Fn(usize) -> usize,
 ) {
+    let all = factors.len().min(rows.len());
     let mut column = from;
     while column < to {
         let left = to - column;
         let Some(y) = y.get_mut(column..to) else {
             return;
         };
+        let (factors, rows) = (span(factors, first(column), all), span(rows, first(column), all));
         column += if let (8.., Some(s)) = (left, y.first_chunk_mut::<8>()) {
-            *s = sub_block(*s, head(factors, reach(column + 8)), rows, column);
+            *s = sub_block(*s, factors, rows, column);
             8
         } else if let (4.., Some(s)) = (left, y.first_chunk_mut::<4>()) {
-            *s = sub_block(*s, head(factors, reach(column + 4)), rows, column);
+            *s = sub_block(*s, factors, rows, column);
             4
         } else if let Some(s) = y.first_chunk_mut::<1>() {
-            *s = sub_block(*s, head(factors, reach(column + 1)), rows, column);
+            *s = sub_block(*s, factors, rows, column);
             1
         } else {
             1
@@ -192,22 +194,33 @@ pub(crate) fn sub_rows<T: Scalar, const N: usize>(
     from: usize,
     to: usize,
 ) {
-    let all = factors.len().min(rows.len());
-    sub_blocks(y, factors, rows, [from, to], |_| all);
+    sub_blocks(y, factors, rows, [from, to], |_| 0);
 }
 
-/// [`sub_rows`] of the rows of an upper triangle, row i of which is zero before column `first` + i.
+/// [`sub_rows`] of the rows of a lower triangle, row i of which is zero after column i.
 #[inline(never)]
 pub(crate) fn sub_triangle<T: Scalar, const N: usize>(
     y: &mut [T; N],
     factors: &[T],
     rows: &[[T; N]],
-    first: usize,
     to: usize,
 ) {
-    let all = factors.len().min(rows.len());
-    let reach = |end: usize| end.saturating_sub(first).min(all);
-    sub_blocks(y, factors, rows, [floor4(first), to], reach);
+    let to = to.min(ceil4(rows.len(), N));
+    sub_blocks(y, factors, rows, [0, to], |column| column);
+}
+
+/// (x, y) ← (c·x + s·y, c·y − s·x) on columns up to `to`, a multiple of 4 (or N).
+#[inline(never)]
+pub(crate) fn rotate<T: Scalar, const N: usize>(
+    x: &mut [T; N],
+    y: &mut [T; N],
+    cos: T,
+    sin: T,
+    to: usize,
+) {
+    for (x, y) in head_mut(x, to).iter_mut().zip(head_mut(y, to)) {
+        (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
+    }
 }
 
 /// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on
@@ -302,6 +315,61 @@ pub(crate) fn dot_in<T: Scalar, const N: usize>(
         }
     }
     ((s[0] + s[2]) + (s[1] + s[3])) + rest
+}
+
+/// Products of x with rows, two at a time, over columns `from..to`; these are multiples of 4 (or `to` = N). As [`dot_in`] of each.
+#[inline(never)]
+pub(crate) fn dots<T: Scalar, const N: usize>(
+    out: &mut [T],
+    rows: &[[T; N]],
+    x: &[T; N],
+    [from, to]: [usize; 2],
+) {
+    let (pairs, last) = rows.as_chunks::<2>();
+    let mut out = out.iter_mut();
+    for [a, b] in pairs {
+        let (s, t) = dot_pair([a, b], x, from, to);
+        if let (Some(first), Some(second)) = (out.next(), out.next()) {
+            (*first, *second) = (s, t);
+        }
+    }
+    if let ([a], Some(out)) = (last, out.next()) {
+        *out = dot_in(a, x, from, to);
+    }
+}
+
+/// [`dot_in`] of two rows with x.
+#[inline(always)]
+fn dot_pair<T: Scalar, const N: usize>(
+    [a, b]: [&[T; N]; 2],
+    x: &[T; N],
+    from: usize,
+    to: usize,
+) -> (T, T) {
+    let blocks = from / 4..to / 4;
+    let (mut s, mut t) = ([T::ZERO; 4], [T::ZERO; 4]);
+    if let (Some(a), Some(b), Some(x)) = (
+        a.as_chunks::<4>().0.get(blocks.clone()),
+        b.as_chunks::<4>().0.get(blocks.clone()),
+        x.as_chunks::<4>().0.get(blocks),
+    ) {
+        for ((a, b), x) in a.iter().zip(b).zip(x) {
+            for k in 0..4 {
+                s[k] += a[k] * x[k];
+                t[k] += b[k] * x[k];
+            }
+        }
+    }
+    let (mut s_rest, mut t_rest) = (T::ZERO, T::ZERO);
+    if to == N {
+        let rest = a.as_chunks::<4>().1.iter().zip(b.as_chunks::<4>().1);
+        for ((a, b), x) in rest.zip(x.as_chunks::<4>().1) {
+            s_rest += *a * *x;
+            t_rest += *b * *x;
+        }
+    }
+    let sum = |s: [T; 4], rest: T| ((s[0] + s[2]) + (s[1] + s[3])) + rest;
+    (sum(s, s_rest), sum(t, t_rest))
 }
 
 /// y ← y − f·a − g·b.

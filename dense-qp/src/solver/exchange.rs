@@ -5,7 +5,8 @@ use so3::{Scalar, math};
 use super::violated::Look;
 use super::{Search, is_range, scale_inverse};
 use crate::Status;
-use crate::kernels::{at, head, head_mut, max_abs, put};
+use crate::basis::Basis;
+use crate::kernels::{at, head_mut, max_abs, put};
 use crate::settings::row_tolerance;
 
 /// How the search for a point that satisfies all rows ended.
@@ -173,46 +174,38 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn prepare(&mut self, id: usize, side: i8) {
         let w = &mut *self.w;
         w.basis.prepare(&w.factor);
-        head_mut(&mut w.candidate.d, w.factor.dim).fill(T::ZERO);
         // What is left of a row that depends on the equalities is round-off, not a row.
         let least = if w.elimination.rank == 0 {
             T::ZERO
         } else {
             row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
         };
-        // −d first.
         let (basis, d) = (&w.basis, &mut w.candidate.d);
-        if w.elimination.has_basic() {
-            if id < M {
-                w.elimination
-                    .reduce(crate::kernels::row(self.p.rows, id), &mut w.vec_a);
-            } else {
-                w.elimination.reduce_unit(id - M, &mut w.vec_a);
+        match self.p.rows.get(id) {
+            // Outside of its span nothing of a row is read.
+            Some(row) if w.elimination.rank == 0 && self.p.spans.is_none() => {
+                basis.coordinates(row, d);
             }
-            let reduced = head(&w.vec_a, w.factor.dim);
-            if max_abs(reduced) > least {
-                basis.coordinates(0, reduced, d);
+            Some(row) if w.elimination.has_basic() => {
+                w.elimination.reduce(row, &mut w.vec_a);
+                project(basis, &w.vec_a, least, d);
             }
-        } else if id < M {
-            let (from, row) = self.p.entries(id);
-            if w.elimination.rank == 0 {
-                basis.coordinates(from, row, d);
-            } else {
+            Some(_) => {
+                let (from, row) = self.p.entries(id);
                 w.vec_a.fill(T::ZERO);
                 for (k, a) in row.iter().enumerate() {
                     if let Some(i) = w.elimination.free_index(from + k) {
                         put(&mut w.vec_a, i, *a);
                     }
                 }
-                let reduced = head(&w.vec_a, w.factor.dim);
-                if max_abs(reduced) > least {
-                    basis.coordinates(0, reduced, d);
-                }
+                project(basis, &w.vec_a, least, d);
             }
-        } else if let Some(i) = w.elimination.free_index(id - M) {
-            basis.coordinates(i, &[T::ONE], d);
+            None => {
+                w.elimination.reduce_unit(id - M, &mut w.vec_a);
+                project(basis, &w.vec_a, least, d);
+            }
         }
-        if side > 0 {
+        if side < 0 {
             for d in head_mut(d, w.factor.dim) {
                 *d = -*d;
             }
@@ -277,5 +270,15 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             put(&mut w.side, i - 1, side);
             put(&mut w.lambda, i - 1, lambda);
         }
+    }
+}
+
+/// d ← Jᵀa for a reduced row, or 0 where no entry of it is larger than `least`.
+#[inline]
+fn project<T: Scalar, const N: usize>(basis: &Basis<T, N>, row: &[T; N], least: T, d: &mut [T; N]) {
+    if max_abs(row) > least {
+        basis.coordinates(row, d);
+    } else {
+        d.fill(T::ZERO);
     }
 }

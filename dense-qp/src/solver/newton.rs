@@ -4,7 +4,7 @@ use so3::Scalar;
 
 use super::Search;
 use crate::Workspace;
-use crate::kernels::{at, head, put};
+use crate::kernels::{at, put};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops
@@ -128,10 +128,6 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
     #[inline(always)]
     pub(super) fn gradient_coordinates(&mut self) {
         self.elimination.reduce(&self.gradient, &mut self.vec_a);
-        let reduced = head(&self.vec_a, self.factor.dim);
-        self.basis.coordinates(0, reduced, &mut self.candidate.d);
-        for d in &mut self.candidate.d {
-            *d = -*d;
-        }
+        self.basis.coordinates(&self.vec_a, &mut self.candidate.d);
     }
 }
