@@ -27,8 +27,8 @@ pub(crate) struct Candidate<T, const N: usize> {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Basis<T, const N: usize> {
-    /// J by columns, an entry per free variable.
-    j: [[T; N]; N],
+    /// J by columns, an entry per free variable. Scratch until [`Basis::prepare`].
+    pub(crate) j: [[T; N]; N],
     /// R by columns.
     r: [[T; N]; N],
     /// 1 / R_kk.

@@ -372,39 +372,6 @@ fn dot_pair<T: Scalar, const N: usize>(
     (sum(s, s_rest), sum(t, t_rest))
 }
 
-/// y ← y − f·a − g·b.
-#[inline(never)]
-pub(crate) fn sub_scaled_pair<T: Scalar>(y: &mut [T], f: T, a: &[T], g: T, b: &[T]) {
-    let n = y.len().min(a.len()).min(b.len());
-    let (y, a, b) = (head_mut(y, n), head(a, n), head(b, n));
-    let (y4, y1) = y.as_chunks_mut::<4>();
-    let (a4, a1) = a.as_chunks::<4>();
-    let (b4, b1) = b.as_chunks::<4>();
-    for ((y, a), b) in y4.iter_mut().zip(a4).zip(b4) {
-        *y = [
-            y[0] - (f * a[0] + g * b[0]),
-            y[1] - (f * a[1] + g * b[1]),
-            y[2] - (f * a[2] + g * b[2]),
-            y[3] - (f * a[3] + g * b[3]),
-        ];
-    }
-    for ((y, a), b) in y1.iter_mut().zip(a1).zip(b1) {
-        *y -= f * *a + g * *b;
-    }
-}
-
-/// y ← y − Σ f·a, two rows at a time: half as often through y. Rows with f = 0 cost nothing.
-#[inline(always)]
-pub(crate) fn sub_all<'a, T: Scalar>(y: &mut [T], rows: impl Iterator<Item = (T, &'a [T])>) {
-    let mut rows = rows.filter(|(f, _)| *f != T::ZERO);
-    while let Some((f, a)) = rows.next() {
-        match rows.next() {
-            Some((g, b)) => sub_scaled_pair(y, f, a, g, b),
-            None => sub_scaled(y, f, a),
-        }
-    }
-}
-
 /// max |aᵢ| (NaN entries are skipped), in four lanes.
 #[inline(always)]
 pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {
