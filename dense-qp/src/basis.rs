@@ -12,7 +12,7 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, dot, dots, floor4, head, head_mut, put, rotate, span};
+use crate::kernels::{at, ceil4, dot, dots, floor4, head, head_mut, put, rotate, span, span_mut};
 use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
@@ -29,7 +29,7 @@ pub(crate) struct Candidate<T, const N: usize> {
 pub(crate) struct Basis<T, const N: usize> {
     /// J by columns, an entry per free variable. Scratch until [`Basis::prepare`].
     pub(crate) j: [[T; N]; N],
-    /// R by columns.
+    /// R by rows, zeros outside of its triangle.
     r: [[T; N]; N],
     /// 1 / R_kk.
     r_inverse: [T; N],
@@ -162,11 +162,12 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             *f = (at(step, *v) + signed * *f) * share;
         }
         sub_outer(columns, span(&c.d, k, n), &shares, 0, ceil4(n, N));
-        if let Some(column) = self.r.get_mut(k) {
-            for (r, d) in column.iter_mut().zip(&c.d).take(k) {
-                *r = *d;
+        if let Some((above, [row, ..])) = self.r.split_at_mut_checked(k) {
+            for (r, d) in above.iter_mut().zip(&c.d) {
+                put(r, k, *d);
             }
-            put(column, k, -signed);
+            row.fill(T::ZERO);
+            put(row, k, -signed);
             put(&mut self.r_inverse, k, -T::ONE / signed);
             self.len += 1;
         }
@@ -178,37 +179,32 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             return;
         }
         let last = self.len - 1;
+        for row in self.r.iter_mut().take(self.len) {
+            row.copy_within(k + 1..self.len, k);
+            put(row, last, T::ZERO);
+        }
         for i in k..last {
-            let Some((before, after)) = self.r.split_at_mut_checked(i + 1) else {
+            let Some([row, below]) = self.r.get_mut(i..).and_then(|r| r.first_chunk_mut()) else {
                 break;
             };
-            // Column i + 1 becomes column i; what it has below the diagonal is turned away.
-            let (Some(to), Some(from)) = (before.last_mut(), after.first()) else {
-                break;
-            };
-            let (x, y) = (at(from, i), at(from, i + 1));
+            // What the next row has before its diagonal is turned away.
+            let (x, y) = (at(row.as_slice(), i), at(below.as_slice(), i));
             let length = math::sqrt(x * x + y * y);
             let inverse = T::ONE / length;
             let (cos, sin) = (x * inverse, y * inverse);
-            for (to, from) in to.iter_mut().zip(from).take(i) {
-                *to = *from;
-            }
-            put(to, i, length);
+            rotate(row, below, [cos, sin], [floor4(i), ceil4(last, N)]);
+            put(row, i, length);
+            put(below, i, T::ZERO);
             put(&mut self.r_inverse, i, inverse);
             put(&mut self.cos, i, cos);
             put(&mut self.sin, i, sin);
-            for column in after.iter_mut().take(last - i).skip(1) {
-                let (x, y) = (at(column.as_slice(), i), at(column.as_slice(), i + 1));
-                put(column, i, cos * x + sin * y);
-                put(column, i + 1, cos * y - sin * x);
-            }
         }
         for i in k..last {
             let (cos, sin) = (at(&self.cos, i), at(&self.sin, i));
             let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut()) else {
                 break;
             };
-            rotate(first, second, cos, sin, ceil4(self.dim, N));
+            rotate(first, second, [cos, sin], [0, ceil4(self.dim, N)]);
             let (x, y) = (at(&c.d, i), at(&c.d, i + 1));
             put(&mut c.d, i, cos * x + sin * y);
             put(&mut c.d, i + 1, cos * y - sin * x);
@@ -220,33 +216,25 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// v ← R⁻¹v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        for (k, (column, inverse)) in self
-            .r
-            .iter()
-            .zip(&self.r_inverse)
-            .enumerate()
-            .take(self.len)
-            .rev()
-        {
-            let Some((before, rest)) = v.split_at_mut_checked(k) else {
-                break;
-            };
-            if let Some(e) = rest.first_mut() {
-                *e *= *inverse;
-                sub_scaled(before, *e, column);
+        let len = self.len;
+        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (row, inverse)) in rows.take(len).rev() {
+            let s = dot(span(row, k + 1, len), span(v, k + 1, len));
+            if let Some(e) = v.get_mut(k) {
+                *e = (*e - s) * *inverse;
             }
         }
     }
 
     /// v ← R⁻ᵀv.
-    #[inline]
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let columns = self.r.iter().zip(&self.r_inverse).enumerate();
-        for (k, (column, inverse)) in columns.take(self.len) {
-            let s = dot(head(column, k), head(v, k));
-            if let Some(e) = v.get_mut(k) {
-                *e = (*e - s) * *inverse;
-            }
+        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (row, inverse)) in rows.take(self.len) {
+            let Some((e, after)) = span_mut(v, k, self.len).split_first_mut() else {
+                break;
+            };
+            *e *= *inverse;
+            sub_scaled(after, *e, span(row, k + 1, self.len));
         }
     }
 }

@@ -273,7 +273,11 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             for (f, (_, v)) in shares.iter_mut().zip(self.basic()) {
                 *f = at(a, v);
             }
-            sub_rows(y, &shares, self.basic_rows(), 0, ceil4(free, N));
+            let used = |f: &T| *f != T::ZERO;
+            let first = shares.iter().position(used).unwrap_or(0);
+            let end = shares.iter().rposition(used).map_or(0, |last| last + 1);
+            let rows = span(self.basic_rows(), first, end);
+            sub_rows(y, span(&shares, first, end), rows, 0, ceil4(free, N));
             span_mut(y, free, N).fill(T::ZERO);
         }
     }

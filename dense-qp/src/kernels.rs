@@ -209,16 +209,15 @@ pub(crate) fn sub_triangle<T: Scalar, const N: usize>(
     sub_blocks(y, factors, rows, [0, to], |column| column);
 }
 
-/// (x, y) ← (c·x + s·y, c·y − s·x) on columns up to `to`, a multiple of 4 (or N).
+/// (x, y) ← (c·x + s·y, c·y − s·x) on columns `from..to`; these are multiples of 4 (or `to` = N).
 #[inline(never)]
 pub(crate) fn rotate<T: Scalar, const N: usize>(
     x: &mut [T; N],
     y: &mut [T; N],
-    cos: T,
-    sin: T,
-    to: usize,
+    [cos, sin]: [T; 2],
+    [from, to]: [usize; 2],
 ) {
-    for (x, y) in head_mut(x, to).iter_mut().zip(head_mut(y, to)) {
+    for (x, y) in span_mut(x, from, to).iter_mut().zip(span_mut(y, from, to)) {
         (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
     }
 }

@@ -43,8 +43,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn search(&mut self) -> Pass {
         loop {
             match self.next() {
-                Ok(Some((id, side))) => {
-                    if let Some(status) = self.admit(id, side) {
+                Ok(Some((id, side, excess))) => {
+                    if let Some(status) = self.admit(id, side, excess) {
                         return Pass::Stop(status);
                     }
                 }
@@ -95,9 +95,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         self.w.state(id) == 0 && is_range(l, u) && limit.is_finite_number()
     }
 
-    /// Moves toward the violated row until it is met and enters; rows whose multipliers reach zero on the way leave. Returns why the
+    /// Moves toward the row that x exceeds by `excess` until it is met and enters; rows whose multipliers reach zero on the way leave. Returns why the
     /// search ends, if it does.
-    fn admit(&mut self, id: usize, side: i8) -> Option<Status> {
+    fn admit(&mut self, id: usize, side: i8, mut excess: T) -> Option<Status> {
         self.prepare(id, side);
         let mut lambda = T::ZERO;
         loop {
@@ -110,7 +110,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.turn();
             let d = self.w.candidate.free;
             let full = if d > T::ZERO {
-                self.excess(id, side) / d
+                excess / d
             } else {
                 T::INFINITY
             };
@@ -129,6 +129,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.advance(t);
             lambda += t;
             self.leave(k);
+            excess = self.excess(id, side);
         }
     }
 

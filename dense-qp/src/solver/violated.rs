@@ -95,12 +95,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn excess_above(&mut self, least: T, id: usize, side: i8) -> Option<T> {
         let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
         let scaled = self.excess(id, side) * inverse;
-        if scaled > least {
-            let (l, u) = self.p.limits(id);
-            let limit = if side > 0 { u } else { l };
-            return (scaled > self.row_noise(id, limit, inverse)).then_some(scaled);
-        }
-        None
+        (scaled > least && self.is_violated(scaled, id, side)).then_some(scaled)
+    }
+
+    /// Whether x is outside a row by more than round-off, `scaled` being by how much, relative to the row's scale.
+    fn is_violated(&mut self, scaled: T, id: usize, side: i8) -> bool {
+        let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
+        let (l, u) = self.p.limits(id);
+        scaled > self.row_noise(id, if side > 0 { u } else { l }, inverse)
     }
 
     /// How far x is from the limits of the active rows and the equalities, relative to their scale;
@@ -128,30 +130,34 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         drift
     }
 
-    /// The row to enter next: the most violated one of the pool, or of all rows when the pool is
-    /// used up.
-    pub(super) fn next(&mut self) -> Result<Option<(usize, i8)>, Status> {
-        for refilled in [false, true] {
-            let (mut worst, mut found) = (self.s.feasibility, None);
-            for k in 0..self.w.pool_len {
-                let (id, side) = at(&self.w.pool, k);
-                if self.w.state(id) != 0 {
-                    continue;
-                }
-                if let Some(scaled) = self.excess_above(worst, id, side) {
-                    (worst, found) = (scaled, Some((id, side)));
-                }
+    /// The row to enter next, on which side, and by how much x exceeds it: the most violated one of the pool, or of all rows when the
+    /// pool is used up.
+    pub(super) fn next(&mut self) -> Result<Option<(usize, i8, T)>, Status> {
+        let (mut worst, mut found) = (self.s.feasibility, None);
+        for k in 0..self.w.pool_len {
+            let (id, side) = at(&self.w.pool, k);
+            if self.w.state(id) != 0 {
+                continue;
             }
-            if found.is_some() || refilled {
-                return Ok(found);
-            }
-            match self.look() {
-                Look::Unsound => return Err(Status::Numerical),
-                Look::Feasible => return Ok(None),
-                Look::Violated => {}
+            let excess = self.excess(id, side);
+            let scaled = excess * scale_inverse::<T, N, M>(self.p, self.w, id);
+            if scaled > worst {
+                (worst, found) = (scaled, Some((id, side, excess)));
             }
         }
-        Ok(None)
+        if let Some((id, side, _)) = found
+            && self.is_violated(worst, id, side)
+        {
+            return Ok(found);
+        }
+        match self.look() {
+            Look::Unsound => Err(Status::Numerical),
+            Look::Feasible => Ok(None),
+            Look::Violated => {
+                let (id, side) = at(&self.w.pool, 0);
+                Ok(Some((id, side, self.excess(id, side))))
+            }
+        }
     }
 }
 
