@@ -115,7 +115,12 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let entries = head(row, self.dim);
         let first = entries.iter().position(used).unwrap_or(0);
         let end = entries.iter().rposition(used).map_or(0, |last| last + 1);
-        dots(d, head(&self.j, self.dim), row, [floor4(first), ceil4(end, N)]);
+        dots(
+            d,
+            head(&self.j, self.dim),
+            row,
+            [floor4(first), ceil4(end, N)],
+        );
     }
 
     /// Measures a candidate whose `d` is set.
@@ -200,7 +205,8 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         for i in k..last {
             let (cos, sin) = (at(&self.cos, i), at(&self.sin, i));
-            let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut()) else {
+            let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut())
+            else {
                 break;
             };
             rotate(first, second, [cos, sin], [0, ceil4(self.dim, N)]);

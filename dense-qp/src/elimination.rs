@@ -122,7 +122,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// Row k and basic variable k of those that are not merely fixed.
     fn basic(&self) -> impl Iterator<Item = (&[T; N], usize)> {
         let rows = self.lu.iter().zip(self.perm.iter().rev());
-        rows.map(|(row, v)| (row, *v)).take(self.rank).skip(self.fixed)
+        rows.map(|(row, v)| (row, *v))
+            .take(self.rank)
+            .skip(self.fixed)
     }
 
     /// Their rows.
@@ -231,7 +233,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             let mut shares = [T::ZERO; N];
             let (mut p, inverse) = (at(&self.rhs, k), at(&self.inverse, k));
             let of_row = span(r, free, N - 1 - k).iter().rev();
-            for ((share, u), known) in shares.iter_mut().zip(of_row).zip(span(&self.rhs, k + 1, rank)) {
+            for ((share, u), known) in
+                shares
+                    .iter_mut()
+                    .zip(of_row)
+                    .zip(span(&self.rhs, k + 1, rank))
+            {
                 *share = *u;
                 p -= *u * *known;
             }
@@ -382,7 +389,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             sub_rows(c, &shares, self.basic_rows(), 0, end);
         }
         let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
-        for (i, ((o, v), m)) in out.iter_mut().zip(self.free_variables()).zip(magnitude).enumerate() {
+        for (i, ((o, v), m)) in out
+            .iter_mut()
+            .zip(self.free_variables())
+            .zip(magnitude)
+            .enumerate()
+        {
             let hv = row(h, *v);
             *m = at(hv, *v);
             for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
@@ -414,7 +426,11 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             let Some(e) = solved.first_mut() else { break };
             *e /= at(r, N - 1 - k);
             if k >= self.fixed && *e != T::ZERO {
-                sub_scaled(span_mut(rest, free, N - 1 - k), *e, span(r, free, N - 1 - k));
+                sub_scaled(
+                    span_mut(rest, free, N - 1 - k),
+                    *e,
+                    span(r, free, N - 1 - k),
+                );
             }
         }
         // Lᵀ μ = v

@@ -169,7 +169,10 @@ fn sub_blocks<T: Scalar, const N: usize>(
         let Some(y) = y.get_mut(column..to) else {
             return;
         };
-        let (factors, rows) = (span(factors, first(column), all), span(rows, first(column), all));
+        let (factors, rows) = (
+            span(factors, first(column), all),
+            span(rows, first(column), all),
+        );
         column += if let (8.., Some(s)) = (left, y.first_chunk_mut::<8>()) {
             *s = sub_block(*s, factors, rows, column);
             8

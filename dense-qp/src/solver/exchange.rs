@@ -16,27 +16,39 @@ pub(super) enum Pass {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// [`Search::search`] from the point without active rows, with what the last solve left: its `seeds` active rows, and the row that was
-    /// most violated at its first point. Where neither it nor one of them is so now, rows have moved, as in a receding horizon, and
-    /// those of old would only have to leave again.
+    /// [`Search::search`] from the point without active rows, with the `seeds` active rows that the last solve left. Where this start does
+    /// not look like its own, rows have moved, as in a receding horizon, and those of old would only have to leave again.
     pub(super) fn start(&mut self, seeds: usize) -> Pass {
         match self.look() {
             Look::Unsound => return Pass::Stop(Status::Numerical),
             Look::Feasible => return Pass::Feasible,
             Look::Violated => {}
         }
-        let worst = at(&self.w.pool, 0);
-        let mut known = self.w.id.iter().zip(&self.w.side).take(seeds);
-        let is_same = seeds > 0 && worst == self.w.first;
-        if is_same || known.any(|(id, side)| (*id, *side) == worst) {
+        if self.is_like_last() && seeds > 0 {
             self.recall(seeds);
             self.drop_negative();
             if self.has_pulling() {
                 return Pass::Stop(Status::Limit);
             }
         }
-        self.w.first = worst;
         self.search()
+    }
+
+    /// Whether the most violated rows are those of the last solve, violated by as much, to a tenth. Remembers them for the next.
+    fn is_like_last(&mut self) -> bool {
+        let now = core::array::from_fn(|k| {
+            if k >= self.w.pool_len {
+                return (0, 0, T::ZERO);
+            }
+            let (id, side) = at(&self.w.pool, k);
+            (id, side, self.excess(id, side))
+        });
+        let last = core::mem::replace(&mut self.w.first, now);
+        let mut pairs = now.iter().map(|(id, side, excess)| {
+            let same = last.iter().find(|row| (row.0, row.1) == (*id, *side));
+            same.is_some_and(|row| math::abs(row.2 - *excess) <= T::of(0.1) * *excess)
+        });
+        pairs.all(|is_same| is_same)
     }
 
     /// Enters violated rows until none is left.
@@ -109,11 +121,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.answer();
             self.turn();
             let d = self.w.candidate.free;
-            let full = if d > T::ZERO {
-                excess / d
-            } else {
-                T::INFINITY
-            };
+            let full = if d > T::ZERO { excess / d } else { T::INFINITY };
             let (t, blocking) = self.first_zero(full);
             if full <= t {
                 if !full.is_finite_number() {

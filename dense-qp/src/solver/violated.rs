@@ -62,14 +62,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     }
 
     /// A row that is violated, or has bad numbers (then the answer is false). `length` is Σ|xⱼ|.
-    fn judge(
-        &mut self,
-        i: usize,
-        v: T,
-        [l, u]: [T; 2],
-        length: T,
-        excess: &mut [T; POOL],
-    ) -> bool {
+    fn judge(&mut self, i: usize, v: T, [l, u]: [T; 2], length: T, excess: &mut [T; POOL]) -> bool {
         if !(v.is_finite_number() && is_range(l, u)) {
             return false;
         }
