@@ -52,8 +52,9 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
     /// |d₂|², given how many rows are active.
     fn measure(&mut self, len: usize, dim: usize) {
         let (active, free) = (head(&self.d, len), span(&self.d, len, dim));
-        self.free = dot(free, free);
-        let whole = self.free + dot(active, active);
+        let square = |d: &[T]| d.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
+        self.free = square(free);
+        let whole = self.free + square(active);
         // False for NaN.
         if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
             self.free = T::ZERO;
