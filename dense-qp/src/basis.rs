@@ -12,7 +12,7 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, dot, dots, floor4, head, head_mut, put, rotate, span, span_mut};
+use crate::kernels::{at, ceil4, dots, floor4, head, head_mut, put, rotate, span, span_mut};
 use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
@@ -225,7 +225,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let len = self.len;
         let rows = self.r.iter().zip(&self.r_inverse).enumerate();
         for (k, (row, inverse)) in rows.take(len).rev() {
-            let s = dot(span(row, k + 1, len), span(v, k + 1, len));
+            // From the far end: what was found last is needed last.
+            let terms = span(row, k + 1, len).iter().zip(span(v, k + 1, len)).rev();
+            let s = terms.fold(T::ZERO, |sum, (r, v)| sum + *r * *v);
             if let Some(e) = v.get_mut(k) {
                 *e = (*e - s) * *inverse;
             }
