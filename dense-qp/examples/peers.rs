@@ -1,8 +1,8 @@
-//! Times the solver on families of controller-like problems and writes problems and answers to a
-//! file, so that a peer can solve the same numbers in the same run (`tests/peers/dense_qp.py`).
+//! Writes families of made-up, controller-like programs to files, so that this crate (the example `recorded`) and its peers
+//! (`tests/peers/dense_qp.py`) solve the same numbers.
 //!
-//! `cargo run --release -p dense-qp --example peers -- FILE` for times;
-//! `… --example peers -- FILE FAMILY K REPEAT` solves problem K of one family REPEAT times (for callgrind).
+//! `cargo run --release -p dense-qp --example peers -- FOLDER` writes `FOLDER/NAME.qps` of each family: little-endian f64, sizes N, M
+//! and count, then per program H, g, A, l, u and the bounds of the variables, which are infinite.
 #![allow(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -10,9 +10,8 @@
     reason = "a measuring program"
 )]
 
-use dense_qp::{Problem, Settings, Status, Workspace, solve, solve_warm};
-use std::io::Write;
-use std::time::Instant;
+use dense_qp::{Problem, Settings, Status, Workspace, solve};
+use std::path::Path;
 
 const INF: f64 = f64::INFINITY;
 
@@ -196,90 +195,89 @@ fn pendulum(count: usize) -> Vec<Qp<16, 16>> {
     out
 }
 
-fn run<const N: usize, const M: usize>(name: &str, qps: &[Qp<N, M>], file: &mut impl Write) {
-    let mut w = Box::new(Workspace::<f64, N, M>::new());
-    let settings = Settings::default();
-    let mut put = |v: &[f64]| {
-        for x in v {
-            file.write_all(&x.to_le_bytes()).unwrap();
+/// Jerk control of a linear inverted pendulum that walks forward, in closed loop, as the public LIPMWALK programs state it: the end
+/// of the horizon at rest over a foot, the zero-moment point in the foot that stands, anywhere while both do.
+fn lipm(count: usize) -> Vec<Qp<16, 16>> {
+    const N: usize = 16;
+    let (dt, tick, height) = (0.1, 0.02, 0.8 / 9.81);
+    let foot = |t: f64| 0.2 * (t / 0.8).floor();
+    let mut state = [0.0; 3];
+    let mut out = Vec::new();
+    for k in 0..count {
+        let t = k as f64 * tick;
+        let mut q = Qp::<N, N>::zero();
+        for i in 0..N {
+            // Position, speed, acceleration after i + 1 samples: free response, and the effect of each jerk.
+            let n = (i + 1) as f64 * dt;
+            let free = [
+                state[0] + n * state[1] + 0.5 * n * n * state[2],
+                state[1] + n * state[2],
+                state[2],
+            ];
+            let mut rows = [[0.0; N]; 3];
+            for j in 0..=i {
+                let m = (i - j) as f64;
+                rows[0][j] = (1.0 + 3.0 * m + 3.0 * m * m) * dt * dt * dt / 6.0;
+                rows[1][j] = (m + 0.5) * dt * dt;
+                rows[2][j] = dt;
+            }
+            let point = free[0] - height * free[2];
+            q.a[i] = core::array::from_fn(|j| rows[0][j] - height * rows[2][j]);
+            let both_stand = (t + n) % 0.8 >= 0.7;
+            let reach = if both_stand { 1000.0 } else { 0.05 };
+            let centre = foot(t + n) - point;
+            (q.l[i], q.u[i]) = (centre - reach, centre + reach);
+            if i == N - 1 {
+                let goal = [foot(t + n), 0.0, 0.0];
+                for (row, (goal, free)) in rows.iter().zip(goal.iter().zip(free)) {
+                    q.task(row, 1.0, goal - free);
+                }
+            }
         }
-    };
-    put(&[N as f64, M as f64, qps.len() as f64]);
-    let (mut cold, mut warm) = (Vec::new(), Vec::new());
-    let (mut most, mut worst, mut active) = (0, 0.0_f64, 0);
-    for q in qps {
-        let p = Problem::new(&q.h, &q.g, &q.a, &q.l, &q.u);
-        let mut best = INF;
-        // The active set of the last problem, as a controller has it.
-        let mut seeded = INF;
-        for _ in 0..7 {
-            let mut v = w.clone();
-            let begin = Instant::now();
-            let s = solve_warm(&p, &settings, &mut v).unwrap();
-            seeded = seeded.min(begin.elapsed().as_secs_f64());
-            assert_eq!(s.status, Status::Solved);
+        for i in 0..N {
+            q.h[i][i] += 1e-3;
         }
-        for _ in 0..7 {
-            let begin = Instant::now();
-            let s = solve(&p, &settings, &mut w).unwrap();
-            best = best.min(begin.elapsed().as_secs_f64());
-            assert_eq!(s.status, Status::Solved);
-        }
-        let s = solve(&p, &settings, &mut w).unwrap();
-        most = most.max(s.iterations);
-        worst = worst.max(s.residual.max());
-        for row in &q.h {
-            put(row);
-        }
-        put(&q.g);
-        for row in &q.a {
-            put(row);
-        }
-        put(&q.l);
-        put(&q.u);
-        put(s.x);
-        put(&[best, seeded]);
-        active += w.active().count();
-        cold.push(best);
-        warm.push(seeded);
+        let jerk = first_input(&q);
+        state = [
+            state[0] + tick * (state[1] + tick * (0.5 * state[2] + tick * jerk / 6.0)),
+            state[1] + tick * (state[2] + 0.5 * tick * jerk),
+            state[2] + tick * jerk,
+        ];
+        out.push(q);
     }
-    cold.sort_by(f64::total_cmp);
-    warm.sort_by(f64::total_cmp);
-    let us = |v: &[f64]| (v[v.len() / 2] * 1e6, v[v.len() - 1] * 1e6);
-    let ((c, cm), (s, sm)) = (us(&cold), us(&warm));
-    println!(
-        "{name:10} {N:3} x {M:3}  cold {c:7.2} us (max {cm:7.2})  warm {s:7.2} (max {sm:7.2})  \
-         iterations <= {most}, active {:.1}, KKT <= {worst:.1e}",
-        active as f64 / qps.len() as f64
-    );
+    out
 }
 
-fn repeat<const N: usize, const M: usize>(q: &Qp<N, M>, times: usize) {
-    let mut w = Box::new(Workspace::<f64, N, M>::new());
-    let p = Problem::new(&q.h, &q.g, &q.a, &q.l, &q.u);
-    for _ in 0..times {
-        let s = solve(&p, &Settings::default(), &mut w).unwrap();
-        assert_eq!(s.status, Status::Solved);
+/// What a controller would do next.
+fn first_input<const N: usize, const M: usize>(q: &Qp<N, M>) -> f64 {
+    let problem = Problem::new(&q.h, &q.g, &q.a, &q.l, &q.u);
+    let mut workspace = Workspace::new();
+    let solution = solve(&problem, &Settings::default(), &mut workspace).unwrap();
+    assert_eq!(solution.status, Status::Solved);
+    solution.x[0]
+}
+
+fn write<const N: usize, const M: usize>(folder: &Path, name: &str, qps: &[Qp<N, M>]) {
+    let mut numbers = vec![N as f64, M as f64, qps.len() as f64];
+    for q in qps {
+        numbers.extend(q.h.iter().flatten().chain(&q.g));
+        numbers.extend(q.a.iter().flatten().chain(&q.l).chain(&q.u));
+        numbers.extend([-INF; N]);
+        numbers.extend([INF; N]);
     }
+    let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+    std::fs::write(folder.join(name).with_extension("qps"), bytes).unwrap();
 }
 
 fn main() {
-    let args: Vec<String> = std::env::args().collect();
-    let path = args.get(1).map_or("/dev/null", |s| s.as_str());
-    if let Some(family) = args.get(2) {
-        let k: usize = args.get(3).and_then(|s| s.parse().ok()).unwrap_or(0);
-        let times = args.get(4).and_then(|s| s.parse().ok()).unwrap_or(1);
-        match family.as_str() {
-            "landing20" => repeat(&landing::<20>(k + 1)[k], times),
-            "landing32" => repeat(&landing::<32>(k + 1)[k], times),
-            "humanoid" => repeat(&humanoid(k + 1)[k], times),
-            _ => repeat(&pendulum(k + 1)[k], times),
-        }
-        return;
-    }
-    let mut file = std::io::BufWriter::new(std::fs::File::create(path).unwrap());
-    run("landing20", &landing::<20>(400), &mut file);
-    run("landing32", &landing::<32>(400), &mut file);
-    run("humanoid", &humanoid(200), &mut file);
-    run("pendulum", &pendulum(400), &mut file);
+    let Some(folder) = std::env::args().nth(1) else {
+        eprintln!("usage: peers FOLDER");
+        std::process::exit(2)
+    };
+    let folder = Path::new(&folder);
+    write(folder, "landing20", &landing::<20>(400));
+    write(folder, "landing32", &landing::<32>(400));
+    write(folder, "humanoid", &humanoid(200));
+    write(folder, "pendulum", &pendulum(400));
+    write(folder, "lipm", &lipm(400));
 }

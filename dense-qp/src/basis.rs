@@ -12,7 +12,8 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, dot, head, head_mut, put, span, span_mut, sub_scaled};
+use crate::kernels::{at, ceil4, dots, floor4, head, head_mut, put, rotate, span, span_mut};
+use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
 
@@ -26,9 +27,9 @@ pub(crate) struct Candidate<T, const N: usize> {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Basis<T, const N: usize> {
-    /// J, a row per free variable.
-    j: [[T; N]; N],
-    /// R by columns.
+    /// J by columns, an entry per free variable. Scratch until [`Basis::prepare`].
+    pub(crate) j: [[T; N]; N],
+    /// R by rows, zeros outside of its triangle.
     r: [[T; N]; N],
     /// 1 / R_kk.
     r_inverse: [T; N],
@@ -50,10 +51,10 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
 
     /// |d₂|², given how many rows are active.
     fn measure(&mut self, len: usize, dim: usize) {
-        let d = head(&self.d, dim);
+        let (active, free) = (head(&self.d, len), span(&self.d, len, dim));
         let square = |d: &[T]| d.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
-        self.free = square(span(d, len, dim));
-        let whole = self.free + square(head(d, len));
+        self.free = square(free);
+        let whole = self.free + square(active);
         // False for NaN.
         if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
             self.free = T::ZERO;
@@ -87,36 +88,40 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         let n = factor.dim;
         self.dim = n;
-        for (i, u) in factor.u.iter().enumerate().take(n).rev() {
-            let Some((upper, lower)) = self.j.split_at_mut_checked(i + 1) else {
+        let end = ceil4(n, N);
+        // Column c of U⁻¹ is eₖ less the columns before it, each times what U has in its row.
+        let mut shares = [T::ZERO; N];
+        for c in 0..n {
+            let Some((before, [column, ..])) = self.j.split_at_mut_checked(c) else {
                 break;
             };
-            let Some(row) = upper.last_mut() else { break };
-            row.fill(T::ZERO);
-            put(row, i, T::ONE);
-            for (k, below) in lower.iter().take(n - i - 1).enumerate() {
-                let f = at(u, i + 1 + k);
-                if f != T::ZERO {
-                    sub_scaled(span_mut(row, i + 1 + k, n), f, span(below, i + 1 + k, n));
-                }
+            for (f, u) in shares.iter_mut().zip(&factor.u).take(c) {
+                *f = at(u, c);
             }
+            column.fill(T::ZERO);
+            sub_triangle(column, &shares, before, end);
+            put(column, c, T::ONE);
         }
-        for (k, w) in factor.weight.iter().take(n).enumerate() {
-            put(&mut self.cos, k, math::sqrt(*w));
-        }
-        for (i, row) in self.j.iter_mut().take(n).enumerate() {
-            for (x, s) in span_mut(row, i, n).iter_mut().zip(span(&self.cos, i, n)) {
-                *x *= *s;
+        for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
+            let scale = math::sqrt(*w);
+            for x in head_mut(column, c + 1) {
+                *x *= scale;
             }
         }
     }
 
-    /// d ← d + f·Jᵀeᵢ for free variable i.
-    #[inline(always)]
-    pub(crate) fn add_coordinates(&self, i: usize, f: T, d: &mut [T; N]) {
-        if let Some(row) = self.j.get(i) {
-            sub_scaled(head_mut(d, self.dim), -f, row);
-        }
+    /// d ← Jᵀa for a row over the free variables, with zeros up to the kernels' width.
+    pub(crate) fn coordinates(&self, row: &[T; N], d: &mut [T; N]) {
+        let used = |a: &T| *a != T::ZERO;
+        let entries = head(row, self.dim);
+        let first = entries.iter().position(used).unwrap_or(0);
+        let end = entries.iter().rposition(used).map_or(0, |last| last + 1);
+        dots(
+            d,
+            head(&self.j, self.dim),
+            row,
+            [floor4(first), ceil4(end, N)],
+        );
     }
 
     /// Measures a candidate whose `d` is set.
@@ -133,9 +138,11 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         free_variables: &[usize],
         step: &mut [T; N],
     ) {
-        let d = span(d, from, self.dim);
-        for (row, v) in self.j.iter().zip(free_variables) {
-            put(step, *v, dot(span(row, from, self.dim), d));
+        let mut z = [T::ZERO; N];
+        let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
+        sub_rows(&mut z, d, columns, 0, ceil4(self.dim, N));
+        for (z, v) in z.iter().zip(free_variables) {
+            put(step, *v, -*z);
         }
     }
 
@@ -153,16 +160,19 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         // u = d₂ + signed·e, and I − u uᵀ/(uᵀd₂) turns d₂ into −signed·e.
         put(&mut c.d, k, first + signed);
         let share = T::ONE / (c.free + math::abs(first) * length);
-        let u = span(&c.d, k, n);
-        for (row, v) in self.j.iter_mut().zip(elimination.free_variables()) {
-            let f = (at(step, *v) + signed * at(row.as_slice(), k)) * share;
-            sub_scaled(span_mut(row, k, n), f, u);
+        let columns = self.j.get_mut(k..n).unwrap_or(&mut []);
+        let Some(first) = columns.first() else { return };
+        let mut shares = *first;
+        for (f, v) in shares.iter_mut().zip(elimination.free_variables()) {
+            *f = (at(step, *v) + signed * *f) * share;
         }
-        if let Some(column) = self.r.get_mut(k) {
-            for (r, d) in column.iter_mut().zip(&c.d).take(k) {
-                *r = *d;
+        sub_outer(columns, span(&c.d, k, n), &shares, 0, ceil4(n, N));
+        if let Some((above, [row, ..])) = self.r.split_at_mut_checked(k) {
+            for (r, d) in above.iter_mut().zip(&c.d) {
+                put(r, k, *d);
             }
-            put(column, k, -signed);
+            row.fill(T::ZERO);
+            put(row, k, -signed);
             put(&mut self.r_inverse, k, -T::ONE / signed);
             self.len += 1;
         }
@@ -174,49 +184,37 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             return;
         }
         let last = self.len - 1;
+        for row in self.r.iter_mut().take(self.len) {
+            row.copy_within(k + 1..self.len, k);
+            put(row, last, T::ZERO);
+        }
         for i in k..last {
-            let Some((before, after)) = self.r.split_at_mut_checked(i + 1) else {
+            let Some([row, below]) = self.r.get_mut(i..).and_then(|r| r.first_chunk_mut()) else {
                 break;
             };
-            // Column i + 1 becomes column i; what it has below the diagonal is turned away.
-            let (Some(to), Some(from)) = (before.last_mut(), after.first()) else {
-                break;
-            };
-            let (x, y) = (at(from, i), at(from, i + 1));
+            // What the next row has before its diagonal is turned away.
+            let (x, y) = (at(row.as_slice(), i), at(below.as_slice(), i));
             let length = math::sqrt(x * x + y * y);
             let inverse = T::ONE / length;
             let (cos, sin) = (x * inverse, y * inverse);
-            for (to, from) in to.iter_mut().zip(from).take(i) {
-                *to = *from;
-            }
-            put(to, i, length);
+            rotate(row, below, [cos, sin], [floor4(i), ceil4(last, N)]);
+            put(row, i, length);
+            put(below, i, T::ZERO);
             put(&mut self.r_inverse, i, inverse);
             put(&mut self.cos, i, cos);
             put(&mut self.sin, i, sin);
-            for column in after.iter_mut().take(last - i).skip(1) {
-                let (x, y) = (at(column.as_slice(), i), at(column.as_slice(), i + 1));
-                put(column, i, cos * x + sin * y);
-                put(column, i + 1, cos * y - sin * x);
-            }
         }
-        let turns = || {
-            let cos = span(&self.cos, k, last);
-            cos.iter().zip(span(&self.sin, k, last))
-        };
-        let turn = |row: &mut [T; N]| {
-            let row = span_mut(row, k, last + 1);
-            let mut carried = at(row, 0);
-            for (i, (cos, sin)) in turns().enumerate() {
-                let next = at(row, i + 1);
-                put(row, i, *cos * carried + *sin * next);
-                carried = *cos * next - *sin * carried;
-            }
-            put(row, last - k, carried);
-        };
-        for row in self.j.iter_mut().take(self.dim) {
-            turn(row);
+        for i in k..last {
+            let (cos, sin) = (at(&self.cos, i), at(&self.sin, i));
+            let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut())
+            else {
+                break;
+            };
+            rotate(first, second, [cos, sin], [0, ceil4(self.dim, N)]);
+            let (x, y) = (at(&c.d, i), at(&c.d, i + 1));
+            put(&mut c.d, i, cos * x + sin * y);
+            put(&mut c.d, i + 1, cos * y - sin * x);
         }
-        turn(&mut c.d);
         self.len = last;
         c.measure(last, self.dim);
     }
@@ -224,33 +222,27 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// v ← R⁻¹v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        for (k, (column, inverse)) in self
-            .r
-            .iter()
-            .zip(&self.r_inverse)
-            .enumerate()
-            .take(self.len)
-            .rev()
-        {
-            let Some((before, rest)) = v.split_at_mut_checked(k) else {
-                break;
-            };
-            if let Some(e) = rest.first_mut() {
-                *e *= *inverse;
-                sub_scaled(before, *e, column);
+        let len = self.len;
+        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (row, inverse)) in rows.take(len).rev() {
+            // From the far end: what was found last is needed last.
+            let terms = span(row, k + 1, len).iter().zip(span(v, k + 1, len)).rev();
+            let s = terms.fold(T::ZERO, |sum, (r, v)| sum + *r * *v);
+            if let Some(e) = v.get_mut(k) {
+                *e = (*e - s) * *inverse;
             }
         }
     }
 
     /// v ← R⁻ᵀv.
-    #[inline]
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let columns = self.r.iter().zip(&self.r_inverse).enumerate();
-        for (k, (column, inverse)) in columns.take(self.len) {
-            let s = dot(head(column, k), head(v, k));
-            if let Some(e) = v.get_mut(k) {
-                *e = (*e - s) * *inverse;
-            }
+        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (row, inverse)) in rows.take(self.len) {
+            let Some((e, after)) = span_mut(v, k, self.len).split_first_mut() else {
+                break;
+            };
+            *e *= *inverse;
+            sub_scaled(after, *e, span(row, k + 1, self.len));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Equality rows and fixed variables, eliminated before the search.
 //!
-//! With the rows A_E x = b of rank r, and the columns ordered as r basic ones B and the rest F,
+//! With the rows A_E x = b of rank r, and the columns ordered as the free ones F and r basic ones B,
 //! a row-wise LU factorisation A_B = L U (columns chosen as pivots) gives
 //!
 //! x_B = p − W x_F,  W = A_B⁻¹ A_F,  p = A_B⁻¹ b,
@@ -9,15 +9,16 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, dot, head, head_mut, max_abs, put, row, row_mut, span, span_mut};
-use crate::kernels::{copy, sub_all, sub_scaled, sub_scaled_pair};
+use crate::kernels::{at, ceil4, copy, dots, floor4, head, head_mut, max_abs, put, row, row_mut};
+use crate::kernels::{span, span_mut, sub_rows, sub_scaled};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T, const N: usize> {
-    /// Permuted columns. Row k: multipliers of L before column k, U from k to r, W after.
+    /// Permuted columns: the free ones, then the basic ones from the last to the first. Row k: W, then U down to column N−1−k of its
+    /// own pivot, then multipliers of L.
     lu: [[T; N]; N],
     /// 1 / U_kk.
     inverse: [T; N],
@@ -64,7 +65,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// Variables of the free columns.
     #[inline(always)]
     pub(crate) fn free_variables(&self) -> &[usize] {
-        span(&self.perm, self.rank, N)
+        head(&self.perm, self.free())
     }
 
     /// Whether a free variable moves others: a row that is not merely fixed was eliminated.
@@ -79,7 +80,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         if self.rank == 0 {
             return Some(variable);
         }
-        at(&self.place, variable).checked_sub(self.rank)
+        let column = at(&self.place, variable);
+        (column < self.free()).then_some(column)
     }
 
     /// Factorises the equalities of `problem` (rows and bounds with equal limits). `feasibility` is
@@ -108,7 +110,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 self.insert(problem, i, *l, feasibility, scratch)?;
             }
         }
-        self.finish();
+        self.finish(scratch);
         if self.rank > 0 {
             for (column, variable) in self.perm.iter().enumerate() {
                 put(&mut self.place, *variable, column);
@@ -117,16 +119,36 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         Ok(())
     }
 
-    /// Variables are fixed in increasing order, so column `variable` still holds it.
+    /// Row k and basic variable k of those that are not merely fixed.
+    fn basic(&self) -> impl Iterator<Item = (&[T; N], usize)> {
+        let rows = self.lu.iter().zip(self.perm.iter().rev());
+        rows.map(|(row, v)| (row, *v))
+            .take(self.rank)
+            .skip(self.fixed)
+    }
+
+    /// Their rows.
+    fn basic_rows(&self) -> &[[T; N]] {
+        span(&self.lu, self.fixed, self.rank)
+    }
+
     fn fix(&mut self, variable: usize, id: usize, value: T) {
         let k = self.rank;
+        let column = if at(&self.perm, variable) == variable {
+            Some(variable)
+        } else {
+            self.perm.iter().position(|v| *v == variable)
+        };
+        let (Some(column), Some(last)) = (column, self.free().checked_sub(1)) else {
+            return;
+        };
         let r = row_mut(&mut self.lu, k);
         r.fill(T::ZERO);
-        put(r, k, T::ONE);
+        put(r, last, T::ONE);
         put(&mut self.rhs, k, value);
         put(&mut self.id, k, id);
-        if k < N && variable < N {
-            self.perm.swap(k, variable);
+        if column < N && last < N {
+            self.perm.swap(column, last);
         }
         self.rank += 1;
     }
@@ -146,7 +168,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let mut rhs = limit;
         let rank = self.rank;
         for (k, (r, c)) in self.lu.iter().zip(&self.rhs).take(rank).enumerate() {
-            let f = at(work.as_slice(), k);
+            let pivot = N - 1 - k;
+            let f = at(work.as_slice(), pivot);
             if f == T::ZERO {
                 continue;
             }
@@ -154,16 +177,17 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 f
             } else {
                 let f = f * at(&self.inverse, k);
-                sub_scaled(span_mut(work, k + 1, N), f, span(r, k + 1, N));
+                sub_scaled(head_mut(work, pivot), f, head(r, pivot));
                 f
             };
-            put(work, k, f);
+            put(work, pivot, f);
             rhs -= f * *c;
         }
         // The pivot is the entry that is largest for variables measured by their own curvature;
         // w²/c is compared crosswise, without a division.
-        let (mut pivot, mut best, mut best_scale) = (rank, T::ZERO, T::ONE);
-        for (j, (w, p)) in work.iter().zip(&self.perm).enumerate().skip(rank) {
+        let (mut pivot, mut best, mut best_scale) = (0, T::ZERO, T::ONE);
+        let free = self.free();
+        for (j, (w, p)) in work.iter().zip(&self.perm).enumerate().take(free) {
             let scale = at(row(problem.hessian, *p), *p) + T::ONE;
             let square = *w * *w;
             if square * best_scale > best * scale {
@@ -171,7 +195,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         let size = max_abs(a);
-        let left = max_abs(span(work, rank, N));
+        let left = max_abs(head(work, free));
         if rank >= N || left <= row_tolerance::<T>() * size {
             let scale = if size > T::ZERO { size } else { T::ONE };
             let noise = T::of(256.0) * T::EPSILON * (math::abs(limit) + size * max_abs(&self.rhs));
@@ -187,39 +211,42 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         put(&mut self.rhs, rank, rhs);
         put(&mut self.id, rank, i);
         put(&mut self.inverse, rank, T::ONE / at(work.as_slice(), pivot));
-        if pivot != rank && pivot < N {
-            self.perm.swap(rank, pivot);
+        let last = N - 1 - rank;
+        if pivot < last {
+            self.perm.swap(last, pivot);
             for r in self.lu.iter_mut().take(rank + 1) {
-                if rank < N {
-                    r.swap(rank, pivot);
-                }
+                r.swap(last, pivot);
             }
         }
         self.rank += 1;
         Ok(())
     }
 
-    /// U₁₁⁻¹ on the right part and on the right-hand side.
-    fn finish(&mut self) {
-        let (rank, fixed) = (self.rank, self.fixed);
-        for k in (fixed..rank).rev() {
+    /// U₁₁⁻¹ on the part of the free columns and on the right-hand side.
+    fn finish(&mut self, work: &mut [T; N]) {
+        let (rank, free) = (self.rank, self.free());
+        for k in (self.fixed..rank).rev() {
             let Some((upper, lower)) = self.lu.split_at_mut_checked(k + 1) else {
                 break;
             };
             let Some(r) = upper.last_mut() else { break };
-            let Some((left, right)) = r.split_at_mut_checked(rank) else {
-                break;
-            };
-            let shares = span(left, k + 1, rank);
-            let below = shares.iter().zip(lower.iter());
-            sub_all(right, below.map(|(f, below)| (*f, span(below, rank, N))));
-            let mut p = at(&self.rhs, k);
-            for (f, known) in shares.iter().zip(span(&self.rhs, k + 1, rank)) {
-                p -= *f * *known;
+            let mut shares = [T::ZERO; N];
+            let (mut p, inverse) = (at(&self.rhs, k), at(&self.inverse, k));
+            let of_row = span(r, free, N - 1 - k).iter().rev();
+            for ((share, u), known) in
+                shares
+                    .iter_mut()
+                    .zip(of_row)
+                    .zip(span(&self.rhs, k + 1, rank))
+            {
+                *share = *u;
+                p -= *u * *known;
             }
-            let inverse = at(&self.inverse, k);
-            for w in right {
-                *w *= inverse;
+            // Beside the free columns stand those of U.
+            *work = *r;
+            sub_rows(work, head(&shares, rank - k - 1), lower, 0, ceil4(free, N));
+            for (w, x) in r.iter_mut().zip(work.iter()).take(free) {
+                *w = *x * inverse;
             }
             put(&mut self.rhs, k, p * inverse);
         }
@@ -228,7 +255,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// x = (p, 0): the point with all free variables at zero.
     pub(crate) fn particular(&self, x: &mut [T; N]) {
         x.fill(T::ZERO);
-        for (p, v) in self.rhs.iter().zip(&self.perm).take(self.rank) {
+        let basic = self.rhs.iter().zip(self.perm.iter().rev());
+        for (p, v) in basic.take(self.rank) {
             put(x, *v, *p);
         }
     }
@@ -242,22 +270,22 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
             return;
         }
+        let free = self.free();
+        y.fill(T::ZERO);
         for (y, v) in y.iter_mut().zip(self.free_variables()) {
             *y = at(a, *v);
         }
-        let free = self.free();
-        span_mut(y, free, N).fill(T::ZERO);
-        for (w, v) in self
-            .lu
-            .iter()
-            .zip(&self.perm)
-            .take(self.rank)
-            .skip(self.fixed)
-        {
-            let f = at(a, *v);
-            if f != T::ZERO {
-                sub_scaled(head_mut(y, free), f, span(w, self.rank, N));
+        if self.has_basic() {
+            let mut shares = [T::ZERO; N];
+            for (f, (_, v)) in shares.iter_mut().zip(self.basic()) {
+                *f = at(a, v);
             }
+            let used = |f: &T| *f != T::ZERO;
+            let first = shares.iter().position(used).unwrap_or(0);
+            let end = shares.iter().rposition(used).map_or(0, |last| last + 1);
+            let rows = span(self.basic_rows(), first, end);
+            sub_rows(y, span(&shares, first, end), rows, 0, ceil4(free, N));
+            span_mut(y, free, N).fill(T::ZERO);
         }
     }
 
@@ -270,10 +298,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         for (y, v) in y.iter_mut().zip(self.free_variables()) {
             *y = at(t, *v);
         }
-        let basic = self.lu.iter().zip(&self.perm).take(self.rank);
-        for (w, v) in basic.skip(self.fixed) {
-            let f = at(t, *v);
-            let shares = y.iter_mut().zip(span(w, self.rank, N));
+        for (w, v) in self.basic() {
+            let f = at(t, v);
+            let shares = y.iter_mut().zip(head(w, self.free()));
             shares.for_each(|(y, w)| *y += math::abs(f * *w));
         }
     }
@@ -281,11 +308,14 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// [`Elimination::reduce`] of the unit row of `variable`.
     pub(crate) fn reduce_unit(&self, variable: usize, y: &mut [T; N]) {
         y.fill(T::ZERO);
-        let column = at(&self.place, variable);
-        if column >= self.rank {
-            put(y, column - self.rank, T::ONE);
-        } else if column >= self.fixed {
-            sub_scaled(y, T::ONE, span(row(&self.lu, column), self.rank, N));
+        if let Some(i) = self.free_index(variable) {
+            put(y, i, T::ONE);
+            return;
+        }
+        let k = (N - 1).saturating_sub(at(&self.place, variable));
+        if k >= self.fixed {
+            let free = self.free();
+            sub_scaled(head_mut(y, free), T::ONE, row(&self.lu, k));
         }
     }
 
@@ -295,17 +325,13 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         if self.rank == 0 {
             return;
         }
-        for v in self.perm.iter().take(self.fixed) {
+        for v in self.perm.iter().rev().take(self.fixed) {
             put(z, *v, T::ZERO);
         }
         if self.has_basic() {
-            for (y, v) in y.iter_mut().zip(self.free_variables()) {
-                *y = at(z.as_slice(), *v);
-            }
-            let y = head(y, self.free());
-            let basic = self.lu.iter().zip(&self.perm).take(self.rank);
-            for (w, v) in basic.skip(self.fixed) {
-                put(z, *v, -dot(span(w, self.rank, N), y));
+            let moved = self.moved(z, y);
+            for (d, (_, v)) in moved.iter().zip(self.basic()) {
+                put(z, v, -*d);
             }
         }
     }
@@ -315,102 +341,108 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         if !self.has_basic() {
             return;
         }
-        for (y, v) in y.iter_mut().zip(self.free_variables()) {
-            *y = at(x.as_slice(), *v);
-        }
-        let y = head(y, self.free());
-        let basic = self
-            .lu
-            .iter()
-            .zip(&self.rhs)
-            .zip(&self.perm)
-            .take(self.rank);
-        for ((w, p), v) in basic.skip(self.fixed) {
-            put(x, *v, *p - dot(span(w, self.rank, N), y));
+        let moved = self.moved(x, y);
+        let known = span(&self.rhs, self.fixed, self.rank);
+        for ((d, p), (_, v)) in moved.iter().zip(known).zip(self.basic()) {
+            put(x, v, *p - *d);
         }
     }
 
-    /// Upper triangle of ZᵀHZ into `out` and the size of the terms of its diagonal into `magnitude`.
+    /// W x_F. `y` is scratch.
+    #[inline]
+    fn moved(&self, x: &[T; N], y: &mut [T; N]) -> [T; N] {
+        y.fill(T::ZERO);
+        for (y, v) in y.iter_mut().zip(self.free_variables()) {
+            *y = at(x, *v);
+        }
+        let mut moved = [T::ZERO; N];
+        dots(&mut moved, self.basic_rows(), y, [0, ceil4(self.free(), N)]);
+        moved
+    }
+
+    /// Upper triangle of ZᵀHZ into `out` and the size of the terms of its diagonal into `magnitude`. `c` is scratch.
     pub(crate) fn reduce_hessian(
         &self,
         h: &[[T; N]; N],
         out: &mut [[T; N]; N],
         magnitude: &mut [T; N],
-        scratch: &mut [T; N],
+        c: &mut [[T; N]; N],
     ) {
-        let (rank, free) = (self.rank, self.free());
-        if rank == 0 {
+        if self.rank == 0 {
             for (i, ((o, h), m)) in out.iter_mut().zip(h).zip(magnitude).enumerate() {
                 copy(span_mut(o, i, N), span(h, i, N));
                 *m = at(h, i);
             }
             return;
         }
-        for (i, (o, v)) in out.iter_mut().zip(self.free_variables()).enumerate() {
-            let hv = row(h, *v);
-            for (o, w) in o.iter_mut().zip(self.free_variables()).skip(i) {
-                *o = at(hv, *w);
-            }
-            span_mut(o, free, ceil4(free, N)).fill(T::ZERO);
-        }
-        for (m, v) in magnitude.iter_mut().zip(self.free_variables()) {
-            *m = at(row(h, *v), *v);
-        }
-        // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W, one row of C and W at a time.
-        let rows = self.lu.iter().zip(&self.perm).take(rank).skip(self.fixed);
-        for (w, v) in rows {
-            let hv = row(h, *v);
-            for (c, f) in scratch.iter_mut().zip(self.free_variables()) {
+        let (free, end) = (self.free(), ceil4(self.free(), N));
+        // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W.
+        let mut shares = [T::ZERO; N];
+        for (c, (_, v)) in c.iter_mut().zip(self.basic()) {
+            let hv = row(h, v);
+            for (c, f) in c.iter_mut().zip(self.free_variables()) {
                 *c = at(hv, *f);
             }
-            let others = self.lu.iter().zip(&self.perm).take(rank).skip(self.fixed);
-            let others = others.map(|(w2, v2)| (at(hv, *v2) * T::HALF, span(w2, rank, N)));
-            sub_all(head_mut(scratch, free), others);
-            let w = span(w, rank, N);
-            for (i, o) in out.iter_mut().take(free).enumerate() {
-                let (wi, ci) = (at(w, i), at(scratch.as_slice(), i));
-                if wi != T::ZERO || ci != T::ZERO {
-                    sub_scaled_pair(
-                        span_mut(o, i, free),
-                        wi,
-                        span(scratch, i, free),
-                        ci,
-                        span(w, i, free),
-                    );
-                    if let Some(m) = magnitude.get_mut(i) {
-                        *m += math::abs(wi * ci);
-                    }
-                }
+            for (f, (_, other)) in shares.iter_mut().zip(self.basic()) {
+                *f = at(hv, other) * T::HALF;
             }
+            sub_rows(c, &shares, self.basic_rows(), 0, end);
+        }
+        let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
+        for (i, ((o, v), m)) in out
+            .iter_mut()
+            .zip(self.free_variables())
+            .zip(magnitude)
+            .enumerate()
+        {
+            let hv = row(h, *v);
+            *m = at(hv, *v);
+            for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
+                *o = at(hv, *f);
+            }
+            let mut others = [T::ZERO; N];
+            for ((f, g), (w, c)) in shares.iter_mut().zip(&mut others).zip(w.iter().zip(c)) {
+                (*f, *g) = (at(w, i), at(c, i));
+                *m += math::abs(*f * *g);
+            }
+            sub_rows(o, &shares, c, floor4(i), end);
+            sub_rows(o, &others, w, floor4(i), end);
+            span_mut(o, free, end).fill(T::ZERO);
         }
     }
 
     /// Multipliers μ of the equalities from A_Bᵀ μ = −s_B, in the order of `id`.
     pub(crate) fn multipliers(&self, s: &[T; N], mu: &mut [T; N]) {
-        let rank = self.rank;
-        for (m, v) in mu.iter_mut().zip(&self.perm).take(rank) {
+        let free = self.free();
+        // In the order of the columns first.
+        for (m, v) in mu.iter_mut().zip(&self.perm).skip(free) {
             *m = -at(s, *v);
         }
         // Uᵀ v = −s_B
-        for (k, r) in self.lu.iter().take(rank).enumerate() {
-            let Some((solved, rest)) = mu.split_at_mut_checked(k + 1) else {
+        for (k, r) in self.lu.iter().take(self.rank).enumerate() {
+            let Some((rest, solved)) = mu.split_at_mut_checked(N - 1 - k) else {
                 break;
             };
-            let Some(e) = solved.last_mut() else { break };
-            *e /= at(r, k);
+            let Some(e) = solved.first_mut() else { break };
+            *e /= at(r, N - 1 - k);
             if k >= self.fixed && *e != T::ZERO {
-                sub_scaled(head_mut(rest, rank - k - 1), *e, span(r, k + 1, rank));
+                sub_scaled(
+                    span_mut(rest, free, N - 1 - k),
+                    *e,
+                    span(r, free, N - 1 - k),
+                );
             }
         }
         // Lᵀ μ = v
-        for (k, r) in self.lu.iter().take(rank).enumerate().rev() {
-            let Some((before, rest)) = mu.split_at_mut_checked(k) else {
+        for (k, r) in self.lu.iter().take(self.rank).enumerate().rev() {
+            let Some((before, after)) = mu.split_at_mut_checked(N - k) else {
                 break;
             };
-            let f = rest.first().copied().unwrap_or(T::ZERO);
+            let f = before.last().copied().unwrap_or(T::ZERO);
             if k >= self.fixed && f != T::ZERO {
-                sub_scaled(before, f, head(r, k));
+                sub_scaled(after, f, span(r, N - k, N));
             }
         }
+        mu.reverse();
     }
 }

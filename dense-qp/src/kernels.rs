@@ -40,10 +40,35 @@ pub(crate) fn dot_few<T: Scalar>(a: &[T], x: &[T], from: usize, to: usize) -> T 
     sum
 }
 
-/// Σ |aᵢbᵢ|: with ε the round-off of aᵀb.
+/// Σ |aᵢ|, in four partial sums, as [`dot`].
+#[inline(always)]
+pub(crate) fn sum_sizes<T: Scalar>(a: &[T]) -> T {
+    let (a4, a1) = a.as_chunks::<4>();
+    let mut s = [T::ZERO; 4];
+    for v in a4 {
+        s[0] += so3::math::abs(v[0]);
+        s[1] += so3::math::abs(v[1]);
+        s[2] += so3::math::abs(v[2]);
+        s[3] += so3::math::abs(v[3]);
+    }
+    let rest = (s[0] + s[2]) + (s[1] + s[3]);
+    a1.iter().fold(rest, |sum, v| sum + so3::math::abs(*v))
+}
+
+/// Σ |aᵢbᵢ|: with ε the round-off of aᵀb. In four partial sums, as [`dot`].
 pub(crate) fn dot_sizes<T: Scalar>(a: &[T], b: &[T]) -> T {
-    let terms = a.iter().zip(b).map(|(a, b)| so3::math::abs(*a * *b));
-    terms.fold(T::ZERO, |sum, term| sum + term)
+    let n = a.len().min(b.len());
+    let (a4, a1) = head(a, n).as_chunks::<4>();
+    let (b4, b1) = head(b, n).as_chunks::<4>();
+    let mut s = [T::ZERO; 4];
+    for (p, q) in a4.iter().zip(b4) {
+        s[0] += so3::math::abs(p[0] * q[0]);
+        s[1] += so3::math::abs(p[1] * q[1]);
+        s[2] += so3::math::abs(p[2] * q[2]);
+        s[3] += so3::math::abs(p[3] * q[3]);
+    }
+    let terms = a1.iter().zip(b1).map(|(p, q)| so3::math::abs(*p * *q));
+    terms.fold((s[0] + s[2]) + (s[1] + s[3]), |sum, term| sum + term)
 }
 
 /// y ← y − f·x.
@@ -109,10 +134,100 @@ pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
     }
 }
 
-/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on
-/// columns k, rounded down, up to `to`, a multiple of 4 (or N). Blocks of columns stay in registers
-/// while all rows pass.
+/// `W` columns, those from `from`, of y − Σ fᵢ·aᵢ, y being `s`: they stay in registers while all rows pass.
+#[inline(always)]
+fn sub_block<T: Scalar, const N: usize, const W: usize>(
+    mut s: [T; W],
+    factors: &[T],
+    rows: &[[T; N]],
+    from: usize,
+) -> [T; W] {
+    for (f, a) in factors.iter().zip(rows) {
+        let Some(a) = a.get(from..).and_then(|a| a.first_chunk::<W>()) else {
+            break;
+        };
+        for (s, a) in s.iter_mut().zip(a) {
+            *s -= *f * *a;
+        }
+    }
+    s
+}
+
+/// Columns `from..to` of y ← y − Σ fᵢ·aᵢ, block by block, without the rows before `first` of a block's column.
+#[inline(always)]
+fn sub_blocks<T: Scalar, const N: usize>(
+    y: &mut [T; N],
+    factors: &[T],
+    rows: &[[T; N]],
+    [from, to]: [usize; 2],
+    first: impl Fn(usize) -> usize,
+) {
+    let all = factors.len().min(rows.len());
+    let mut column = from;
+    while column < to {
+        let left = to - column;
+        let Some(y) = y.get_mut(column..to) else {
+            return;
+        };
+        let (factors, rows) = (
+            span(factors, first(column), all),
+            span(rows, first(column), all),
+        );
+        column += if let (8.., Some(s)) = (left, y.first_chunk_mut::<8>()) {
+            *s = sub_block(*s, factors, rows, column);
+            8
+        } else if let (4.., Some(s)) = (left, y.first_chunk_mut::<4>()) {
+            *s = sub_block(*s, factors, rows, column);
+            4
+        } else if let Some(s) = y.first_chunk_mut::<1>() {
+            *s = sub_block(*s, factors, rows, column);
+            1
+        } else {
+            1
+        };
+    }
+}
+
+/// y ← y − Σ fᵢ·aᵢ on columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
 #[inline(never)]
+pub(crate) fn sub_rows<T: Scalar, const N: usize>(
+    y: &mut [T; N],
+    factors: &[T],
+    rows: &[[T; N]],
+    from: usize,
+    to: usize,
+) {
+    sub_blocks(y, factors, rows, [from, to], |_| 0);
+}
+
+/// [`sub_rows`] of the rows of a lower triangle, row i of which is zero after column i.
+#[inline(never)]
+pub(crate) fn sub_triangle<T: Scalar, const N: usize>(
+    y: &mut [T; N],
+    factors: &[T],
+    rows: &[[T; N]],
+    to: usize,
+) {
+    let to = to.min(ceil4(rows.len(), N));
+    sub_blocks(y, factors, rows, [0, to], |column| column);
+}
+
+/// (x, y) ← (c·x + s·y, c·y − s·x) on columns `from..to`; these are multiples of 4 (or `to` = N).
+#[inline(never)]
+pub(crate) fn rotate<T: Scalar, const N: usize>(
+    x: &mut [T; N],
+    y: &mut [T; N],
+    [cos, sin]: [T; 2],
+    [from, to]: [usize; 2],
+) {
+    for (x, y) in span_mut(x, from, to).iter_mut().zip(span_mut(y, from, to)) {
+        (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
+    }
+}
+
+/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on
+/// columns k, rounded down, up to `to`, a multiple of 4 (or N).
+#[inline(always)]
 pub(crate) fn eliminate<T: Scalar, const N: usize>(
     row: &mut [T; N],
     above: &[[T; N]],
@@ -124,28 +239,34 @@ pub(crate) fn eliminate<T: Scalar, const N: usize>(
     for ((f, a), w) in shares.iter_mut().zip(above).zip(inverses) {
         *f = at(a, k) * *w;
     }
-    let (y4, y1) = row.as_chunks_mut::<4>();
-    for block in k / 4..to / 4 {
-        let Some(y) = y4.get_mut(block) else { break };
-        let mut s = *y;
-        for (f, a) in shares.iter().zip(above) {
-            let Some(a) = a.as_chunks::<4>().0.get(block) else {
-                break;
-            };
-            s = [
-                s[0] - *f * a[0],
-                s[1] - *f * a[1],
-                s[2] - *f * a[2],
-                s[3] - *f * a[3],
+    sub_rows(row, &shares, above, floor4(k), to);
+}
+
+/// aᵢ ← aᵢ − fᵢ·x for all rows, on columns `from..to`; `from` and `to` are multiples of 4 (or `to` = N).
+#[inline(never)]
+pub(crate) fn sub_outer<T: Scalar, const N: usize>(
+    rows: &mut [[T; N]],
+    factors: &[T],
+    x: &[T; N],
+    from: usize,
+    to: usize,
+) {
+    for (row, f) in rows.iter_mut().zip(factors) {
+        let (Some(y), Some(x)) = (row.get_mut(from..to), x.get(from..to)) else {
+            return;
+        };
+        let (y4, y1) = y.as_chunks_mut::<4>();
+        let (x4, x1) = x.as_chunks::<4>();
+        for (y, x) in y4.iter_mut().zip(x4) {
+            *y = [
+                y[0] - *f * x[0],
+                y[1] - *f * x[1],
+                y[2] - *f * x[2],
+                y[3] - *f * x[3],
             ];
         }
-        *y = s;
-    }
-    if to == N {
-        for (f, a) in shares.iter().zip(above) {
-            for (y, a) in y1.iter_mut().zip(a.as_chunks::<4>().1) {
-                *y -= *f * *a;
-            }
+        for (y, x) in y1.iter_mut().zip(x1) {
+            *y -= *f * *x;
         }
     }
 }
@@ -198,52 +319,81 @@ pub(crate) fn dot_in<T: Scalar, const N: usize>(
     ((s[0] + s[2]) + (s[1] + s[3])) + rest
 }
 
-/// y ← y − f·a − g·b.
+/// Products of x with rows, two at a time, over columns `from..to`; these are multiples of 4 (or `to` = N). As [`dot_in`] of each.
 #[inline(never)]
-pub(crate) fn sub_scaled_pair<T: Scalar>(y: &mut [T], f: T, a: &[T], g: T, b: &[T]) {
-    let n = y.len().min(a.len()).min(b.len());
-    let (y, a, b) = (head_mut(y, n), head(a, n), head(b, n));
-    let (y4, y1) = y.as_chunks_mut::<4>();
-    let (a4, a1) = a.as_chunks::<4>();
-    let (b4, b1) = b.as_chunks::<4>();
-    for ((y, a), b) in y4.iter_mut().zip(a4).zip(b4) {
-        *y = [
-            y[0] - (f * a[0] + g * b[0]),
-            y[1] - (f * a[1] + g * b[1]),
-            y[2] - (f * a[2] + g * b[2]),
-            y[3] - (f * a[3] + g * b[3]),
-        ];
-    }
-    for ((y, a), b) in y1.iter_mut().zip(a1).zip(b1) {
-        *y -= f * *a + g * *b;
-    }
-}
-
-/// y ← y − Σ f·a, two rows at a time: half as often through y. Rows with f = 0 cost nothing.
-#[inline(always)]
-pub(crate) fn sub_all<'a, T: Scalar>(y: &mut [T], rows: impl Iterator<Item = (T, &'a [T])>) {
-    let mut rows = rows.filter(|(f, _)| *f != T::ZERO);
-    while let Some((f, a)) = rows.next() {
-        match rows.next() {
-            Some((g, b)) => sub_scaled_pair(y, f, a, g, b),
-            None => sub_scaled(y, f, a),
+pub(crate) fn dots<T: Scalar, const N: usize>(
+    out: &mut [T],
+    rows: &[[T; N]],
+    x: &[T; N],
+    [from, to]: [usize; 2],
+) {
+    let (pairs, last) = rows.as_chunks::<2>();
+    let mut out = out.iter_mut();
+    for [a, b] in pairs {
+        let (s, t) = dot_pair([a, b], x, from, to);
+        if let (Some(first), Some(second)) = (out.next(), out.next()) {
+            (*first, *second) = (s, t);
         }
     }
+    if let ([a], Some(out)) = (last, out.next()) {
+        *out = dot_in(a, x, from, to);
+    }
 }
 
-/// max |aᵢ| (NaN entries are skipped).
+/// [`dot_in`] of two rows with x.
+#[inline(always)]
+fn dot_pair<T: Scalar, const N: usize>(
+    [a, b]: [&[T; N]; 2],
+    x: &[T; N],
+    from: usize,
+    to: usize,
+) -> (T, T) {
+    let blocks = from / 4..to / 4;
+    let (mut s, mut t) = ([T::ZERO; 4], [T::ZERO; 4]);
+    if let (Some(a), Some(b), Some(x)) = (
+        a.as_chunks::<4>().0.get(blocks.clone()),
+        b.as_chunks::<4>().0.get(blocks.clone()),
+        x.as_chunks::<4>().0.get(blocks),
+    ) {
+        for ((a, b), x) in a.iter().zip(b).zip(x) {
+            for k in 0..4 {
+                s[k] += a[k] * x[k];
+                t[k] += b[k] * x[k];
+            }
+        }
+    }
+    let (mut s_rest, mut t_rest) = (T::ZERO, T::ZERO);
+    if to == N {
+        let rest = a.as_chunks::<4>().1.iter().zip(b.as_chunks::<4>().1);
+        for ((a, b), x) in rest.zip(x.as_chunks::<4>().1) {
+            s_rest += *a * *x;
+            t_rest += *b * *x;
+        }
+    }
+    let sum = |s: [T; 4], rest: T| ((s[0] + s[2]) + (s[1] + s[3])) + rest;
+    (sum(s, s_rest), sum(t, t_rest))
+}
+
+/// max |aᵢ| (NaN entries are skipped), in four lanes.
 #[inline(always)]
 pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {
-    let (mut high, mut low) = (T::ZERO, T::ZERO);
-    for v in a {
-        if *v > high {
-            high = *v;
-        }
-        if *v < low {
-            low = *v;
-        }
+    // A comparison, not a maximum: false for NaN.
+    let larger = |high: T, v: T| {
+        let size = so3::math::abs(v);
+        if size > high { size } else { high }
+    };
+    let (a4, a1) = a.as_chunks::<4>();
+    let mut high = [T::ZERO; 4];
+    for v in a4 {
+        high = [
+            larger(high[0], v[0]),
+            larger(high[1], v[1]),
+            larger(high[2], v[2]),
+            larger(high[3], v[3]),
+        ];
     }
-    if high > -low { high } else { -low }
+    let rest = a1.iter().fold(T::ZERO, |high, v| larger(high, *v));
+    high.iter().fold(rest, |high, v| larger(high, *v))
 }
 
 /// Whether every entry is neither NaN nor infinite.

@@ -163,7 +163,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             self.p.hessian,
             &mut w.factor.u,
             &mut w.factor.weight,
-            &mut w.vec_a,
+            &mut w.basis.j,
         );
         if let Some(k) = w.factor.factorise(max_abs(self.p.gradient))
             && self.is_concave(k)

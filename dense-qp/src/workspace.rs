@@ -10,6 +10,9 @@ use so3::Scalar;
 /// Most entries of the list of violated rows.
 pub(crate) const POOL: usize = 8;
 
+/// So many of the most violated rows must be those of the last solve for a start to look like it.
+pub(crate) const ALIKE: usize = 3;
+
 /// Scratch of a solve: about 4N² + 25N + 2M scalars. `new` is const and all zero, so a
 /// `static` of it lives in `.bss`. It remembers the last active set for [`crate::solve_warm`].
 #[derive(Clone, Debug)]
@@ -33,8 +36,9 @@ pub struct Workspace<T, const N: usize, const M: usize> {
     /// Rows that the last look at all of them found most violated, worst first.
     pub(crate) pool: [(usize, i8); POOL],
     pub(crate) pool_len: usize,
-    /// The most violated row at the point without active rows, of this solve and, until then, of the last.
-    pub(crate) first: (usize, i8),
+    /// The most violated rows at the point without active rows and by how much they are, of this solve and, until then, of the last; the
+    /// side 0 stands for none.
+    pub(crate) first: [(usize, i8, T); ALIKE],
     pub(crate) gradient: [T; N],
     pub(crate) step: [T; N],
     pub(crate) vec_a: [T; N],
@@ -64,7 +68,7 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             row_scale_inverse: [T::ZERO; M],
             pool: [(0, 0); POOL],
             pool_len: 0,
-            first: (0, 0),
+            first: [(0, 0, T::ZERO); ALIKE],
             gradient: [T::ZERO; N],
             step: [T::ZERO; N],
             vec_a: [T::ZERO; N],

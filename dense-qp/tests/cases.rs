@@ -264,11 +264,10 @@ fn walking(t: f64, start: [f64; 3]) -> Box<Qp<f64, 16, 32>> {
 }
 
 /// A walk planned again every `period`: no walk is dearer warm than cold, and no tick by more than a step. With a period of a sample,
-/// limits move by two rows per tick and what was active says nothing; with a fifth, it says nearly everything. With half a sample one
-/// tick of the 200 is an unlucky one, by two steps.
+/// limits move by two rows per tick and what was active says nothing; with a fifth, it says nearly everything.
 #[test]
 fn walks_are_never_dearer_warm() {
-    for (period, most) in [(0.1, 1), (0.05, 2), (0.02, 1), (0.01, 1)] {
+    for period in [0.1, 0.05, 0.02, 0.01] {
         let mut warm = Box::new(Workspace::<f64, 16, 32>::new());
         let (mut x, mut total) = ([0.0; 3], [0, 0]);
         for k in 0..200 {
@@ -279,11 +278,7 @@ fn walks_are_never_dearer_warm() {
             });
             let s = solve_warm(&q.problem(), &Settings::default(), &mut warm).unwrap();
             assert_eq!(s.status, Status::Solved);
-            assert!(
-                s.steps <= steps + most,
-                "{period}, {k}: {} {steps}",
-                s.steps
-            );
+            assert!(s.steps <= steps + 1, "{period}, {k}: {} {steps}", s.steps);
             total = [total[0] + steps, total[1] + s.steps];
             let (d, jerk) = (period, s.x[0]);
             x = [

@@ -3,8 +3,8 @@
     pip install daqp numpy
     python tests/peers/wbc.py [TSID_PREFIX]
 
-Three take turns, ROUNDS times: `wbc-qp/examples/ticks.rs` (push-offs of iCub and A1 in the contact simulator), DAQP on the programs of
-these ticks (its own timer, set-up plus solve; bounds as its simple bounds) and, where TSID and `target/peers/*.model` (`setup.sh`) are
+Three take turns, ROUNDS times: `wbc-qp/examples/ticks.rs` (push-offs of iCub and A1 in the contact simulator), `dense-qp` and DAQP on the
+programs of these ticks (`programs.py`; DAQP by its own timer, set-up plus solve; bounds as its simple bounds) and, where TSID and `target/peers/*.model` (`setup.sh`) are
 there, `tsid/bench.cpp` on the same states. A round is short, so that a change of the processor's speed meets all; the time of a program is the least of all
 its times, that of a tick the least median of a round. TSID_PREFIX is the `cmeel.prefix` folder of an environment with
 `pip install --only-binary :all: tsid==1.7.1 pin==3.4.0`. Exit code 1 where a ratio is above its limit: 0.5 for the tick against TSID,
@@ -12,45 +12,17 @@ its times, that of a tick the least median of a round. TSID_PREFIX is the `cmeel
 """
 
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 
-import daqp
 import numpy as np
 
+import programs
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-REPEAT = 3
 ROUNDS = 20
 ROBOTS = ["icub23", "a1"]
-
-
-def programs(path):
-    data = np.fromfile(path)
-    n, m, count = (int(v) for v in data[:3])
-    at = 3
-    for _ in range(count):
-        out = []
-        for shape in [(n, n), (n,), (m, n), (m,), (m,), (n,), (n,), (n,), (2,)]:
-            size = int(np.prod(shape))
-            out.append(np.ascontiguousarray(data[at : at + size].reshape(shape)))
-            at += size
-        yield out
-
-
-def by_daqp(h, g, a, lower, upper, lb, ub):
-    """Simple bounds come first; rows without limits are left out, as a user of DAQP would."""
-    there = np.isfinite(lower) | np.isfinite(upper)
-    a, lower, upper = np.ascontiguousarray(a[there]), lower[there], upper[there]
-    low = np.maximum(np.concatenate([lb, lower]), -1e30)
-    up = np.minimum(np.concatenate([ub, upper]), 1e30)
-    sense = np.where(low == up, 5, 0).astype(np.int32)
-    best = np.inf
-    for _ in range(REPEAT):
-        x, _, flag, info = daqp.solve(h, g, a, up, low, sense.copy())
-        best = min(best, info["setup_time"] + info["solve_time"])
-    return best, x, flag == 1
 
 
 def tsid(prefix, robot, folder):
@@ -72,16 +44,14 @@ def tsid(prefix, robot, folder):
 
 
 def ticks(binary, folder):
-    """One round of ours: of each robot median and worst tick, medians of its program, iterations, ticks yielded, ticks."""
+    """One round of ours: of each robot median and worst tick, iterations, ticks yielded, ticks."""
     lines = subprocess.run([binary, str(folder)], check=True, capture_output=True, text=True).stdout.splitlines()
     return {robot: [float(x) for x in numbers] for robot, *numbers in map(str.split, lines)}
 
 
 def main():
     prefix = sys.argv[1] if len(sys.argv) > 1 else None
-    build = ["cargo", "build", "--release", "-q", "-p", "wbc-qp", "--example", "ticks", "--message-format=json"]
-    built = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    binary = re.search(r'"executable":"([^"]*ticks)"', built).group(1)
+    binary, recorded = programs.example("wbc-qp", "ticks"), programs.example("dense-qp", "recorded")
     ours, peers, times, answers = ({robot: [] for robot in ROBOTS} for _ in range(4))
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -90,12 +60,14 @@ def main():
             for robot in ROBOTS:
                 ours[robot].append(rounds[robot])
                 peers[robot].append(tsid(prefix, robot, folder))
-                solved = [(*by_daqp(*p[:7]), *p[7:]) for p in programs(folder / f"{robot}.qps")]
-                times[robot].append([[*t, td] for td, _, _, _, t in solved])
-                answers[robot] = [(np.abs(x - xd).max(), good) for _, xd, good, x, _ in solved]
+                path = folder / f"{robot}.qps"
+                x, mine, _, _ = programs.by_ours(recorded, path)
+                theirs = [programs.by_daqp(programs.stated(*p), programs.REPEAT) for p in programs.read(path)]
+                times[robot].append(np.column_stack([mine, [t for t, *_ in theirs]]))
+                answers[robot] = [(np.abs(a - b).max(), good) for a, (_, b, _, good) in zip(x, theirs)]
     bad = False
     for robot in ROBOTS:
-        tick, worst, _, _, most, yielded, count = min(ours[robot])
+        tick, worst, most, yielded, count = min(ours[robot])
         print(f"{robot}: {count:.0f} ticks, {yielded:.0f} yielded, at most {most:.0f} iterations")
         print(f"  tick     {tick:8.1f} us (max {worst:.1f})")
         if None in peers[robot]:

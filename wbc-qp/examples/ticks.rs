@@ -1,5 +1,5 @@
-//! Times one controller tick (dynamics, tasks, program) and the program alone on the ticks of a push-off of iCub and of A1 in the
-//! contact simulator, and writes states and programs for other libraries: `tests/peers/wbc.py`.
+//! Times one controller tick (dynamics, tasks, program) on the ticks of a push-off of iCub and of A1 in the contact simulator, and
+//! writes states and programs for other libraries (`tests/peers/wbc.py`), iCub's also of the velocity controller on the same states.
 //!
 //! usage: ticks OUT_DIR
 #![allow(
@@ -10,13 +10,13 @@
 
 use contact_sim::{NativeSimulator, Settings, Shape, Simulator, Terrain};
 use core::fmt::Write as _;
-use dense_qp::{Problem, Status, Workspace, solve, solve_warm};
+use dense_qp::Problem;
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, Frame, JointLimits, Motor, Posture, Tangent, Transform};
 use rbd_core::{Kinematics, Tree, forward_kinematics, joint_friction};
 use std::path::Path;
 use std::time::Instant;
-use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings};
+use wbc_qp::jump::{ComReference, TorqueJump, TorqueJumpSettings, VelocityJump};
 use wbc_qp::task::{orientation_error, position_error};
 use wbc_qp::{Contact, Gains, Snapshot, TorqueAnswer, TorqueQp, Yielded};
 
@@ -115,10 +115,11 @@ struct Robot<'a, P, const N: usize> {
     motors: &'a [Motor<f64>; N],
 }
 
-/// Runs hold and push-off; times every tick; writes `NAME.ticks` (states) and `NAME.qps` (programs).
+/// Runs hold and push-off; times every tick; writes `NAME.ticks` (states) and `NAME.qps` (programs). `other` sees every state as well.
 fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize, const S: usize>(
     mut robot: Robot<'_, P, N>,
     mut controller: C,
+    mut other: impl FnMut(&Configuration<f64, N>, &Tangent<f64, N>, &ComReference<f64>),
     out: &Path,
 ) where
     P: Simulator<f64, N, S>,
@@ -128,15 +129,10 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
     robot.plant.reset(&robot.start, &Tangent::ZERO);
     let [speed, push] = robot.push;
     let mut states = String::new();
-    let (mut times, mut cold, mut warm) = (Vec::new(), Vec::new(), Vec::new());
-    let mut programs: Vec<u8> = Vec::new();
-    let mut put = |x: f64| programs.extend(x.to_le_bytes());
-    let mut workspace = Box::new(Workspace::<f64, V, M>::new());
+    let mut times = Vec::new();
     let (mut most, mut yielded) = (0, 0);
     let count = ((HOLD + push) * 1e3) as usize;
-    for x in [V as f64, M as f64, count as f64] {
-        put(x);
-    }
+    let mut programs = Programs::new(V, M, count);
     for k in 0..count {
         let x = ((k as f64 * 1e-3 - HOLD) / push).max(0.0);
         let up = Vector3::z();
@@ -159,13 +155,8 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
         times.push(best);
         most = most.max(answer.iterations);
         yielded += usize::from(answer.yielded != Yielded::Nothing);
-        let problem = controller.program().problem();
-        let least = time_program(&problem, &controller.program().settings, &mut workspace);
-        cold.push(least[0]);
-        warm.push(least[1]);
-        let settings = controller.program().settings;
-        let solution = solve(&problem, &settings, &mut workspace).unwrap();
-        write_problem(&problem, solution.x, least, &mut put);
+        programs.push(&controller.program().problem());
+        other(&q, &v, &wanted);
         for x in numbers(&q, &v, &wanted) {
             write!(states, "{x:.17} ").unwrap();
         }
@@ -175,41 +166,13 @@ fn measure<P, C, const N: usize, const K: usize, const V: usize, const M: usize,
         }
     }
     write_states(&robot, count, &states, out);
-    let path = out.join(format!("{}.qps", robot.name));
-    std::fs::write(path, programs).unwrap();
-    let median = |x: &mut Vec<f64>| {
-        x.sort_by(f64::total_cmp);
-        [x[x.len() / 2], x[x.len() - 1]].map(|t| t * 1e6)
-    };
-    let [tick, worst] = median(&mut times);
-    let ([cold, _], [warm, _]) = (median(&mut cold), median(&mut warm));
+    programs.write(out, robot.name);
+    times.sort_by(f64::total_cmp);
+    let [tick, worst] = [count / 2, count - 1].map(|k| times[k] * 1e6);
     println!(
-        "{} {tick:.3} {worst:.3} {cold:.3} {warm:.3} {most} {yielded} {count}",
+        "{} {tick:.3} {worst:.3} {most} {yielded} {count}",
         robot.name
     );
-}
-
-/// Least times of a solve from nothing and from the workspace's memory, s.
-fn time_program<const V: usize, const M: usize>(
-    problem: &Problem<'_, f64, V, M>,
-    settings: &dense_qp::Settings<f64>,
-    workspace: &mut Workspace<f64, V, M>,
-) -> [f64; 2] {
-    let mut least = [f64::INFINITY; 2];
-    for _ in 0..REPEAT {
-        let mut memory = Box::new(workspace.clone());
-        let begin = Instant::now();
-        let s = solve_warm(problem, settings, &mut memory).unwrap();
-        least[1] = least[1].min(begin.elapsed().as_secs_f64());
-        assert_eq!(s.status, Status::Solved);
-    }
-    for _ in 0..REPEAT {
-        let begin = Instant::now();
-        let s = solve(problem, settings, workspace).unwrap();
-        least[0] = least[0].min(begin.elapsed().as_secs_f64());
-        assert_eq!(s.status, Status::Solved);
-    }
-    least
 }
 
 /// Writes `NAME.ticks`: sizes, limits, posture at the start, and the states.
@@ -253,20 +216,31 @@ fn numbers<const N: usize>(
     out
 }
 
-/// H, g, A, l, u, bounds, the minimiser, times in s (cold, warm).
-fn write_problem<const V: usize, const M: usize>(
-    p: &Problem<'_, f64, V, M>,
-    x: &[f64; V],
-    times: [f64; 2],
-    put: &mut impl FnMut(f64),
-) {
-    let bounds = [p.lower.unwrap(), p.upper.unwrap()];
-    let all = p.hessian.iter().flatten().chain(p.gradient);
-    let all = all.chain(p.rows.iter().flatten());
-    let all = all.chain(p.row_lower).chain(p.row_upper);
-    let all = all.chain(bounds.into_iter().flatten()).chain(x);
-    for x in all.chain(&times) {
-        put(*x);
+/// Programs one after the other, as the example `recorded` of `dense-qp` reads them.
+struct Programs(Vec<u8>);
+
+impl Programs {
+    fn new(variables: usize, rows: usize, count: usize) -> Self {
+        let mut programs = Self(Vec::new());
+        programs.put([variables, rows, count].map(|x| x as f64).iter());
+        programs
+    }
+
+    fn put<'a>(&mut self, numbers: impl Iterator<Item = &'a f64>) {
+        self.0.extend(numbers.flat_map(|x| x.to_le_bytes()));
+    }
+
+    /// H, g, A, l, u and the bounds.
+    fn push<const V: usize, const M: usize>(&mut self, p: &Problem<'_, f64, V, M>) {
+        self.put(p.hessian.iter().flatten().chain(p.gradient));
+        self.put(p.rows.iter().flatten());
+        self.put(p.row_lower.iter().chain(p.row_upper));
+        let bounds = [p.lower.unwrap(), p.upper.unwrap()];
+        self.put(bounds.into_iter().flatten());
+    }
+
+    fn write(&self, out: &Path, name: &str) {
+        std::fs::write(out.join(name).with_extension("qps"), &self.0).unwrap();
     }
 }
 
@@ -330,7 +304,20 @@ fn icub(out: &Path) {
         },
         joints,
     );
-    measure(robot, Humanoid(Box::new((s, jump))), out);
+    let count = ((HOLD + robot.push[1]) * 1e3) as usize;
+    let mut by_velocity = Programs::new(29, 12, count);
+    let settings = icub_model::profile::VELOCITY;
+    let mut velocity = Box::new(VelocityJump::<f64, 23, 29, 12>::new(settings, joints));
+    let mut state = s.clone();
+    let other = |q: &_, v: &_, wanted: &_| {
+        state.update(&Icub23, q, v);
+        let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
+        let tick = velocity.tick(&Icub23, &state, &contacts, &LIMITS, wanted, 1e-3);
+        tick.unwrap();
+        by_velocity.push(&velocity.program().problem());
+    };
+    measure(robot, Humanoid(Box::new((s, jump))), other, out);
+    by_velocity.write(out, "icub23-velocity");
 }
 
 fn a1(out: &Path) {
@@ -350,7 +337,8 @@ fn a1(out: &Path) {
         limits: &LIMITS,
         motors: &MOTORS,
     };
-    measure(robot, Quadruped(Box::new((s, TorqueQp::new()))), out);
+    let controller = Quadruped(Box::new((s, TorqueQp::new())));
+    measure(robot, controller, |_, _, _| {}, out);
 }
 
 fn main() {

@@ -3,9 +3,10 @@
 use so3::{Scalar, math};
 
 use super::violated::Look;
-use super::{Search, is_range, scale_inverse, signed};
+use super::{Search, is_range, scale_inverse};
 use crate::Status;
-use crate::kernels::{at, head, head_mut, max_abs, put};
+use crate::basis::Basis;
+use crate::kernels::{at, head_mut, max_abs, put};
 use crate::settings::row_tolerance;
 
 /// How the search for a point that satisfies all rows ended.
@@ -15,35 +16,47 @@ pub(super) enum Pass {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
-    /// [`Search::search`] from the point without active rows, with what the last solve left: its `seeds` active rows, and the row that was
-    /// most violated at its first point. Where neither it nor one of them is so now, rows have moved, as in a receding horizon, and
-    /// those of old would only have to leave again.
+    /// [`Search::search`] from the point without active rows, with the `seeds` active rows that the last solve left. Where this start does
+    /// not look like its own, rows have moved, as in a receding horizon, and those of old would only have to leave again.
     pub(super) fn start(&mut self, seeds: usize) -> Pass {
         match self.look() {
             Look::Unsound => return Pass::Stop(Status::Numerical),
             Look::Feasible => return Pass::Feasible,
             Look::Violated => {}
         }
-        let worst = at(&self.w.pool, 0);
-        let mut known = self.w.id.iter().zip(&self.w.side).take(seeds);
-        let is_same = seeds > 0 && worst == self.w.first;
-        if is_same || known.any(|(id, side)| (*id, *side) == worst) {
+        if self.is_like_last() && seeds > 0 {
             self.recall(seeds);
             self.drop_negative();
             if self.has_pulling() {
                 return Pass::Stop(Status::Limit);
             }
         }
-        self.w.first = worst;
         self.search()
+    }
+
+    /// Whether the most violated rows are those of the last solve, violated by as much, to a tenth. Remembers them for the next.
+    fn is_like_last(&mut self) -> bool {
+        let now = core::array::from_fn(|k| {
+            if k >= self.w.pool_len {
+                return (0, 0, T::ZERO);
+            }
+            let (id, side) = at(&self.w.pool, k);
+            (id, side, self.excess(id, side))
+        });
+        let last = core::mem::replace(&mut self.w.first, now);
+        let mut pairs = now.iter().map(|(id, side, excess)| {
+            let same = last.iter().find(|row| (row.0, row.1) == (*id, *side));
+            same.is_some_and(|row| math::abs(row.2 - *excess) <= T::of(0.1) * *excess)
+        });
+        pairs.all(|is_same| is_same)
     }
 
     /// Enters violated rows until none is left.
     pub(super) fn search(&mut self) -> Pass {
         loop {
             match self.next() {
-                Ok(Some((id, side))) => {
-                    if let Some(status) = self.admit(id, side) {
+                Ok(Some((id, side, excess))) => {
+                    if let Some(status) = self.admit(id, side, excess) {
                         return Pass::Stop(status);
                     }
                 }
@@ -94,9 +107,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         self.w.state(id) == 0 && is_range(l, u) && limit.is_finite_number()
     }
 
-    /// Moves toward the violated row until it is met and enters; rows whose multipliers reach zero on the way leave. Returns why the
+    /// Moves toward the row that x exceeds by `excess` until it is met and enters; rows whose multipliers reach zero on the way leave. Returns why the
     /// search ends, if it does.
-    fn admit(&mut self, id: usize, side: i8) -> Option<Status> {
+    fn admit(&mut self, id: usize, side: i8, mut excess: T) -> Option<Status> {
         self.prepare(id, side);
         let mut lambda = T::ZERO;
         loop {
@@ -108,11 +121,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.answer();
             self.turn();
             let d = self.w.candidate.free;
-            let full = if d > T::ZERO {
-                self.excess(id, side) / d
-            } else {
-                T::INFINITY
-            };
+            let full = if d > T::ZERO { excess / d } else { T::INFINITY };
             let (t, blocking) = self.first_zero(full);
             if full <= t {
                 if !full.is_finite_number() {
@@ -128,6 +137,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.advance(t);
             lambda += t;
             self.leave(k);
+            excess = self.excess(id, side);
         }
     }
 
@@ -173,43 +183,41 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn prepare(&mut self, id: usize, side: i8) {
         let w = &mut *self.w;
         w.basis.prepare(&w.factor);
-        head_mut(&mut w.candidate.d, w.factor.dim).fill(T::ZERO);
         // What is left of a row that depends on the equalities is round-off, not a row.
         let least = if w.elimination.rank == 0 {
             T::ZERO
         } else {
             row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
         };
-        let sign = signed(side, T::ONE);
         let (basis, d) = (&w.basis, &mut w.candidate.d);
-        if w.elimination.has_basic() {
-            if id < M {
-                w.elimination
-                    .reduce(crate::kernels::row(self.p.rows, id), &mut w.vec_a);
-            } else {
-                w.elimination.reduce_unit(id - M, &mut w.vec_a);
+        match self.p.rows.get(id) {
+            // Outside of its span nothing of a row is read.
+            Some(row) if w.elimination.rank == 0 && self.p.spans.is_none() => {
+                basis.coordinates(row, d);
             }
-            let reduced = head(&w.vec_a, w.factor.dim);
-            if max_abs(reduced) > least {
-                for (i, a) in reduced.iter().enumerate() {
-                    if *a != T::ZERO {
-                        basis.add_coordinates(i, sign * *a, d);
-                    }
-                }
+            Some(row) if w.elimination.has_basic() => {
+                w.elimination.reduce(row, &mut w.vec_a);
+                project(basis, &w.vec_a, least, d);
             }
-        } else if id < M {
-            let (from, row) = self.p.entries(id);
-            let free = |k: usize| w.elimination.free_index(from + k);
-            let large = |(k, a): (usize, &T)| math::abs(*a) > least && free(k).is_some();
-            if least == T::ZERO || row.iter().enumerate().any(large) {
+            Some(_) => {
+                let (from, row) = self.p.entries(id);
+                w.vec_a.fill(T::ZERO);
                 for (k, a) in row.iter().enumerate() {
-                    if let (true, Some(i)) = (*a != T::ZERO, free(k)) {
-                        basis.add_coordinates(i, sign * *a, d);
+                    if let Some(i) = w.elimination.free_index(from + k) {
+                        put(&mut w.vec_a, i, *a);
                     }
                 }
+                project(basis, &w.vec_a, least, d);
             }
-        } else if let Some(i) = w.elimination.free_index(id - M) {
-            basis.add_coordinates(i, sign, d);
+            None => {
+                w.elimination.reduce_unit(id - M, &mut w.vec_a);
+                project(basis, &w.vec_a, least, d);
+            }
+        }
+        if side < 0 {
+            for d in head_mut(d, w.factor.dim) {
+                *d = -*d;
+            }
         }
         let w = &mut *self.w;
         w.basis.project(&mut w.candidate);
@@ -271,5 +279,15 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             put(&mut w.side, i - 1, side);
             put(&mut w.lambda, i - 1, lambda);
         }
+    }
+}
+
+/// d ← Jᵀa for a reduced row, or 0 where no entry of it is larger than `least`.
+#[inline]
+fn project<T: Scalar, const N: usize>(basis: &Basis<T, N>, row: &[T; N], least: T, d: &mut [T; N]) {
+    if max_abs(row) > least {
+        basis.coordinates(row, d);
+    } else {
+        d.fill(T::ZERO);
     }
 }

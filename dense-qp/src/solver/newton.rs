@@ -128,9 +128,6 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
     #[inline(always)]
     pub(super) fn gradient_coordinates(&mut self) {
         self.elimination.reduce(&self.gradient, &mut self.vec_a);
-        self.candidate.d.fill(T::ZERO);
-        for (i, g) in self.vec_a.iter().enumerate().take(self.factor.dim) {
-            self.basis.add_coordinates(i, *g, &mut self.candidate.d);
-        }
+        self.basis.coordinates(&self.vec_a, &mut self.candidate.d);
     }
 }

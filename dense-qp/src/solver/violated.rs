@@ -3,7 +3,7 @@
 use so3::{Scalar, math};
 
 use super::{EQUALITY, Search, is_range, scale_inverse};
-use crate::kernels::{at, put};
+use crate::kernels::{at, put, sum_sizes};
 use crate::residual::worse;
 use crate::workspace::POOL;
 use crate::{Status, Workspace};
@@ -19,10 +19,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// Looks at every inactive row and bound and collects the most violated ones, relative to their
     /// scale, in the pool.
     pub(super) fn look(&mut self) -> Look {
-        let mut length = T::ZERO;
-        for v in &self.w.x {
-            length += math::abs(*v);
-        }
+        let length = sum_sizes(&self.w.x);
         self.primal = T::ZERO;
         self.w.pool_len = 0;
         let mut sound = length.is_finite_number();
@@ -40,7 +37,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             if v <= *u && v >= *l {
                 continue;
             }
-            sound &= self.judge(i, v, *l, *u, &mut excess);
+            sound &= self.judge(i, v, [*l, *u], length, &mut excess);
         }
         if self.p.lower.is_some() || self.p.upper.is_some() {
             let none = ([-T::INFINITY; N], [T::INFINITY; N]);
@@ -51,7 +48,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 if (v <= *u && v >= *l) || at(&self.w.bound_state, i) != 0 {
                     continue;
                 }
-                sound &= self.judge(M + i, v, *l, *u, &mut excess);
+                sound &= self.judge(M + i, v, [*l, *u], length, &mut excess);
             }
         }
         if !(sound && sum.is_finite_number()) {
@@ -64,8 +61,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
     }
 
-    /// A row that is violated, or has bad numbers (then the answer is false).
-    fn judge(&mut self, i: usize, v: T, l: T, u: T, excess: &mut [T; POOL]) -> bool {
+    /// A row that is violated, or has bad numbers (then the answer is false). `length` is Σ|xⱼ|.
+    fn judge(&mut self, i: usize, v: T, [l, u]: [T; 2], length: T, excess: &mut [T; POOL]) -> bool {
         if !(v.is_finite_number() && is_range(l, u)) {
             return false;
         }
@@ -78,7 +75,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let inverse = scale_inverse::<T, N, M>(self.p, self.w, i);
         let scaled = e * inverse;
         let limit = if side > 0 { u } else { l };
-        if scaled > self.s.feasibility && scaled > self.row_noise(i, limit, inverse) {
+        // Round-off is at most that of a row whose entries are all as large as the largest.
+        let is_large = scaled > T::of(64.0) * T::EPSILON * length;
+        if scaled > self.s.feasibility && (is_large || scaled > self.row_noise(i, limit, inverse)) {
             pool_insert(self.w, excess, scaled, (i, side));
         }
         true
@@ -89,12 +88,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn excess_above(&mut self, least: T, id: usize, side: i8) -> Option<T> {
         let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
         let scaled = self.excess(id, side) * inverse;
-        if scaled > least {
-            let (l, u) = self.p.limits(id);
-            let limit = if side > 0 { u } else { l };
-            return (scaled > self.row_noise(id, limit, inverse)).then_some(scaled);
-        }
-        None
+        (scaled > least && self.is_violated(scaled, id, side)).then_some(scaled)
+    }
+
+    /// Whether x is outside a row by more than round-off, `scaled` being by how much, relative to the row's scale.
+    fn is_violated(&mut self, scaled: T, id: usize, side: i8) -> bool {
+        let inverse = scale_inverse::<T, N, M>(self.p, self.w, id);
+        let (l, u) = self.p.limits(id);
+        scaled > self.row_noise(id, if side > 0 { u } else { l }, inverse)
     }
 
     /// How far x is from the limits of the active rows and the equalities, relative to their scale;
@@ -122,30 +123,34 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         drift
     }
 
-    /// The row to enter next: the most violated one of the pool, or of all rows when the pool is
-    /// used up.
-    pub(super) fn next(&mut self) -> Result<Option<(usize, i8)>, Status> {
-        for refilled in [false, true] {
-            let (mut worst, mut found) = (self.s.feasibility, None);
-            for k in 0..self.w.pool_len {
-                let (id, side) = at(&self.w.pool, k);
-                if self.w.state(id) != 0 {
-                    continue;
-                }
-                if let Some(scaled) = self.excess_above(worst, id, side) {
-                    (worst, found) = (scaled, Some((id, side)));
-                }
+    /// The row to enter next, on which side, and by how much x exceeds it: the most violated one of the pool, or of all rows when the
+    /// pool is used up.
+    pub(super) fn next(&mut self) -> Result<Option<(usize, i8, T)>, Status> {
+        let (mut worst, mut found) = (self.s.feasibility, None);
+        for k in 0..self.w.pool_len {
+            let (id, side) = at(&self.w.pool, k);
+            if self.w.state(id) != 0 {
+                continue;
             }
-            if found.is_some() || refilled {
-                return Ok(found);
-            }
-            match self.look() {
-                Look::Unsound => return Err(Status::Numerical),
-                Look::Feasible => return Ok(None),
-                Look::Violated => {}
+            let excess = self.excess(id, side);
+            let scaled = excess * scale_inverse::<T, N, M>(self.p, self.w, id);
+            if scaled > worst {
+                (worst, found) = (scaled, Some((id, side, excess)));
             }
         }
-        Ok(None)
+        if let Some((id, side, _)) = found
+            && self.is_violated(worst, id, side)
+        {
+            return Ok(found);
+        }
+        match self.look() {
+            Look::Unsound => Err(Status::Numerical),
+            Look::Feasible => Ok(None),
+            Look::Violated => {
+                let (id, side) = at(&self.w.pool, 0);
+                Ok(Some((id, side, self.excess(id, side))))
+            }
+        }
     }
 }
 

@@ -90,6 +90,12 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityJump<T, 
         self.momentum_integral = Vector3::zeros();
     }
 
+    /// The program of the last tick: for a log, or another solver's opinion.
+    #[must_use]
+    pub const fn program(&self) -> &VelocityQp<T, N, V, M> {
+        &self.qp
+    }
+
     /// One tick of length `dt`.
     ///
     /// # Errors
