@@ -185,7 +185,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         let last = self.len - 1;
         for row in self.r.iter_mut().take(self.len) {
-            row.copy_within(k + 1..self.len, k);
+            for i in k..last {
+                let next = at(row.as_slice(), i + 1);
+                put(row, i, next);
+            }
             put(row, last, T::ZERO);
         }
         for i in k..last {
