@@ -8,6 +8,7 @@
 //! warm, steps cold and warm, and the largest violation of an optimality condition. Warm is from the last program's workspace.
 #![allow(
     clippy::unwrap_used,
+    clippy::panic,
     clippy::disallowed_methods,
     reason = "a measuring program"
 )]

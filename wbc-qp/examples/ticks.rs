@@ -308,7 +308,7 @@ fn icub(out: &Path) {
     let mut by_velocity = Programs::new(29, 12, count);
     let settings = icub_model::profile::VELOCITY;
     let mut velocity = Box::new(VelocityJump::<f64, 23, 29, 12>::new(settings, joints));
-    let mut state = s.clone();
+    let mut state = s;
     let other = |q: &_, v: &_, wanted: &_| {
         state.update(&Icub23, q, v);
         let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
