@@ -351,8 +351,9 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{EDGE_MARGIN, cautious};
+    use super::{EDGE_MARGIN, Setup, cautious};
     use crate::task::Task;
+    use crate::tightening::Tightening;
     use nalgebra::Vector3;
 
     /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
@@ -397,5 +398,30 @@ mod tests {
             let there = cautious.ground(&begin).height / height;
             assert!(there > 0.95, "{beyond}: {there}");
         }
+    }
+
+    #[test]
+    fn heights_that_are_drawn_in_are_higher() {
+        let task = Task::load("a1/lateral").unwrap();
+        let srb = task.solve().unwrap();
+        let setup = Setup::new(&task, &srb, 4.0).unwrap();
+        let drawn = Tightening {
+            height: 0.1,
+            ..Tightening::default()
+        };
+        let rise = 0.1 * task.robot.leg_length;
+        let [before, after] = [Tightening::default(), drawn].map(|drawn| {
+            let heights: Vec<f64> = setup.clearances(&drawn).iter().map(|c| c.height).collect();
+            (heights, setup.problem(&drawn).swing_rise)
+        });
+        assert_eq!(before.0.len(), after.0.len());
+        assert!(
+            before
+                .0
+                .iter()
+                .zip(&after.0)
+                .all(|(a, b)| (b - a - rise).abs() < 1e-12)
+        );
+        assert!((after.1 - before.1 - rise).abs() < 1e-12);
     }
 }
