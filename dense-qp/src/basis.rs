@@ -89,7 +89,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let n = factor.dim;
         self.dim = n;
         let end = ceil4(n, N);
-        // Column c of U⁻¹ is eₖ less the columns before it, each times what U has in its row.
+        // Column c of U⁻¹ is unit vector c less the columns before it, each times what U has in its row.
         let mut shares = [T::ZERO; N];
         for c in 0..n {
             let Some((before, [column, ..])) = self.j.split_at_mut_checked(c) else {

@@ -197,7 +197,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
             Some(row) if w.elimination.has_basic() => {
                 w.elimination.reduce(row, &mut w.vec_a);
-                project(basis, &w.vec_a, least, d);
+                reduced_coordinates(basis, &w.vec_a, least, d);
             }
             Some(_) => {
                 let (from, row) = self.p.entries(id);
@@ -207,11 +207,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                         put(&mut w.vec_a, i, *a);
                     }
                 }
-                project(basis, &w.vec_a, least, d);
+                reduced_coordinates(basis, &w.vec_a, least, d);
             }
             None => {
                 w.elimination.reduce_unit(id - M, &mut w.vec_a);
-                project(basis, &w.vec_a, least, d);
+                reduced_coordinates(basis, &w.vec_a, least, d);
             }
         }
         if side < 0 {
@@ -284,7 +284,12 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
 /// d ← Jᵀa for a reduced row, or 0 where no entry of it is larger than `least`.
 #[inline]
-fn project<T: Scalar, const N: usize>(basis: &Basis<T, N>, row: &[T; N], least: T, d: &mut [T; N]) {
+fn reduced_coordinates<T: Scalar, const N: usize>(
+    basis: &Basis<T, N>,
+    row: &[T; N],
+    least: T,
+    d: &mut [T; N],
+) {
     if max_abs(row) > least {
         basis.coordinates(row, d);
     } else {
