@@ -1,0 +1,133 @@
+//! What gravity and standing feet say of tilt and bias, and when they are heard.
+
+use a1_model::A1;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use state_est::{Estimate, Settings, State};
+
+use crate::common::{World, config, feet, vector, world};
+
+const DT: f64 = 1e-3;
+
+/// Every foot is believed as far as its evidence goes, whatever it does.
+fn trusting() -> Settings<f64> {
+    let mut settings = Settings::new();
+    settings.slip_gate = 1e9;
+    settings
+}
+
+/// One step of an estimator that takes the robot to be tilted by `tilt`, rad, about the world's x axis.
+fn tilted(world: &World, tilt: f64, force_b: &Vector3<f64>, evidence: f64) -> Estimate<f64, 4> {
+    let estimator = world.estimator::<4, 6>(feet(), trusting());
+    let mut believed = world.q;
+    believed.base.rotation = so3::exp(&(Vector3::x() * tilt)) * world.q.base.rotation;
+    let mut state = State::new(&estimator, &A1, &believed);
+    let sample = world.sample(force_b, [evidence; 4]);
+    estimator.step(&A1, &mut state, Some(&sample), DT)
+}
+
+/// Angle between the estimated and the true vertical after a step.
+fn tilt_of(world: &World, estimate: &Estimate<f64, 4>) -> f64 {
+    let true_b = world.q.base.rotation.inverse() * Vector3::z();
+    let up_b = estimate.base.rotation.inverse() * Vector3::z();
+    true_b.cross(&up_b).norm().atan2(true_b.dot(&up_b))
+}
+
+proptest! {
+    #![proptest_config(config(64, 14))]
+
+    /// While the robot stands still, a wrong tilt α falls as α̇ = −gain × sin α, whichever way it is and however the robot is turned.
+    #[test]
+    fn gravity_corrects_the_tilt_at_its_rate(mut world in world(), tilt in -1.5..1.5_f64) {
+        world.omega_b = Vector3::zeros();
+        world.joint_velocities = [0.0; 12];
+        let left = tilt_of(&world, &tilted(&world, tilt, &world.held(), 1.0));
+        let expected = tilt.abs() - Settings::<f64>::new().tilt_gain * DT * tilt.abs().sin();
+        prop_assert!((left - expected).abs() < 1e-9, "{left} {expected}");
+    }
+
+    /// Gravity speaks only in a force within 1 m/s² of its own, while the robot turns by less than 0.5 rad/s on a foot that is more
+    /// likely to stand than not.
+    #[test]
+    fn gravity_is_heard_only_at_rest(yaw in 0.0..1.0_f64, size in 8.0..12.0_f64, evidence in 0.11..1.0_f64) {
+        let mut world = World::crouched();
+        world.omega_b = Vector3::z() * yaw;
+        let tilt = 0.2;
+        let left = tilt_of(&world, &tilted(&world, tilt, &(world.held() * (size / 9.81)), evidence));
+        let rests = yaw < 0.5 && (size - 9.81).abs() < 1.0 && evidence > 0.5;
+        let heard = (left - tilt).abs() > 1e-9;
+        prop_assert_eq!(heard, rests, "{} {}", left, tilt);
+    }
+
+    /// Feet that disagree about the velocity tell the gyroscope's bias. What they miss in its rate minimises the squares of what is left
+    /// between them, with the square of the rate times 0.01 m².
+    #[test]
+    fn the_bias_is_the_least_squares_of_the_feet(
+        mut world in world(), turning in vector(0.2), slips in prop::array::uniform12(-0.1..0.1_f64),
+        evidence in prop::array::uniform4(prop_oneof![Just(0.2), Just(0.8)]),
+    ) {
+        world.omega_b = turning;
+        world.joint_velocities = slips;
+        let mut settings = trusting();
+        settings.max_bias = 10.0;
+        settings.tilt_gain = 0.0;
+        let estimator = world.estimator::<4, 6>(feet(), settings);
+        let mut state = State::new(&estimator, &A1, &world.q);
+        let dt = 1e-7;
+        let estimate = estimator.step(&A1, &mut state, Some(&world.sample(&world.held(), evidence)), dt);
+        // The bias is what is missing with the other sign, and the estimated rate is the gyroscope's without the bias.
+        let missing_b = (estimate.velocity.angular - turning) / (settings.bias_gain * dt);
+        let missing_w = world.q.base.rotation * missing_b;
+        let stand: Vec<usize> = (0..4).filter(|i| evidence[*i] > 0.5).collect();
+        if stand.is_empty() {
+            prop_assert!(missing_b.amax() < 1e-6);
+            return Ok(());
+        }
+        let feet = feet();
+        let all: Vec<_> = stand.iter().map(|i| (world.arm_w(&feet[*i]), world.velocity_by(feet[*i]))).collect();
+        let count = all.len() as f64;
+        let middle: Vector3<f64> = all.iter().map(|(arm, _)| arm).sum::<Vector3<f64>>() / count;
+        let mean: Vector3<f64> = all.iter().map(|(_, velocity)| velocity).sum::<Vector3<f64>>() / count;
+        let cost = |rate: Vector3<f64>| {
+            let left = all.iter().map(|(arm, velocity)| (rate.cross(&(arm - middle)) - (velocity - mean)).norm_squared());
+            left.sum::<f64>() + 0.01 * rate.norm_squared()
+        };
+        // The slope of a quadratic function, exactly.
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            let slope = (cost(missing_w + axis) - cost(missing_w - axis)) / 2.0;
+            prop_assert!(slope.abs() < 1e-5, "{slope}");
+        }
+    }
+
+}
+
+proptest! {
+    #![proptest_config(config(8, 16))]
+
+    /// A robot that stands learns the bias of its gyroscope, up to the largest that is believed, along each axis.
+    #[test]
+    fn a_standing_robot_learns_the_bias(bias in vector(0.15)) {
+        let mut world = World::crouched();
+        world.omega_b = bias;
+        let settings = Settings::new();
+        let estimator = world.estimator::<4, 6>(feet(), settings);
+        let mut state = State::new(&estimator, &A1, &world.q);
+        let sample = world.sample(&world.held(), [1.0; 4]);
+        let mut estimate = estimator.step(&A1, &mut state, Some(&sample), 0.01);
+        for _ in 0..3000 {
+            estimate = estimator.step(&A1, &mut state, Some(&sample), 0.01);
+        }
+        let left = bias.map(|x| x - x.clamp(-settings.max_bias, settings.max_bias));
+        // What is left of the rate turns the robot, or is held against by gravity: the feet see all of it.
+        let unlearnt = estimate.velocity.angular - left;
+        prop_assert!(unlearnt.amax() < 1e-3, "{unlearnt} {left}");
+    }
+}
+
+/// While the accelerometer is out, the last force is held for the motion, and is no news of the tilt.
+#[test]
+fn an_old_force_says_nothing_of_the_tilt() {
+    let world = World::crouched();
+    let left = tilt_of(&world, &tilted(&world, 0.2, &(world.held() * 1e9), 1.0));
+    assert!((left - 0.2).abs() < 1e-12);
+}
