@@ -140,8 +140,8 @@ proptest! {
     #[test]
     fn a_gap_is_coasted_lost_and_found(world in world(), force in vector(30.0), gap in 1..20_usize, dt in 5e-4..5e-3_f64) {
         let mut settings = Settings::new();
-        // Between two steps: no sum of steps lies on it.
-        settings.max_coasting = 4.5 * dt;
+        // Exactly four steps, as they are summed: the limit itself is still coasted.
+        settings.max_coasting = [dt; 4].iter().sum();
         let estimator = world.estimator::<4, 6>(feet(), settings);
         let mut state = State::new(&estimator, &A1, &world.q);
         let _ = estimator.step(&A1, &mut state, Some(&world.sample(&force, [1.0; 4])), dt);

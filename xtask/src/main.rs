@@ -20,11 +20,13 @@ mod icount;
 mod image;
 mod import_check;
 mod mujoco;
+mod mutants;
 mod package;
 mod panics;
 mod probe;
 mod python;
 mod qemu;
+mod random;
 mod replay;
 mod report;
 mod reproduce;
@@ -88,6 +90,8 @@ enum Command {
     Examples(examples::Args),
     /// Hostile files and command lines for `saltus`, until the time is over.
     Fuzz(fuzz::Args),
+    /// Break the source of the control crates in many small ways, and count how many of them their tests notice.
+    Mutants(mutants::Args),
     /// Build the Python package, install it in an environment of its own, and run its tests and example.
     Python(python::Args),
     /// Make the book of the guide, the references and the crates' pages, and see that no link in it leads nowhere.
@@ -119,6 +123,7 @@ fn main() -> ExitCode {
         Command::Package(args) => package::run(&args),
         Command::Examples(args) => examples::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
+        Command::Mutants(args) => mutants::run(&args),
         Command::Python(args) => python::run(&args),
         Command::Book(args) => book::run(&args),
         Command::Mujoco(args) => mujoco::run(&args),

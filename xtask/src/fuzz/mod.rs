@@ -4,7 +4,6 @@
 //! and nothing half made. What breaks that is written to `target/fuzz`, as a folder that `saltus/tests/kept` takes as it is.
 
 mod mutate;
-mod random;
 mod trial;
 
 use std::fs;
@@ -13,9 +12,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
+use crate::random::Random;
 use crate::run;
 use mutate::{VALUES, mutate};
-use random::Random;
 use trial::Trial;
 
 /// Arguments of `cargo xtask fuzz`.

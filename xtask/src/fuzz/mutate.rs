@@ -1,6 +1,6 @@
 //! Changes to the repository's own files: mostly of whole tokens, so that what comes out is read far into the program.
 
-use super::random::Random;
+use crate::random::Random;
 
 /// What stands where a number stood, or an argument.
 pub(super) const VALUES: &[&str] = &[
@@ -168,8 +168,8 @@ fn mend(out: &mut [u8]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
     use super::{mutate, tokens};
+    use crate::random::Random;
 
     #[test]
     fn a_seed_says_what_comes_out() {
