@@ -98,7 +98,8 @@ fn measure(name: &str, size: usize) -> Result<Outcome> {
     }
     // What all copies need is built once.
     cargo.env("CARGO_TARGET_DIR", target.join("build"));
-    cargo.args(["--", "--lib", "--tests"]);
+    // All targets with tests; `--tests` would build the examples too.
+    cargo.args(["--", "--lib", "--test", "all"]);
     let status = cargo.status().context("cannot start cargo mutants")?;
     // 2: some survived; 3: some did not end.
     ensure!(
