@@ -4,4 +4,5 @@ mod common;
 mod forces;
 mod laws;
 mod optimal;
+mod shaping;
 mod touch;

@@ -6,6 +6,8 @@ use super::{CONE, Checked, FAR, MOST, Rules, SAME_TIME, header, near};
 use crate::container::record::is_rotation;
 use crate::container::tests::{ROBOT, bytes, sealed};
 use crate::container::{Container, ContainerError, Header, PlanNode};
+use nalgebra::Vector3;
+use proptest::prelude::*;
 use so3::math;
 use std::vec::Vec;
 
@@ -160,4 +162,22 @@ fn the_pass_refuses_what_the_plain_definition_refuses() {
         refused > 2000 && accepted > 2000,
         "{refused} refused, {accepted} accepted"
     );
+}
+
+proptest! {
+    /// Rows of a rotation, as single precision has them, are those of one; mirrored, stretched or leaning by a hundredth they are not.
+    #[test]
+    fn only_rotations_are_rotations(turn in prop::array::uniform3(-3.0..3.0_f64), row in 0..3_usize, other in 1..3_usize) {
+        let rotation = so3::exp(&Vector3::from(turn));
+        let rows: [[f32; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| rotation[(i, j)] as f32));
+        prop_assert!(is_rotation(&rows));
+        let changed = |change: fn(f32, f32) -> f32| {
+            let mut changed = rows;
+            changed[row] = core::array::from_fn(|j| change(rows[row][j], rows[(row + other) % 3][j]));
+            is_rotation(&changed)
+        };
+        prop_assert!(!changed(|x, _| -x));
+        prop_assert!(!changed(|x, _| 1.01 * x));
+        prop_assert!(!changed(|x, y| (x + 0.01 * y) / 1.000_05));
+    }
 }
