@@ -6,7 +6,7 @@ use a1_model::{A1Geared, BUILD, FEET};
 use landing::{Detector, DetectorState, ForceObserver, ObserverState};
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use rbd_core::{Configuration, Motion, Posture, Tangent, generalized_gravity, rnea};
+use rbd_core::{Configuration, Limbs, Motion, Posture, Tangent, generalized_gravity, rnea};
 
 const DT: f64 = 1e-3;
 
@@ -47,6 +47,36 @@ proptest! {
         }
         if beside == [0.0; 12] {
             prop_assert!(moving.iter().all(|force| force.amax() < 1e-8));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(64, 9))]
+
+    /// Forces of the ground on a robot at rest are felt as they are, in world axes, with a first-order lag of the time constant.
+    #[test]
+    fn forces_are_felt_with_a_lag(
+        case in smooth(0.3), forces in prop::array::uniform4(prop::array::uniform3(-100.0..100.0_f64)), dt in 5e-4..5e-3_f64, ticks in 1..40,
+    ) {
+        let mut observer = ForceObserver::new(&BUILD, FEET.map(|foot| foot.frame));
+        observer.damping = 1e-12;
+        let forces = forces.map(Vector3::from);
+        let posture = Posture::new(&A1Geared, &case.q);
+        // Each foot's force takes its leg's torques away.
+        let mut torques = generalized_gravity(&A1Geared, &posture).joints;
+        let limbs = Limbs::new(&A1Geared, &case.q, &observer.feet);
+        for (end, force_w) in limbs.ends.iter().zip(&forces) {
+            end.add_tr_mul(&-(case.q.base.rotation.inverse() * force_w), &mut torques);
+        }
+        let mut state = ObserverState::new();
+        let mut update = || observer.update(&A1Geared, &mut state, &case.q, &Tangent::ZERO, &torques, dt);
+        prop_assert_eq!(update(), None);
+        let felt = (0..ticks).fold(None, |_, _| update()).unwrap();
+        let tau = observer.time_constant;
+        let share = 1.0 - (tau / (tau + dt)).powi(ticks);
+        for (felt, force_w) in felt.iter().zip(&forces) {
+            prop_assert!((felt - force_w * share).amax() < 1e-5, "{} {}", felt, force_w * share);
         }
     }
 }
