@@ -57,7 +57,7 @@ proptest! {
     /// Forces of the ground on a robot at rest are felt as they are, in world axes, with a first-order lag of the time constant.
     #[test]
     fn forces_are_felt_with_a_lag(
-        case in smooth(0.3), forces in prop::array::uniform4(prop::array::uniform3(-100.0..100.0_f64)), dt in 5e-4..5e-3_f64, ticks in 1..40,
+        case in smooth(0.3), forces in prop::array::uniform4(prop::array::uniform3(-100.0..100.0_f64)), dt in 5e-4..5e-3_f64, ticks in 1..40_u32,
     ) {
         let mut observer = ForceObserver::new(&BUILD, FEET.map(|foot| foot.frame));
         observer.damping = 1e-12;
@@ -74,7 +74,7 @@ proptest! {
         prop_assert_eq!(update(), None);
         let felt = (0..ticks).fold(None, |_, _| update()).unwrap();
         let tau = observer.time_constant;
-        let share = 1.0 - (tau / (tau + dt)).powi(ticks);
+        let share = 1.0 - so3::math::powi(tau / (tau + dt), ticks);
         for (felt, force_w) in felt.iter().zip(&forces) {
             prop_assert!((felt - force_w * share).amax() < 1e-5, "{} {}", felt, force_w * share);
         }

@@ -44,6 +44,10 @@ fn settings() -> impl Strategy<Value = Settings<f64>> {
     })
 }
 
+fn square(x: f64) -> f64 {
+    x * x
+}
+
 /// Evidence of a foot that is in the air or believed as far as its evidence goes.
 fn evidence() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 4 => 0.51..1.0_f64]
@@ -73,10 +77,10 @@ fn step(
     let omega_w = world.q.base.rotation * world.omega_b;
     let up = Vector3::z() * foot.radius;
     let arm_w = world.arm_w(foot);
-    let place = settings.foot_position.powi(2) / confidence;
+    let place = square(settings.foot_position) / confidence;
     if anchored {
         let rolled = Matrix3::from_rows(&[zero, zero, row(omega_w.cross(&up) * dt)]);
-        let drift = settings.foot_drift.powi(2) * dt / confidence;
+        let drift = square(settings.foot_drift) * dt / confidence;
         book.predict(&Matrix3::identity(), &rolled, [0.0, 0.0, drift]);
         book.measure([-1.0, 0.0, 1.0], &arm_w, place);
     } else {
@@ -86,7 +90,7 @@ fn step(
     }
     // The body turns about the point where the ball touches.
     let velocity_w = -omega_w.cross(&(arm_w - up));
-    let speed = (settings.foot_speed / confidence).powi(2);
+    let speed = square(settings.foot_speed / confidence);
     book.measure([0.0, 1.0, 0.0], &velocity_w, speed);
 }
 
