@@ -3,7 +3,7 @@ extern crate std;
 
 use super::{
     Container, ContainerError, GroundStep, Header, LONGEST_ROBOT, LONGEST_TASK, MOST_PHASES,
-    Margins, PREFIX, PlanNode, PlanPhase, VERSION, model_hash, write,
+    Margins, PREFIX, PlanNode, PlanPhase, VERSION, model_hash, parts, write,
 };
 use crate::{Node, Plan, Torques, sample};
 use std::string::String;
@@ -321,6 +321,41 @@ fn values_that_cannot_be_are_named() {
     assert!(!super::record::is_rotation(&mirrored[0].rotation_wb));
     let level = nalgebra::Rotation3::<f32>::identity();
     assert_eq!(mirrored[0].node::<f32>().base.rotation, level);
+}
+
+/// Parts of a node are those of the whole, and zeros elsewhere: for any parts that are asked for.
+#[test]
+fn parts_of_a_node_are_the_wholes() {
+    fn expect<const PARTS: u8>(container: &Container<'_, 2, 1>) {
+        for (i, whole) in nodes().into_iter().enumerate() {
+            let mut expected = PlanNode {
+                phase: whole.phase,
+                time: whole.time,
+                ..PlanNode::ZERO
+            };
+            if PARTS & parts::BASE == parts::BASE {
+                expected.position_w = whole.position_w;
+                expected.rotation_wb = whole.rotation_wb;
+                expected.velocity_b = whole.velocity_b;
+            }
+            if PARTS & parts::JOINTS == parts::JOINTS {
+                expected.joints = whole.joints;
+                expected.joint_velocities = whole.joint_velocities;
+                expected.torques = whole.torques;
+            }
+            if PARTS & parts::FORCES == parts::FORCES {
+                expected.forces_w = whole.forces_w;
+            }
+            assert_eq!(container.stored().parts::<PARTS>(i), Some(expected));
+        }
+    }
+    let stored = bytes();
+    let container = (Container::open(&stored, ROBOT) as Opened<'_>).unwrap();
+    expect::<0>(&container);
+    expect::<{ parts::BASE }>(&container);
+    expect::<{ parts::JOINTS }>(&container);
+    expect::<{ parts::FORCES }>(&container);
+    expect::<{ parts::ALL }>(&container);
 }
 
 #[test]
