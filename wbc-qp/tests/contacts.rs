@@ -93,6 +93,8 @@ fn friction_is_that_of_the_plane() {
 }
 
 static SQUARE: [[f64; 2]; 4] = [[0.1, -0.04], [0.1, 0.06], [-0.05, 0.06], [-0.05, -0.04]];
+/// There and back: both corners turn left, by half a turn.
+static TWO: [[f64; 2]; 2] = [[0.0, 0.0], [1.0, 1.0]];
 static TRIANGLE: [[f64; 2]; 3] = [[0.1, 0.0], [-0.05, 0.05], [-0.05, -0.05]];
 static STAR: [[f64; 2]; 5] = [
     [1.0, 0.0],
@@ -145,7 +147,7 @@ fn a_polygon_bounds_the_centre_of_pressure() {
     );
     let inside = inside.map(|count| count.get());
     assert!(inside[0] > 1000 && inside[1] > 1000, "{inside:?}");
-    for vertices in [&STAR[..], &CLOCKWISE, &SQUARE[..2], &[]] {
+    for vertices in [&STAR[..], &CLOCKWISE, &SQUARE[..2], &TWO, &[]] {
         assert_eq!(
             Contact::polygon(&frame, vertices, 0.5, 1.0),
             Err(Error::NotConvex)
