@@ -86,8 +86,9 @@ fn measure(name: &str, size: usize) -> Result<Outcome> {
         run::stdout(run::cargo().args(["mutants", "--list", "--colors=never", "--package", name]))?;
     let listed: Vec<&str> = list.lines().collect();
     let drawn = sample(&listed, size)?;
-    let target = run::root().join("target/mutants");
-    let folder = target.join(name);
+    // Without a pattern cargo-mutants would make them all.
+    ensure!(!drawn.is_empty(), "no mutants");
+    let folder = run::root().join("target/mutants").join(name);
     run::remove_folder(&folder)?;
     fs::create_dir_all(&folder)?;
     let mut cargo = run::cargo();
@@ -96,10 +97,10 @@ fn measure(name: &str, size: usize) -> Result<Outcome> {
     for mutant in &drawn {
         cargo.arg("--re").arg(exactly(mutant));
     }
-    // What all copies need is built once.
-    cargo.env("CARGO_TARGET_DIR", target.join("build"));
-    // All targets with tests; `--tests` would build the examples too.
-    cargo.args(["--", "--lib", "--test", "all"]);
+    // Every copy has builds of its own: cargo tells workspaces apart by their times alone, and would take another copy's mutant for built.
+    cargo.env_remove("CARGO_TARGET_DIR");
+    // In builds as in tests: without them, examples would be built for every mutant.
+    cargo.args(["--cargo-arg=--lib", "--cargo-arg=--test=all"]);
     let status = cargo.status().context("cannot start cargo mutants")?;
     // 2: some survived; 3: some did not end.
     ensure!(
