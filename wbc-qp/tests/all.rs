@@ -1,6 +1,7 @@
 //! Every integration test of the crate in one program: linked once.
 
 mod a1;
+mod coming;
 mod common;
 mod contacts;
 mod fixed_base;

@@ -1,0 +1,112 @@
+//! Ground that comes: contacts of part of their load, and the landing on them.
+#![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
+
+use crate::common::{N, config, crouch, each, snapshot};
+use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
+use nalgebra::{Rotation3, Vector3};
+use proptest::prelude::*;
+use rbd_core::joint_friction;
+use wbc_qp::jump::{Absorption, ComReference, Landing, LandingReference};
+use wbc_qp::{Contact, Snapshot, TorqueQp};
+
+const K: usize = 12;
+const V: usize = 35;
+const M: usize = 55;
+
+fn contacts(load: f64) -> [Contact<f64>; 2] {
+    SOLES.map(|sole| Contact {
+        load,
+        ..Contact::new(&sole, 0.5, 1000.0)
+    })
+}
+
+/// Accelerations of the joints where the contacts are asked for these.
+fn corrected(s: &Snapshot<f64, N>, load: f64, by: &[f64; K]) -> [f64; N] {
+    let mut qp = TorqueQp::<f64, N, K, V, M>::new();
+    let friction = joint_friction(&LIMITS, &s.velocity.joints, 0.1);
+    qp.begin(&Icub23, s, &contacts(load), &friction).unwrap();
+    qp.correct_contacts(by);
+    qp.minimise(&s.com(), &[0.0; 3], &[1e3; 3]);
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+    qp.solve().unwrap().acceleration.joints
+}
+
+fn apart(a: &[f64; N], b: &[f64; N]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
+}
+
+/// What is asked of a contact that is nearly all there moves the robot as it does where it is all there.
+#[test]
+fn a_contact_is_corrected_by_as_much_as_there_is() {
+    let by = prop::array::uniform(-1.0..1.0_f64);
+    each(config(10, 41), &(crouch(0.1, 0.3), by), |((q, v), by)| {
+        let s = snapshot(&q, &v);
+        let whole = corrected(&s, 1.0, &by);
+        let moved = apart(&whole, &corrected(&s, 1.0, &[0.0; K]));
+        let nearly = apart(&corrected(&s, 0.998, &by), &whole);
+        assert!(nearly < 0.1 * moved, "{nearly} {moved}");
+    });
+}
+
+/// In the air nothing is asked of the centre of mass or the trunk; on the ground it is.
+#[test]
+fn without_ground_the_body_is_left_alone() {
+    let places = [-0.1..0.1, -0.1..0.1, -0.1..0.1_f64];
+    let turn = [-0.3..0.3, -0.3..0.3, -0.3..0.3_f64];
+    let cases = (crouch(0.1, 0.3), places, turn);
+    each(config(10, 42), &cases, |((q, v), shift, turn)| {
+        let s = snapshot(&q, &v);
+        let torques = |load: f64, shift: [f64; 3], turn: [f64; 3]| {
+            let mut landing = Landing::<f64, N, K, V, M>::new(profile::LANDING);
+            let wanted = LandingReference {
+                com: ComReference {
+                    position_w: s.com_w() + Vector3::from(shift),
+                    velocity_w: Vector3::zeros(),
+                    acceleration_w: Vector3::zeros(),
+                },
+                trunk: Rotation3::new(Vector3::from(turn)),
+                posture: q.joints,
+                velocity: [0.0; N],
+            };
+            let limits = (&LIMITS, &MOTORS);
+            let tick = landing.tick(&Icub23, &s, &contacts(load), limits, &wanted);
+            tick.unwrap().answer.torques
+        };
+        let none = [0.0; 3];
+        assert_eq!(torques(0.0, shift, turn), torques(0.0, none, none));
+        for load in [0.3, 1.0] {
+            let still = torques(load, none, none);
+            assert!(apart(&torques(load, shift, none), &still) > 1e-3);
+            assert!(apart(&torques(load, none, turn), &still) > 1e-3);
+        }
+    });
+}
+
+/// The way from touchdown to rest begins with the speed, ends at rest after the distance, and its speeds and accelerations are derivatives.
+#[test]
+fn a_landing_comes_to_rest_in_its_distance() {
+    let cases = (-3.0..-0.1_f64, 0.01..0.3_f64, 0.05..2.0_f64, 0.01..0.99_f64);
+    each(config(256, 43), &cases, |(speed, distance, longest, x)| {
+        let way = Absorption::new(speed, distance, longest);
+        let within = 3.0 * distance / speed.abs() < longest;
+        assert!(way.duration <= longest && (within || way.duration == longest));
+        assert_eq!(way.at(0.0)[..2], [0.0, speed]);
+        let [end, rest, _] = way.at(way.duration * (1.0 + x));
+        assert_eq!(rest, 0.0);
+        assert!(
+            !within || (end + distance).abs() < 1e-12,
+            "{end} {distance}"
+        );
+        let (t, h) = (x * way.duration, 1e-6 * way.duration);
+        let ([before, slow, _], [after, fast, _]) = (way.at(t - h), way.at(t + h));
+        let [_, velocity, acceleration] = way.at(t);
+        assert!(((after - before) / (2.0 * h) - velocity).abs() < 1e-6);
+        assert!(
+            ((fast - slow) / (2.0 * h) - acceleration).abs() < 1e-6 * (1.0 + acceleration.abs())
+        );
+    });
+    // Nothing to slow down takes the longest time.
+    assert_eq!(Absorption::new(0.0, 0.1, 0.7).duration, 0.7);
+}
