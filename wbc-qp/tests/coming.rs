@@ -6,8 +6,8 @@ use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use rbd_core::joint_friction;
-use wbc_qp::jump::{Absorption, ComReference, Landing, LandingReference};
-use wbc_qp::{Contact, Snapshot, TorqueQp};
+use wbc_qp::jump::{Absorption, ComReference, Landing, LandingReference, LandingSettings};
+use wbc_qp::{Contact, Snapshot, TorqueAnswer, TorqueQp};
 
 const K: usize = 12;
 const V: usize = 35;
@@ -50,6 +50,56 @@ fn a_contact_is_corrected_by_as_much_as_there_is() {
     });
 }
 
+/// To rest with the centre of mass moved from where it is, and the trunk turned from upright.
+fn resting(s: &Snapshot<f64, N>, shift: [f64; 3], turn: [f64; 3]) -> LandingReference<f64, N> {
+    LandingReference {
+        com: ComReference {
+            position_w: s.com_w() + Vector3::from(shift),
+            velocity_w: Vector3::zeros(),
+            acceleration_w: Vector3::zeros(),
+        },
+        trunk: Rotation3::new(Vector3::from(turn)),
+        posture: s.configuration.joints,
+        velocity: [0.0; N],
+    }
+}
+
+/// The first tick of a landing.
+fn landed(
+    settings: LandingSettings<f64, N>,
+    s: &Snapshot<f64, N>,
+    load: f64,
+    wanted: &LandingReference<f64, N>,
+) -> TorqueAnswer<f64, N, K> {
+    let mut landing = Landing::<f64, N, K, V, M>::new(settings);
+    let limits = (&LIMITS, &MOTORS);
+    let tick = landing.tick(&Icub23, s, &contacts(load), limits, wanted);
+    tick.unwrap().answer
+}
+
+/// On the ground the angular momentum falls at its rate where it counts most.
+#[test]
+fn angular_momentum_falls_at_its_rate() {
+    let cases = (crouch(0.1, 0.3), 1.0..10.0_f64);
+    each(config(10, 44), &cases, |((q, v), gain)| {
+        let s = snapshot(&q, &v);
+        let settings = LandingSettings {
+            momentum_gain: gain,
+            momentum_weight: 1e7,
+            com_weight: 1.0,
+            trunk_weight: 1.0,
+            ..profile::LANDING
+        };
+        let answer = landed(settings, &s, 1.0, &resting(&s, [0.0; 3], [0.0; 3]));
+        let rate = Vector3::from(s.angular_momentum().reached(&answer.acceleration));
+        let wanted = -s.momentum_w.angular * gain;
+        assert!(
+            (rate - wanted).norm() < 0.01 * (wanted.norm() + 0.1),
+            "{rate} {wanted}"
+        );
+    });
+}
+
 /// In the air nothing is asked of the centre of mass or the trunk; on the ground it is.
 #[test]
 fn without_ground_the_body_is_left_alone() {
@@ -59,20 +109,8 @@ fn without_ground_the_body_is_left_alone() {
     each(config(10, 42), &cases, |((q, v), shift, turn)| {
         let s = snapshot(&q, &v);
         let torques = |load: f64, shift: [f64; 3], turn: [f64; 3]| {
-            let mut landing = Landing::<f64, N, K, V, M>::new(profile::LANDING);
-            let wanted = LandingReference {
-                com: ComReference {
-                    position_w: s.com_w() + Vector3::from(shift),
-                    velocity_w: Vector3::zeros(),
-                    acceleration_w: Vector3::zeros(),
-                },
-                trunk: Rotation3::new(Vector3::from(turn)),
-                posture: q.joints,
-                velocity: [0.0; N],
-            };
-            let limits = (&LIMITS, &MOTORS);
-            let tick = landing.tick(&Icub23, &s, &contacts(load), limits, &wanted);
-            tick.unwrap().answer.torques
+            let wanted = resting(&s, shift, turn);
+            landed(profile::LANDING, &s, load, &wanted).torques
         };
         let none = [0.0; 3];
         assert_eq!(torques(0.0, shift, turn), torques(0.0, none, none));
