@@ -9,6 +9,7 @@ mod derivatives;
 mod fixed_base;
 mod identities;
 mod manifold;
+mod names;
 mod oracle;
 mod reduction;
 mod second_order;
