@@ -34,7 +34,7 @@ fn corrected(s: &Snapshot<f64, N>, load: f64, by: &[f64; K]) -> [f64; N] {
 
 fn apart(a: &[f64; N], b: &[f64; N]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-    squares.sum::<f64>().sqrt()
+    so3::math::sqrt(squares.sum::<f64>())
 }
 
 /// What is asked of a contact that is nearly all there moves the robot as it does where it is all there.
