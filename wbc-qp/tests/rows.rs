@@ -97,6 +97,33 @@ fn a_range_is_kept_named_and_optimal() {
     });
 }
 
+/// A normal force at its largest is named by its contact, and with room none is.
+#[test]
+fn a_largest_normal_force_is_named() {
+    let cases = (crouches(), 0.3..0.7_f64);
+    each(config(4, 26), &cases, |(s, share)| {
+        let named = |most: f64| {
+            let mut qp = Box::new(Strict::new());
+            let contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, most));
+            qp.begin(&Icub23, &s, &contacts, &[0.0; N]).unwrap();
+            qp.minimise(&s.com(), &[0.0, 0.0, 2.0], &[1e3; 3]);
+            qp.minimise_joints(&[0.0; N], &[1.0; N]);
+            qp.minimise_forces(&[0.0; K], &[1e-3; K]);
+            let answer = qp.solve().unwrap();
+            let at_most = [0, 1].map(|k| (answer.forces[6 * k + 2] - most).abs() < 1e-6 * most);
+            let line = |k| Limited {
+                limit: Limit::NormalForce(k),
+                extent: Extent::Held(Side::Upper),
+            };
+            let report = report(&qp, &answer);
+            (at_most, [0, 1].map(|k| report.contains(&line(k))))
+        };
+        let half_weight = 0.5 * 9.81 * s.centroidal.mass;
+        assert_eq!(named(share * half_weight), ([true; 2], [true; 2]));
+        assert_eq!(named(10.0 * half_weight), ([false; 2], [false; 2]));
+    });
+}
+
 /// Rows without limits change nothing, and an equality is the held task.
 #[test]
 fn masked_rows_are_not_there_and_equal_limits_hold() {
