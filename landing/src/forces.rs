@@ -319,3 +319,60 @@ fn stationarity<T: Scalar>() -> T {
         1e-2
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Face, Forces, Wrench};
+    use crate::Settings;
+    use a1_model::{A1Geared, BUILD, FEET};
+    use nalgebra::Vector3;
+    use proptest::prelude::{prop_assert, proptest};
+    use proptest::strategy::Strategy;
+    use rbd_core::{Configuration, Limbs};
+
+    fn vector(most: f64) -> impl Strategy<Value = Vector3<f64>> {
+        [-most..most, -most..most, -most..most].prop_map(Vector3::from)
+    }
+
+    /// Every multiplier, of all feet.
+    fn multipliers(faces: &[Face<f64>; 4]) -> impl Iterator<Item = f64> {
+        let all = faces.iter().flat_map(|face| face.without(usize::MAX));
+        all.map(|(_, multiplier)| multiplier)
+    }
+
+    proptest! {
+        /// A row that has entered leaves the search where the new rows have their optimum, found anew: with the same forces, and with
+        /// multipliers that are the same and not below zero. (From anywhere else `settle` would find back, but by more factorisations.)
+        #[test]
+        fn a_row_enters_to_the_optimum_of_the_rows_that_hold(
+            joints in [-0.3..0.3, 0.5..1.0, -1.9..-1.2_f64], force_w in vector(900.0), moment_w in vector(90.0), torque in 5.0..40.0_f64,
+        ) {
+            let q = Configuration {
+                joints: core::array::from_fn(|j| joints[j % 3]),
+                ..Configuration::NEUTRAL
+            };
+            let limbs = Limbs::new(&A1Geared, &q, &FEET.map(|foot| foot.frame));
+            let mut forces = Forces::<f64, 12, 4>::new();
+            forces.limits.write((0.5, 250.0), &limbs, &[true; 4], (&[0.0; 12], &[torque; 12]));
+            forces.on = [true; 4];
+            let arms_w = limbs.ends.each_ref().map(|end| end.position);
+            forces.aim(&Settings::new(&BUILD), &arms_w, &Wrench { force_w, moment_w });
+            let mut steps = 0;
+            let begun = forces.inverse(&mut steps).and_then(|mut inverse| forces.settle(&mut inverse, &mut steps));
+            prop_assert!(begun.is_ok());
+            while let Some(violated) = forces.most_violated() {
+                // A tick that ran out of factorisations.
+                let Ok(inverse) = forces.enter(violated, &mut steps) else { break };
+                let mut anew = forces.clone();
+                let _ = anew.stationary(&inverse);
+                for (moved, anew) in forces.forces.iter().zip(&anew.forces) {
+                    prop_assert!((moved - anew).amax() < 1e-6 * (1.0 + anew.amax()), "{moved} {anew}");
+                }
+                for (moved, anew) in multipliers(&forces.faces).zip(multipliers(&anew.faces)) {
+                    prop_assert!((moved - anew).abs() < 1e-6 * (1.0 + anew.abs()), "{moved} {anew}");
+                    prop_assert!(anew > -1e-6, "{anew}");
+                }
+            }
+        }
+    }
+}
