@@ -7,6 +7,7 @@ mod contact;
 mod convert;
 mod derivatives;
 mod fixed_base;
+mod friction;
 mod identities;
 mod manifold;
 mod names;
