@@ -8,6 +8,7 @@
 use nalgebra::{SMatrix, Vector3};
 use so3::Scalar;
 
+use super::table::{set_window, window};
 use super::{at, place, put};
 use crate::joint::{JointKind, JointRotation};
 use crate::spatial::{ArticulatedInertia, Force, Inertia, add_cross};
@@ -158,9 +159,7 @@ impl<T: Scalar, const N: usize> Crba<'_, T, N> {
     ) {
         let mut force = [[T::ZERO; L]; 6];
         for (to, from) in force.iter_mut().zip(self.forces.iter()) {
-            if let Some(from) = from.get(j..).and_then(|rest| rest.first_chunk()) {
-                *to = *from;
-            }
+            *to = window(from, j);
         }
         let mut entries = [T::ZERO; L];
         let [fx, fy, fz, mx, my, mz] = &mut force;
@@ -179,16 +178,10 @@ impl<T: Scalar, const N: usize> Crba<'_, T, N> {
             [mx[l], my[l], mz[l]] = angular.into();
         }
         for (to, from) in self.forces.iter_mut().zip(&force) {
-            if let Some(to) = to.get_mut(j..).and_then(|rest| rest.first_chunk_mut()) {
-                *to = *from;
-            }
+            set_window(to, j, from);
         }
-        if let Some(to) = self
-            .joints
-            .get_mut(i)
-            .and_then(|row| row.get_mut(j..)?.first_chunk_mut())
-        {
-            *to = entries;
+        if let Some(row) = self.joints.get_mut(i) {
+            set_window(row, j, &entries);
         }
         for (row, &x) in self.joints.iter_mut().skip(j).zip(&entries) {
             put(row, i, x);

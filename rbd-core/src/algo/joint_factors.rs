@@ -12,8 +12,12 @@
 use so3::Scalar;
 
 use super::blocks::add_scaled;
+use super::table::{set_window, window};
 use super::{at, run};
 use crate::model::{Body, Link};
+
+/// Columns that the joints of a limb fit in, as a rule: three vector registers of four numbers.
+const WINDOW: usize = 12;
 
 /// L and D; all zero they are those of joints that do not answer.
 ///
@@ -24,6 +28,10 @@ pub(crate) struct JointFactors<T, const N: usize> {
     before: [usize; N],
     /// One more than the index of the last joint that this one moves.
     subtree_end: [usize; N],
+    /// First joint of the limb; only where rows may be taken by windows.
+    limb: [usize; N],
+    /// Whether of every row only the [`WINDOW`] of its limb is taken: no limb has more joints.
+    in_windows: bool,
     /// D L by rows. Only entries between a joint and its ancestors mean something; others are never read.
     rows: [[T; N]; N],
     /// D⁻¹; zero, an infinitely stiff pivot, for a joint without any inertia.
@@ -35,9 +43,14 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     pub(crate) const ZERO: Self = Self {
         before: [0; N],
         subtree_end: [0; N],
+        limb: [0; N],
+        in_windows: false,
         rows: [[T::ZERO; N]; N],
         pivots: [T::ZERO; N],
     };
+
+    /// Whether windows can save anything: of more columns, and on a processor with vectors of numbers; firmware's have none.
+    const WINDOWED: bool = cfg!(target_arch = "x86_64") && N > WINDOW;
 
     /// D⁻¹.
     #[inline(always)]
@@ -70,6 +83,7 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
         h: &[[T; N]; N],
         b: &mut [[T; K]; N],
     ) {
+        self.in_windows = Self::WINDOWED;
         for (i, body) in bodies.iter().enumerate() {
             self.before[i] = match body.parent {
                 Link::Base => 0,
@@ -77,20 +91,46 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
                 Link::Joint(p) => (p + 1).min(i),
             };
             self.subtree_end[i] = body.subtree_end.min(N);
+            if Self::WINDOWED {
+                let parent = self.before[i].checked_sub(1);
+                self.limb[i] = parent.map_or(i, |p| at(&self.limb, p));
+                self.in_windows &= i < self.limb[i] + WINDOW;
+            }
         }
+        if Self::WINDOWED && self.in_windows {
+            self.factor_in_windows::<K, WINDOW>(h, b);
+        } else {
+            self.factor_in_windows::<K, N>(h, b);
+        }
+    }
+
+    /// First column of the window of joint `k`'s limb; a window of all `N` columns starts at 0.
+    #[inline(always)]
+    fn window_start<const W: usize>(&self, k: usize) -> usize {
+        at(&self.limb, k).min(N - W)
+    }
+
+    /// [`JointFactors::factor`], of every row only the window of its limb.
+    #[inline(always)]
+    fn factor_in_windows<const K: usize, const W: usize>(
+        &mut self,
+        h: &[[T; N]; N],
+        b: &mut [[T; K]; N],
+    ) {
         // Row k of D L: h_k − Σ L_ik D_i L_i over the joints i that k moves; row k of L⁻ᵀ b: b_k − Σ L_ik (L⁻ᵀ b)_i.
         for k in (0..N).rev() {
-            let (mut row, mut inertia, mut side) = (h[k], h[k][k], b[k]);
+            let start = self.window_start::<W>(k);
+            let (mut row, mut inertia, mut side) = (window::<T, W, N>(&h[k], start), h[k][k], b[k]);
             for ((from, &pivot), from_b) in self.moved(k).zip(self.moved_rows(k, b)) {
                 let x = at(from, k);
                 let l = x * pivot;
                 inertia -= l * x;
-                add_scaled(&mut row, -l, from);
+                add_scaled(&mut row, -l, &window(from, start));
                 add_scaled(&mut side, -l, from_b);
             }
             let good = inertia > h[k][k] * T::EPSILON;
             self.pivots[k] = if good { T::ONE / inertia } else { T::ZERO };
-            self.rows[k] = row;
+            set_window(&mut self.rows[k], start, &row);
             b[k] = side;
         }
     }
@@ -149,26 +189,42 @@ impl<T: Scalar, const N: usize> JointFactors<T, N> {
     /// H⁻¹ = W D⁻¹ Wᵀ; zero between joints of different branches.
     #[inline(always)]
     pub(crate) fn inverse(&self, out: &mut [[T; N]; N]) {
+        if Self::WINDOWED && self.in_windows {
+            self.inverse_in_windows::<WINDOW>(out);
+        } else {
+            self.inverse_in_windows::<N>(out);
+        }
+    }
+
+    /// [`JointFactors::inverse`], of every row only the window of its limb: the others are zero.
+    #[inline(always)]
+    fn inverse_in_windows<const W: usize>(&self, out: &mut [[T; N]; N]) {
         // Columns of W, each as a row: w_k = e_k − Σ L_ak w_a over the joints a that k moves.
         for k in (0..N).rev() {
+            let start = self.window_start::<W>(k);
             // Compared, not written: a number just stored cannot be loaded with its neighbours without a wait.
-            let mut column: [T; N] =
-                core::array::from_fn(|j| if j == k { T::ONE } else { T::ZERO });
+            let mut column: [T; W] =
+                core::array::from_fn(|j| if start + j == k { T::ONE } else { T::ZERO });
             for ((d_l, &pivot), from) in self.moved(k).zip(self.moved_rows(k, out)) {
-                add_scaled(&mut column, -at(d_l, k) * pivot, from);
+                add_scaled(&mut column, -at(d_l, k) * pivot, &window(from, start));
             }
-            out[k] = column;
+            if W < N {
+                out[k] = [T::ZERO; N];
+            }
+            set_window(&mut out[k], start, &column);
         }
         // Row i needs w_i and those of its ancestors, which come before it and are still there.
         for i in (0..N).rev() {
-            let mut row = [T::ZERO; N];
-            add_scaled(&mut row, self.pivots[i], &out[i]);
+            let start = self.window_start::<W>(i);
+            let mut row = [T::ZERO; W];
+            add_scaled(&mut row, self.pivots[i], &window(&out[i], start));
             for k in self.ancestors(i) {
                 if let Some(column) = out.get(k) {
-                    add_scaled(&mut row, at(column, i) * at(&self.pivots, k), column);
+                    let x = at(column, i) * at(&self.pivots, k);
+                    add_scaled(&mut row, x, &window(column, start));
                 }
             }
-            out[i] = row;
+            set_window(&mut out[i], start, &row);
         }
     }
 }

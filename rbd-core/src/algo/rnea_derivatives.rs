@@ -17,6 +17,9 @@
 //! spatial vector algebra", RA-L 2022; the base as in Carpentier, Mansard,
 //! "Analytical derivatives of rigid body dynamics algorithms", RSS 2018.
 
+use core::array::from_fn;
+use core::ops::Range;
+
 use nalgebra::Vector3;
 use so3::Scalar;
 
@@ -27,7 +30,7 @@ use super::put;
 use super::subtree::Composite;
 pub use super::sweep::DerivativesWorkspace;
 use super::sweep::{Moves, sweep};
-use super::table::LANES;
+use super::table::{LANES, set_window};
 use crate::model::Body;
 use crate::spatial::{Force, Motion};
 use crate::state::{Effort, Posture, Tangent, basis};
@@ -76,10 +79,48 @@ impl<T: Scalar, const N: usize> RneaDerivatives<T, N> {
     }
 }
 
+/// Writes what joint `i` and [`LANES`] joints from the start of `lanes` on do to each other: entries (j, i) and (i, j) for all j
+/// of `lanes` from `i` on.
 #[inline(always)]
-fn set<T: Copy, const N: usize>(m: &mut [[T; N]; N], i: usize, j: usize, x: T) {
-    if let Some(slot) = m.get_mut(i).and_then(|row| row.get_mut(j)) {
-        *slot = x;
+fn put_pairs<T: Scalar, const N: usize>(
+    m: &mut [[T; N]; N],
+    i: usize,
+    lanes: Range<usize>,
+    below: &[T; LANES],
+    above: &[T; LANES],
+) {
+    let rows = m
+        .get_mut(lanes.start..)
+        .and_then(|rows| rows.first_chunk_mut::<LANES>());
+    match rows {
+        Some(rows) if lanes.start >= i => {
+            // No joint behind the end is on the branch of i: what stands there is zero and stays zero.
+            let kept = |x: &[T; LANES]| -> [T; LANES] {
+                from_fn(|l| {
+                    if lanes.start + l < lanes.end {
+                        x[l]
+                    } else {
+                        T::ZERO
+                    }
+                })
+            };
+            for (row, x) in rows.iter_mut().zip(kept(below)) {
+                put(row, i, x);
+            }
+            if let Some(row) = m.get_mut(i) {
+                set_window(row, lanes.start, &kept(above));
+            }
+        }
+        _ => {
+            for (j, (&x, &y)) in lanes.zip(below.iter().zip(above)).filter(|&(j, _)| j >= i) {
+                if let Some(row) = m.get_mut(j) {
+                    put(row, i, x);
+                }
+                if let Some(row) = m.get_mut(i) {
+                    put(row, j, y);
+                }
+            }
+        }
     }
 }
 
@@ -192,21 +233,13 @@ fn joint_blocks<T: Scalar, const MASS: bool, const GRADIENT: bool, const N: usiz
             // The last lanes of the table are taken together with some that are not meant.
             let first = from.min(N.saturating_sub(LANES));
             let pairs = ws.pairs::<MASS, GRADIENT>(i, first);
-            for l in 0..LANES {
-                let j = first + l;
-                if j < from || j >= body.subtree_end {
-                    continue;
-                }
-                if GRADIENT {
-                    set(q, j, i, pairs.below_q[l]);
-                    set(v, j, i, pairs.below_v[l]);
-                    set(q, i, j, pairs.above_q[l]);
-                    set(v, i, j, pairs.above_v[l]);
-                }
-                if MASS {
-                    set(m, j, i, pairs.mass[l]);
-                    set(m, i, j, pairs.mass[l]);
-                }
+            let end = body.subtree_end;
+            if GRADIENT {
+                put_pairs(q, i, first..end, &pairs.below_q, &pairs.above_q);
+                put_pairs(v, i, first..end, &pairs.below_v, &pairs.above_v);
+            }
+            if MASS {
+                put_pairs(m, i, first..end, &pairs.mass, &pairs.mass);
             }
             from = first + LANES;
         }

@@ -42,3 +42,25 @@ pub(super) fn lanes<T: Scalar, const N: usize>(row: &[T; N], j: usize) -> [T; LA
         _ => [at(row, j), at(row, j + 1), at(row, j + 2), at(row, j + 3)],
     }
 }
+
+/// `W` entries from `start` on.
+#[inline(always)]
+pub(super) fn window<T: Scalar, const W: usize, const N: usize>(
+    row: &[T; N],
+    start: usize,
+) -> [T; W] {
+    let window = row.get(start..).and_then(|rest| rest.first_chunk());
+    window.copied().unwrap_or([T::ZERO; W])
+}
+
+/// Writes `W` entries from `start` on.
+#[inline(always)]
+pub(super) fn set_window<T: Scalar, const W: usize, const N: usize>(
+    row: &mut [T; N],
+    start: usize,
+    x: &[T; W],
+) {
+    if let Some(to) = row.get_mut(start..).and_then(|rest| rest.first_chunk_mut()) {
+        *to = *x;
+    }
+}
