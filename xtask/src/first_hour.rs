@@ -6,7 +6,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 
 use crate::bare::{Bare, Choice};
-use crate::run;
+use crate::{mujoco, run};
 
 /// The first hour, which stands alone.
 const HOUR: &str = "docs/guide/0-first-hour.md";
@@ -57,11 +57,12 @@ fn follow(script: &str, folder: &str, results: &[&str]) -> Result<()> {
     let root = run::root();
     let path = root.join(folder);
     run::remove_folder(&path)?;
-    run::succeed(
-        Command::new("bash")
-            .args(["-euxo", "pipefail", "-c", script])
-            .current_dir(&root),
-    )?;
+    let mut newcomer = Command::new("bash");
+    newcomer
+        .args(["-euxo", "pipefail", "-c", script])
+        .current_dir(&root);
+    // Other checks have compiled there what does not depend on MuJoCo.
+    run::succeed(newcomer.env("CARGO_TARGET_DIR", mujoco::build_folder()))?;
     for result in results {
         ensure!(path.join(result).exists(), "{folder}/{result} is missing");
     }

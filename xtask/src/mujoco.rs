@@ -79,7 +79,7 @@ fn aside(cargo: &mut Command) {
 }
 
 /// Where [`aside`] builds.
-fn build_folder() -> PathBuf {
+pub(crate) fn build_folder() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     chosen.unwrap_or_else(|| run::root().join("target/mujoco-build"))
 }
