@@ -92,7 +92,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
                 bare: &bare,
             };
             let (calls, worst) = qemu::on_board(&image).context(name)?;
-            let equal = probe::compare(&qemu::on_host("jumps", name)?, &calls)
+            let equal = probe::compare(&qemu::on_host("jumps", name, &[])?, &calls)
                 .with_context(|| format!("{name} on {} differs from the host", board.name))?;
             let flash = Size::of(&image.build()?)?.flash;
             println!(
