@@ -76,7 +76,7 @@ const HOST: &[Step<'_>] = &[
         &["xtask", "suites", "algorithms"],
     ),
     ("imports agree with Pinocchio", &["xtask", "import-check"]),
-    // In a folder of its own: it is here because this lane ends first.
+    // In a folder of its own: it is here because this lane would end first.
     ("publishable crates", &["xtask", "package"]),
 ];
 

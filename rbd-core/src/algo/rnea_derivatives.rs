@@ -111,6 +111,7 @@ fn put_pairs<T: Scalar, const N: usize>(
                 set_window(row, lanes.start, &kept(above));
             }
         }
+        // At the end of the table lanes begin before joint i, or there are fewer joints than lanes: one by one.
         _ => {
             for (j, (&x, &y)) in lanes.zip(below.iter().zip(above)).filter(|&(j, _)| j >= i) {
                 if let Some(row) = m.get_mut(j) {
