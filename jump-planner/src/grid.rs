@@ -321,6 +321,7 @@ fn settings() -> Settings<f64> {
     (settings.max_iterations, settings.attempt_iterations) = (PATIENCE, PATIENCE);
     settings.dual_tolerance = 1e-3;
     settings.complementarity_tolerance = 1e-5;
+    settings.threads = crate::threads();
     settings
 }
 

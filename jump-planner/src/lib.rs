@@ -40,6 +40,13 @@ pub type Velocity = Tangent<f64, JOINTS>;
 /// A node of its plan.
 pub type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;
 
+/// How many threads a plan takes: those of rayon's pool, as many as the machine has cores unless the program has asked for fewer.
+/// What is planned does not depend on it.
+#[must_use]
+pub fn threads() -> usize {
+    rayon::current_num_threads()
+}
+
 /// Configuration and velocity at a node.
 #[must_use]
 pub fn state(node: &Node) -> (State, Velocity) {

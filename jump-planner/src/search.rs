@@ -19,7 +19,7 @@ use std::thread::{self, Scope, ScopedJoinHandle};
 /// Lengths of intervals on which a motion is searched for that the first try did not find.
 const LONG: usize = 4;
 /// Iterations after which the search begins beside the first try: easy jumps have almost arrived by then.
-const SLOW: usize = 10;
+const SLOW: usize = 20;
 /// Stack of the search beside it, B: a solver's scratch lies there, and in a build without optimisation many times.
 const STACK: usize = 1 << 26;
 
@@ -34,8 +34,7 @@ pub(crate) fn searched<'a>(
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, 1.0)?;
-    // As many threads as audits may take: the cores, unless the program that plans has asked for fewer.
-    let is_alone = rayon::current_num_threads() == 1;
+    let is_alone = crate::threads() == 1;
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let mut beside = None;

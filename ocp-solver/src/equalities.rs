@@ -49,7 +49,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
             work.elimination.finish(&mut r.carried, &mut r.pivots);
             n == 0 || work.minimise_under(left, &r.pivots.whitening, n, law)
         } else {
-            minimise(left, &mut work.xu, &mut work.uu, &mut work.u, n, law)
+            minimise(left, &mut work.q.xu, &mut work.q.uu, &mut work.q.u, n, law)
         }
     }
 
@@ -204,8 +204,8 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
 ) -> Option<[T; NX]> {
     // The start coordinates are the "controls" of a stage without a state.
     let mut work = Work::<T, 1, NX>::new();
-    work.uu = *hessian;
-    for (i, (column, u)) in work.uu.iter_mut().zip(&mut work.u).enumerate() {
+    work.q.uu = *hessian;
+    for (i, (column, u)) in work.q.uu.iter_mut().zip(&mut work.q.u).enumerate() {
         u[0] = if free[i] { gradient[i] } else { T::ZERO };
         for (j, value) in column.iter_mut().enumerate() {
             if !(free[i] && free[j]) {
@@ -217,7 +217,7 @@ pub(crate) fn solve_start<T: Scalar, const NX: usize>(
     let (mut gain, mut step) = ([[T::ZERO]; NX], [[T::ZERO]; NX]);
     let (left, law) = ((&mut xx, &mut x), (&mut gain, &mut step));
     if carried.count == 0 {
-        let found = minimise(left, &mut work.xu, &mut work.uu, &mut work.u, NX, law);
+        let found = minimise(left, &mut work.q.xu, &mut work.q.uu, &mut work.q.u, NX, law);
         return found.then(|| step.map(|[value]| value));
     }
     let mut pivots = Pivots::new();

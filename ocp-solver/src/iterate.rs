@@ -9,6 +9,7 @@ use crate::riccati::Direction;
 use crate::rows::Complementarity;
 use crate::settings::Residual;
 use crate::stage::{Node, Pass, Stage};
+use crate::sweep::{At, Next, each};
 use so3::Scalar;
 use so3::math::{abs, max};
 
@@ -58,32 +59,48 @@ pub(crate) fn evaluate<
 >(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
+    workers: usize,
 ) -> Option<usize> {
-    let mut rest = stages;
-    let mut k = 0usize;
-    let mut broken = None;
-    while let Some((stage, tail)) = rest.split_first_mut() {
-        let next = tail.first().map(|next| &next.state);
-        problem.evaluate(
-            k,
-            &stage.state,
-            &stage.control,
-            next,
-            &mut stage.node.values,
-        );
-        if next.is_none() {
-            stage.node.values.gap = [T::ZERO; NX];
-        }
+    evaluate_at(problem, stages, At::Iterate, workers);
+    stages.iter().position(|stage| {
         let values = &stage.node.values;
         let entries = values.gap.iter().chain(&values.rows);
         let total: T = entries.fold(T::ZERO, |a, b| a + *b);
-        if broken.is_none() && !(total + values.cost).is_finite_number() {
-            broken = Some(k);
+        !(total + values.cost).is_finite_number()
+    })
+}
+
+/// Values of every node at one of its points.
+#[inline(always)]
+fn evaluate_at<
+    T: Scalar,
+    P: Problem<T, NX, NU, NI>,
+    K: Keep<T, NX, NU, NI>,
+    const NX: usize,
+    const NU: usize,
+    const NI: usize,
+>(
+    problem: &P,
+    stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
+    at: At,
+    workers: usize,
+) {
+    let work = |(): &mut (),
+                k,
+                stage: &mut Stage<T, P::State, NX, NU, NI, K>,
+                next: Option<Next<'_, T, P::State, NX>>| {
+        let next = next.map(|next| next.state);
+        let (state, control) = match at {
+            At::Iterate => (&stage.state, &stage.control),
+            At::Trial => (&stage.trial.0, &stage.trial.1),
+        };
+        let values = &mut stage.node.values;
+        problem.evaluate(k, state, control, next, values);
+        if next.is_none() {
+            values.gap = [T::ZERO; NX];
         }
-        rest = tail;
-        k = k.wrapping_add(1);
-    }
-    broken
+    };
+    each(workers, stages, at, || (), work, |()| ());
 }
 
 /// Derivatives of every node at the current iterate, and the residuals of the optimality conditions there.
@@ -102,82 +119,83 @@ pub(crate) fn differentiate<
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     free: &[bool; NX],
     primal: T,
-    complementarity: &mut Complementarity<T>,
-) -> Residual<T> {
-    let mut dual = Dual {
-        largest: T::ZERO,
-        sum: T::ZERO,
-        count: T::ONE,
-    };
-    let mut scratch = Derivatives::new();
-    let mut rest = stages;
-    let mut k = 0usize;
-    while let Some((stage, tail)) = rest.split_first_mut() {
-        let costate = tail.first().map_or([T::ZERO; NX], |next| next.node.costate);
-        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, Pass::New);
-        dual.add(node, d, &costate, (k == 0).then_some(free));
-        node.add_complementarity(complementarity);
-        rest = tail;
-        k = k.wrapping_add(1);
+    workers: usize,
+) -> (Residual<T>, Complementarity<T>) {
+    let mut dual = T::ZERO;
+    each(
+        workers,
+        stages,
+        At::Iterate,
+        || (Derivatives::new(), T::ZERO),
+        |(scratch, dual), k, stage: &mut Stage<T, P::State, NX, NU, NI, K>, next| {
+            let costate = next.map_or([T::ZERO; NX], |next| *next.costate);
+            let (node, d) = stage.linearise(problem, k, next, scratch, Pass::New);
+            *dual = larger(
+                *dual,
+                node.stationarity(d, &costate, (k == 0).then_some(free)),
+            );
+        },
+        |(_, found)| dual = larger(dual, found),
+    );
+    let mut complementarity = Complementarity::new();
+    let (mut sum, mut count) = (T::ZERO, T::ONE);
+    for (k, stage) in stages.iter().enumerate() {
+        stage.node.add_complementarity(&mut complementarity);
+        let multipliers = stage.node.rows.multipliers();
+        let of_rows = multipliers.iter().take(stage.node.row_count());
+        let of_dynamics = stage.node.costate.iter().filter(|_| k > 0);
+        for y in of_rows.chain(of_dynamics) {
+            sum += abs(*y);
+            count += T::ONE;
+        }
     }
     let hundred = T::of(100.0);
-    let scale = hundred / max(hundred, dual.sum / dual.count);
-    Residual {
+    let scale = hundred / max(hundred, sum / count);
+    let residual = Residual {
         primal,
-        dual: dual.largest * scale,
+        dual: dual * scale,
         complementarity: complementarity.largest * scale,
-    }
+    };
+    (residual, complementarity)
 }
 
-/// Gradient of the Lagrangian and the size of the multipliers, summed over nodes.
-struct Dual<T> {
-    largest: T,
-    sum: T,
-    count: T,
-}
-
-impl<T: Scalar> Dual<T> {
-    /// Adds a node; `free` marks the coordinates that count if the state is otherwise fixed.
+impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
+    /// Largest entry of the gradient of the Lagrangian; `free` marks the coordinates of the state that count if it is otherwise fixed.
     #[inline(always)]
-    fn add<const NX: usize, const NU: usize, const NI: usize>(
-        &mut self,
-        node: &Node<T, NX, NU, NI>,
+    fn stationarity(
+        &self,
         d: &impl Linearised<T, NX, NU>,
         next_costate: &[T; NX],
         free: Option<&[bool; NX]>,
-    ) {
+    ) -> T {
         let (mut in_x, mut in_u) = (*d.cost_x(), *d.cost_u());
         d.pull_back_x(next_costate, &mut in_x);
         d.pull_back_u(next_costate, &mut in_u);
-        let multipliers = node.rows.multipliers();
-        for (i, y) in multipliers.iter().enumerate().take(node.row_count()) {
-            let parts = node.dims.parts(i);
+        let multipliers = self.rows.multipliers();
+        for (i, y) in multipliers.iter().enumerate().take(self.row_count()) {
+            let parts = self.dims.parts(i);
             if parts.state {
                 d.add_row_x(i, *y, &mut in_x);
             }
             if parts.control {
                 d.add_row_u(i, *y, &mut in_u);
             }
-            self.sum += abs(*y);
-            self.count += T::ONE;
         }
+        let mut most = T::ZERO;
         match free {
             Some(free) => {
                 for (value, _) in in_x.iter().zip(free).filter(|(_, free)| **free) {
-                    self.largest = larger(self.largest, *value);
+                    most = larger(most, *value);
                 }
             }
             None => {
-                for (value, costate) in in_x.iter().zip(&node.costate) {
-                    self.largest = larger(self.largest, *value - *costate);
-                    self.sum += abs(*costate);
-                    self.count += T::ONE;
+                for (value, costate) in in_x.iter().zip(&self.costate) {
+                    most = larger(most, *value - *costate);
                 }
             }
         }
-        for value in in_u.iter().take(node.dims.controls) {
-            self.largest = larger(self.largest, *value);
-        }
+        let of_controls = in_u.iter().take(self.dims.controls);
+        of_controls.fold(most, |most, value| larger(most, *value))
     }
 }
 
@@ -221,28 +239,20 @@ pub(crate) fn try_step<
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     step: &Direction<T>,
+    workers: usize,
 ) -> Merit<T> {
-    let mut merit = Merit::new();
-    if let Some(first) = stages.first_mut() {
-        first.move_to_trial(problem, 0, step.primal, None);
-    }
-    let mut rest = stages;
-    let mut k = 0usize;
+    let mut rest = &mut *stages;
+    let (mut before, mut k) = (None, 0usize);
     while let Some((stage, tail)) = rest.split_first_mut() {
-        let after = k.wrapping_add(1);
-        if let Some(next) = tail.first_mut() {
-            let before = (&stage.trial.0, &stage.trial.1);
-            next.move_to_trial(problem, after, step.primal, Some(before));
-        }
-        let next = tail.first().map(|next| &next.trial.0);
-        let (state, control) = &stage.trial;
-        problem.evaluate(k, state, control, next, &mut stage.node.values);
-        if next.is_none() {
-            stage.node.values.gap = [T::ZERO; NX];
-        }
-        merit.add(&stage.node, Some(step));
+        stage.move_to_trial(problem, k, step.primal, before);
+        before = Some((&stage.trial.0, &stage.trial.1));
         rest = tail;
-        k = after;
+        k = k.wrapping_add(1);
+    }
+    evaluate_at(problem, stages, At::Trial, workers);
+    let mut merit = Merit::new();
+    for stage in stages.iter() {
+        merit.add(&stage.node, Some(step));
     }
     merit
 }
@@ -261,20 +271,21 @@ pub(crate) fn correct<
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     step: &Direction<T>,
+    workers: usize,
 ) {
-    let mut rest = stages;
-    let mut k = 0usize;
-    while let Some((stage, tail)) = rest.split_first_mut() {
-        let next = tail.first().map(|next| &next.state);
+    let work = |(): &mut (),
+                k,
+                stage: &mut Stage<T, P::State, NX, NU, NI, K>,
+                next: Option<Next<'_, T, P::State, NX>>| {
+        let next = next.map(|next| next.state);
         let mut before = Values::new();
         problem.evaluate(k, &stage.state, &stage.control, next, &mut before);
         if next.is_some() {
             add_scaled(&mut stage.node.values.gap, step.primal, &before.gap);
         }
         stage.node.correct_rows(&before.rows, step);
-        rest = tail;
-        k = k.wrapping_add(1);
-    }
+    };
+    each(workers, stages, At::Iterate, || (), work, |()| ());
 }
 
 impl<T: Scalar, X: Copy, K: Copy, const NX: usize, const NU: usize, const NI: usize>

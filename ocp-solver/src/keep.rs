@@ -11,7 +11,7 @@ use so3::Scalar;
 ///
 /// All give the same numbers, bit for bit.
 pub trait Keep<T: Scalar, const NX: usize, const NU: usize, const NI: usize>:
-    Copy + sealed::Sealed
+    Copy + Send + sealed::Sealed
 {
     /// The derivatives, as the passes read them.
     #[doc(hidden)]
@@ -31,6 +31,10 @@ pub trait Keep<T: Scalar, const NX: usize, const NU: usize, const NI: usize>:
         is_new: bool,
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
     ) -> &'a Self::Linearised;
+
+    /// What is kept of the last call, if anything is.
+    #[doc(hidden)]
+    fn kept(&self) -> Option<&Self::Linearised>;
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, NU, NI>
@@ -51,6 +55,11 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
             fill(self);
         }
         self
+    }
+
+    #[inline(always)]
+    fn kept(&self) -> Option<&Self> {
+        Some(self)
     }
 }
 
@@ -74,6 +83,11 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
             self.pack(scratch, dims);
         }
         self
+    }
+
+    #[inline(always)]
+    fn kept(&self) -> Option<&Self> {
+        Some(self)
     }
 }
 
@@ -99,6 +113,11 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
         scratch.clear();
         fill(scratch);
         scratch
+    }
+
+    #[inline(always)]
+    fn kept(&self) -> Option<&Derivatives<T, NX, NU, NI>> {
+        None
     }
 }
 

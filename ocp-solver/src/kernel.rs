@@ -173,10 +173,10 @@ pub(crate) fn largest<T: Scalar, const N: usize>(values: &[T; N]) -> T {
 #[inline(always)]
 pub(crate) fn larger<T: Scalar>(largest: T, x: T) -> T {
     let magnitude = abs(x);
-    if magnitude <= largest {
-        largest
-    } else {
+    if magnitude > largest || magnitude.is_nan_number() {
         magnitude
+    } else {
+        largest
     }
 }
 

@@ -1,6 +1,9 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+#[cfg(feature = "std")]
+extern crate std;
+
 mod blocking;
 mod check;
 mod eliminate;
@@ -19,6 +22,9 @@ mod rows;
 mod settings;
 mod solver;
 mod stage;
+mod sweep;
+#[cfg(feature = "std")]
+mod threads;
 
 pub use blocking::{Blocking, blocking_rows};
 pub use check::{DerivativeErrors, derivative_errors};

@@ -77,7 +77,8 @@ impl<T: Scalar> Solver<T> {
             rank_tolerance: self.settings.rank_tolerance,
         };
         run.factorisations = run.factorisations.saturating_add(1);
-        if !factorise(problem, stages, barrier, shift, pass) {
+        let workers = self.settings.workers();
+        if !factorise(problem, stages, barrier, shift, pass, workers) {
             return None;
         }
         let riccati = &mut stages.first_mut()?.node.riccati;
@@ -107,8 +108,9 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         let (mut step, common) = (step, step.primal);
+        let workers = self.settings.workers();
         step.primal = step.longest();
-        let mut trial = iterate::try_step(problem, stages, &step);
+        let mut trial = iterate::try_step(problem, stages, &step, workers);
         if run.uses_filter() {
             if let Some(found) = self.filtered(problem, stages, run, from, step, trial) {
                 return Ok(found);
@@ -120,7 +122,7 @@ impl<T: Scalar> Solver<T> {
                 return Err(Status::Stalled);
             }
             step.primal = common;
-            trial = iterate::try_step(problem, stages, &step);
+            trial = iterate::try_step(problem, stages, &step, workers);
         }
         let mut halvings = 0u8;
         while !trial.is_finite() || (halvings < 4 && run.explodes(trial.sum)) {
@@ -129,7 +131,7 @@ impl<T: Scalar> Solver<T> {
                 return Err(Status::NotFinite);
             }
             step.primal *= T::HALF;
-            trial = iterate::try_step(problem, stages, &step);
+            trial = iterate::try_step(problem, stages, &step, workers);
         }
         Ok((trial, step))
     }
@@ -151,6 +153,7 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         run.filter.turn_to(run.mu);
+        let workers = self.settings.workers();
         let here = from.point(run.mu);
         let (mut step, mut trial) = (step, trial);
         for halvings in 0..=HALVINGS {
@@ -160,12 +163,12 @@ impl<T: Scalar> Solver<T> {
                 return Some((trial, step));
             }
             if halvings == 0 && trial.is_finite() && trial.sum >= from.sum {
-                iterate::correct(problem, stages, &step);
+                iterate::correct(problem, stages, &step, workers);
                 if let Some(mut bent) =
                     self.direction(problem, stages, run, step.shift, Pass::Corrected)
                 {
                     bent.primal = bent.longest();
-                    trial = iterate::try_step(problem, stages, &bent);
+                    trial = iterate::try_step(problem, stages, &bent, workers);
                     let there = trial.point(run.mu);
                     if trial.is_finite() && run.filter.accepts(here, there, step.primal, step.slope)
                     {
@@ -174,13 +177,13 @@ impl<T: Scalar> Solver<T> {
                     }
                 }
                 // Back to the Newton step.
-                let _ = iterate::evaluate(problem, stages);
+                let _ = iterate::evaluate(problem, stages, workers);
                 let primal = step.primal;
                 step = self.direction(problem, stages, run, step.shift, Pass::Same)?;
                 step.primal = primal;
             }
             step.primal *= T::HALF;
-            trial = iterate::try_step(problem, stages, &step);
+            trial = iterate::try_step(problem, stages, &step, workers);
         }
         None
     }

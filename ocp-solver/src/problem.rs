@@ -147,9 +147,11 @@ pub struct Evaluated<'a, T, const NX: usize, const NI: usize> {
 /// durations are state coordinates that stay constant, free at node 0 ([`Problem::is_free_at_start`])
 /// and bounded by rows of node 0, once per phase. Sizes: `NX` tangent coordinates of the state, `NU`
 /// controls, `NI` rows, each an upper bound that may be padded to the machine's vector width.
-pub trait Problem<T: Scalar, const NX: usize, const NU: usize, const NI: usize> {
+///
+/// Threads may ask for several nodes at once (`Settings::threads`), hence `Sync`; an answer depends on nothing but what is asked.
+pub trait Problem<T: Scalar, const NX: usize, const NU: usize, const NI: usize>: Sync {
     /// A point of the state manifold.
-    type State: Copy;
+    type State: Copy + Send + Sync;
 
     /// Number of intervals `N`; the problem has `N + 1` nodes.
     fn intervals(&self) -> usize;

@@ -23,13 +23,18 @@ use crate::stage::Riccati;
 use so3::Scalar;
 use so3::math::{abs, max, sqrt};
 
-/// Scratch of one stage, shared by all of them: `½ xᵀ Q_xx x + uᵀ Q_ux x + ½ uᵀ Q_uu u + q_xᵀ x + q_uᵀ u`
-/// without `Q_xx` and `q_x`, which are kept with the stage, and what the elimination needs.
-pub(crate) struct Work<T, const NX: usize, const NU: usize> {
+/// Of `½ xᵀ Q_xx x + uᵀ Q_ux x + ½ uᵀ Q_uu u + q_xᵀ x + q_uᵀ u`, the quadratic of a stage, what is not kept with the stage.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfControls<T, const NX: usize, const NU: usize> {
     /// Columns per control.
     pub(crate) xu: [[T; NX]; NU],
     pub(crate) uu: [[T; NU]; NU],
     pub(crate) u: [[T; 1]; NU],
+}
+
+/// Scratch of one stage, shared by all of them: its quadratic, and what the elimination needs.
+pub(crate) struct Work<T, const NX: usize, const NU: usize> {
+    pub(crate) q: OfControls<T, NX, NU>,
     pub(crate) elimination: Elimination<T, NX, NU>,
     /// Diagonal of the whitened `Q_uu`: ±1.
     sign: [T; NU],
@@ -173,12 +178,35 @@ pub(crate) fn minimise<T: Scalar, const NX: usize, const NU: usize>(
     true
 }
 
-impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
+impl<T: Scalar, const NX: usize, const NU: usize> OfControls<T, NX, NU> {
     pub(crate) const fn new() -> Self {
         Self {
             xu: [[T::ZERO; NX]; NU],
             uu: [[T::ZERO; NU]; NU],
             u: [[T::ZERO; 1]; NU],
+        }
+    }
+
+    /// The quadratic of a stage: what is kept with it, and the rest.
+    #[inline(always)]
+    pub(crate) const fn with<'a>(
+        &'a mut self,
+        kept: &'a mut Riccati<T, NX, NU>,
+    ) -> Quadratic<'a, T, NX, NU> {
+        Quadratic {
+            xx: &mut kept.hessian,
+            xu: &mut self.xu,
+            uu: &mut self.uu,
+            x: &mut kept.gradient,
+            u: &mut self.u,
+        }
+    }
+}
+
+impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            q: OfControls::new(),
             elimination: Elimination::new(),
             sign: [T::ONE; NU],
             minus: [[T::ZERO; NX]; NU],
@@ -198,28 +226,13 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
         }
     }
 
-    /// The quadratic of a stage: what is kept with it, and what is here.
-    #[inline(always)]
-    pub(crate) const fn with<'a>(
-        &'a mut self,
-        kept: &'a mut Riccati<T, NX, NU>,
-    ) -> Quadratic<'a, T, NX, NU> {
-        Quadratic {
-            xx: &mut kept.hessian,
-            xu: &mut self.xu,
-            uu: &mut self.uu,
-            x: &mut kept.gradient,
-            u: &mut self.u,
-        }
-    }
-
     /// Turns to whitened coordinates of the first `n` controls.
     #[inline(always)]
     pub(crate) fn whiten(&mut self, n: usize, whitening: &mut Whitening<T, NU>) {
-        whitening.set(&mut self.uu, &mut self.sign, n);
-        solve_lower(&whitening.lower, &mut self.xu, n);
-        solve_lower(&whitening.lower, &mut self.u, n);
-        let rows = self.xu.iter_mut().zip(&mut self.u);
+        whitening.set(&mut self.q.uu, &mut self.sign, n);
+        solve_lower(&whitening.lower, &mut self.q.xu, n);
+        solve_lower(&whitening.lower, &mut self.q.u, n);
+        let rows = self.q.xu.iter_mut().zip(&mut self.q.u);
         for ((xu, u), scale) in rows.zip(&whitening.scale).take(n) {
             for value in xu.iter_mut() {
                 *value *= *scale;
@@ -298,8 +311,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
         let mut count = 0usize;
         for (column, i) in rows.pivots() {
             let (Some(q_xd), Some(q_d), Some(k)) = (
-                self.xu.get(column),
-                self.u.get_mut(column),
+                self.q.xu.get(column),
+                self.q.u.get_mut(column),
                 rows.constant.get(i),
             ) else {
                 continue;
@@ -335,7 +348,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
         let targets = free.xu.iter_mut().zip(&mut free.uu).zip(&mut free.u);
         for (a, (((xu, uu), u), f)) in targets.zip(&free.order).enumerate().take(free.count) {
             let f = usize::from(*f);
-            let (Some(own), Some(g), Some(own_sign)) = (self.xu.get(f), self.u.get(f), sign.get(f))
+            let (Some(own), Some(g), Some(own_sign)) =
+                (self.q.xu.get(f), self.q.u.get(f), sign.get(f))
             else {
                 continue;
             };
@@ -345,7 +359,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
             }
             for (column, i) in rows.pivots() {
                 let (Some(z), Some(shifted), Some(q_d)) =
-                    (rows.u.get(i), self.shifted.get(i), self.u.get(column))
+                    (rows.u.get(i), self.shifted.get(i), self.q.u.get(column))
                 else {
                     continue;
                 };

@@ -23,9 +23,10 @@ use crate::keep::Keep;
 use crate::kernel::{add_product, add_scaled, dot, mirror_lower, transpose};
 use crate::linearised::Linearised;
 use crate::problem::{Derivatives, Problem};
-use crate::project::Work;
+use crate::project::{OfControls, Work};
 use crate::rows::RowBarrier;
 use crate::stage::{Node, Pass, Riccati, Stage};
+use crate::sweep::At;
 use so3::Scalar;
 
 /// A Newton step of all nodes.
@@ -64,12 +65,20 @@ pub(crate) fn factorise<T, P, K, const NX: usize, const NU: usize, const NI: usi
     barrier: RowBarrier<T>,
     shift: T,
     pass: Pass,
+    workers: usize,
 ) -> bool
 where
     T: Scalar,
     P: Problem<T, NX, NU, NI>,
     K: Keep<T, NX, NU, NI>,
 {
+    #[cfg(feature = "std")]
+    if workers > 1
+        && let Some(is_definite) = crate::threads::factorise(stages, barrier, shift)
+    {
+        return is_definite;
+    }
+    let _ = workers;
     let mut work = Work::new();
     let mut scratch = Derivatives::new();
     let mut k = stages.len();
@@ -77,9 +86,11 @@ where
         let Some(stage) = head.last_mut() else { break };
         k = k.wrapping_sub(1);
         let next = tail.first();
-        let (node, d) = stage.linearise(problem, k, next, &mut scratch, pass);
+        let seen = next.map(|next| At::Iterate.of(next));
+        let (node, d) = stage.linearise(problem, k, seen, &mut scratch, pass);
         let next = next.map(|next| &next.node.riccati);
-        if !node.factorise(d, &mut work, next, barrier, shift) {
+        node.condense(d, &mut work.q, barrier.mu, shift);
+        if !node.recur(d, &mut work, next, barrier) {
             return false;
         }
     }
@@ -87,18 +98,17 @@ where
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
-    /// One step of the backward recursion.
-    #[inline(always)]
-    fn factorise(
+    /// The quadratic of the stage with its rows condensed, of whose diagonal blocks only the lower triangles count.
+    #[inline(never)]
+    pub(crate) fn condense(
         &mut self,
         d: &impl Linearised<T, NX, NU>,
-        work: &mut Work<T, NX, NU>,
-        next: Option<&Riccati<T, NX, NU>>,
-        barrier: RowBarrier<T>,
+        of_controls: &mut OfControls<T, NX, NU>,
+        mu: T,
         shift: T,
-    ) -> bool {
+    ) {
         let n = self.dims.controls.min(NU);
-        let mut q = work.with(&mut self.riccati);
+        let mut q = of_controls.with(&mut self.riccati);
         d.write(n, &mut q);
         for (i, column) in q.xx.iter_mut().enumerate() {
             column[i] += shift;
@@ -106,8 +116,26 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         for (i, column) in q.uu.iter_mut().enumerate().take(n) {
             column[i] += shift;
         }
-        self.add_rows(d, work, barrier.mu);
+        for i in 0..self.row_count() {
+            if self.rows.is_equality(i) && self.elastic == T::ZERO {
+                continue;
+            }
+            let condensed = self.condensed(i, mu);
+            let mut q = of_controls.with(&mut self.riccati);
+            d.condense(i, self.dims.parts(i), condensed, &mut q);
+        }
+    }
 
+    /// One step of the backward recursion, from the condensed quadratic.
+    #[inline(always)]
+    pub(crate) fn recur(
+        &mut self,
+        d: &impl Linearised<T, NX, NU>,
+        work: &mut Work<T, NX, NU>,
+        next: Option<&Riccati<T, NX, NU>>,
+        barrier: RowBarrier<T>,
+    ) -> bool {
+        let n = self.dims.controls.min(NU);
         let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         if let Some(next) = next {
             // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
@@ -126,14 +154,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
                 let mut of_u = [T::ZERO; NU];
                 d.pull_back_u(&v, &mut of_u);
                 let mut v_u = [[T::ZERO; NX]; NU];
-                let columns = v_u.iter_mut().zip(&mut work.xu).zip(&mut work.u);
+                let columns = v_u.iter_mut().zip(&mut work.q.xu).zip(&mut work.q.u);
                 for (j, (((v_u, q_xu), q_u), of_u)) in columns.zip(&of_u).enumerate().take(n) {
                     d.combine_u(j, &next.hessian, v_u);
                     d.combine_u(j, &w, q_xu);
                     q_u[0] += *of_u;
                 }
                 let v_u = transpose(&v_u);
-                for (j, q) in work.uu.iter_mut().enumerate().take(n) {
+                for (j, q) in work.q.uu.iter_mut().enumerate().take(n) {
                     d.combine_u(j, &v_u, q);
                 }
             }
@@ -145,19 +173,6 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         // Rounding makes the two triangles differ, and an unstable motion would amplify that.
         mirror_lower(&mut self.riccati.hessian);
         true
-    }
-
-    /// Adds the condensed rows to the stage Hessian, of whose diagonal blocks only the lower triangles count, and gradient.
-    #[inline(never)]
-    fn add_rows(&mut self, d: &impl Linearised<T, NX, NU>, work: &mut Work<T, NX, NU>, mu: T) {
-        for i in 0..self.row_count() {
-            if self.rows.is_equality(i) && self.elastic == T::ZERO {
-                continue;
-            }
-            let condensed = self.condensed(i, mu);
-            let mut q = work.with(&mut self.riccati);
-            d.condense(i, self.dims.parts(i), condensed, &mut q);
-        }
     }
 }
 
@@ -193,7 +208,8 @@ where
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
-        let (node, d) = stage.linearise(problem, k, tail.first(), &mut scratch, pass);
+        let seen = tail.first().map(|next| At::Iterate.of(next));
+        let (node, d) = stage.linearise(problem, k, seen, &mut scratch, pass);
         let next = tail.first_mut().map(|next| &mut next.node);
         node.substitute(d, next, barrier, &mut direction);
         rest = tail;

@@ -68,6 +68,10 @@ pub struct Settings<T> {
     /// A slack that stops early leaves its row violated by what is missing, which the filter weighs against what the others gain. That
     /// takes about half the iterations where the guess is of the right shape, and fails more often where it is far from any solution.
     pub individual_steps: bool,
+    /// How many threads work at once on nodes that do not wait for each other; 1 as a default, and 0 counts as 1. All numbers are those
+    /// of one thread, bit for bit. It pays where a node is large: a thread is begun for every pass of an iteration.
+    #[cfg(feature = "std")]
+    pub threads: usize,
 }
 
 impl<T: Scalar> Settings<T> {
@@ -96,7 +100,17 @@ impl<T: Scalar> Settings<T> {
             stall_count: 3,
             stall_step: T::of(0.03),
             individual_steps: false,
+            #[cfg(feature = "std")]
+            threads: 1,
         }
+    }
+
+    /// How many threads work at once: one where the build knows of no others.
+    pub(crate) const fn workers(&self) -> usize {
+        #[cfg(feature = "std")]
+        return self.threads;
+        #[cfg(not(feature = "std"))]
+        1
     }
 }
 

@@ -68,7 +68,7 @@ impl<T: Scalar> Solver<T> {
         K: Keep<T, NX, NU, NI>,
     {
         self.settings.check()?;
-        prepare(problem, stages)?;
+        prepare(problem, stages, self.settings.workers())?;
         let mut run = Run::new(problem);
         let mut status = Status::IterationLimit;
         let mut restarts = 0;
@@ -85,7 +85,7 @@ impl<T: Scalar> Solver<T> {
                 for stage in stages.iter_mut() {
                     (stage.state, stage.control) = stage.guess;
                 }
-                let _ = iterate::evaluate(problem, stages);
+                let _ = iterate::evaluate(problem, stages, self.settings.workers());
             }
             (run.adaptive, run.attempt, restarts) = (adaptive, i, i);
             if i == 0 && self.settings.warm_start {
@@ -113,7 +113,7 @@ impl<T: Scalar> Solver<T> {
             for stage in stages.iter_mut() {
                 (stage.state, stage.control) = stage.best;
             }
-            let _ = iterate::evaluate(problem, stages);
+            let _ = iterate::evaluate(problem, stages, self.settings.workers());
         }
         Ok(Solution {
             status,
@@ -146,7 +146,7 @@ impl<T: Scalar> Solver<T> {
         for stage in stages.iter_mut() {
             (stage.state, stage.control) = stage.best;
         }
-        if iterate::evaluate(problem, stages).is_some() {
+        if iterate::evaluate(problem, stages, self.settings.workers()).is_some() {
             return status;
         }
         run.adaptive = false;
@@ -225,14 +225,9 @@ impl<T: Scalar> Solver<T> {
         let mut point = run.begin(settings, stages, initial_mu);
         let (mut primal_step, mut dual_step, mut used_shift) = (T::ZERO, T::ZERO, T::ZERO);
         loop {
-            let mut complementarity = Complementarity::new();
-            let residual = iterate::differentiate(
-                problem,
-                stages,
-                &run.free,
-                point.worst,
-                &mut complementarity,
-            );
+            let workers = settings.workers();
+            let (residual, complementarity) =
+                iterate::differentiate(problem, stages, &run.free, point.worst, workers);
             if run.elastic == T::ZERO {
                 run.remember(settings, stages, &point, &residual);
             }
@@ -460,6 +455,7 @@ fn prepare<
 >(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
+    workers: usize,
 ) -> Result<(), Error> {
     let needed = problem.intervals().saturating_add(1);
     if stages.len() != needed {
@@ -489,7 +485,7 @@ fn prepare<
         stage.kept = K::EMPTY;
         stage.guess = (stage.state, stage.control);
     }
-    match iterate::evaluate(problem, stages) {
+    match iterate::evaluate(problem, stages, workers) {
         Some(stage) => Err(Error::Guess { stage }),
         None => Ok(()),
     }

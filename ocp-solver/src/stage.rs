@@ -5,6 +5,7 @@ use crate::keep::{Keep, Recomputed};
 use crate::kernel::{factor, solve_lower, solve_upper};
 use crate::packed::Packed;
 use crate::problem::{Derivatives, Dims, Evaluated, Problem, Values};
+use crate::sweep::Next;
 use so3::Scalar;
 
 /// Everything the solver keeps for one node: the iterate and its factorisation, and, unless `K` is
@@ -203,7 +204,7 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         &'a mut self,
         problem: &P,
         k: usize,
-        next: Option<&Self>,
+        next: Option<Next<'_, T, X, NX>>,
         scratch: &'a mut Derivatives<T, NX, NU, NI>,
         pass: Pass,
     ) -> (&'a mut Node<T, NX, NU, NI>, &'a K::Linearised)
@@ -213,8 +214,8 @@ impl<T: Scalar, X: Copy, const NX: usize, const NU: usize, const NI: usize, K: C
         let node = &mut self.node;
         let (kept, dims, is_new) = (&mut self.kept, node.dims, pass == Pass::New);
         let derivatives = kept.at(scratch, dims, is_new, |derivatives| {
-            let costate = next.map_or([T::ZERO; NX], |next| next.node.costate);
-            let next = next.map(|next| &next.state);
+            let costate = next.map_or([T::ZERO; NX], |next| *next.costate);
+            let next = next.map(|next| next.state);
             let mut values = Values::new();
             let values = if pass == Pass::Corrected {
                 problem.evaluate(k, &self.state, &self.control, next, &mut values);

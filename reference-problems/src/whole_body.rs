@@ -35,6 +35,7 @@ impl File {
         let problem = data.problem();
         let mut settings = wb_opt::settings();
         settings.barrier = barrier;
+        settings.threads = jump_planner::threads();
         let rest = SparseStage::sparse(State::at_rest(Pose::level([0.0; N])));
         let mut stages: Vec<Node> = vec![rest; problem.intervals() + 1];
         let force = |k: usize, foot: usize| Vector3::from_fn(|i, _| data.forces[k][3 * foot + i]);

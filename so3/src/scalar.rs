@@ -13,7 +13,9 @@ mod sealed {
 ///
 /// Arithmetic comes from the operators; elementary functions come only from [`crate::math`], so that
 /// host and target compute the same bits.
-pub trait Scalar: sealed::Sealed + nalgebra::RealField + Copy + Default + 'static {
+pub trait Scalar:
+    sealed::Sealed + nalgebra::RealField + Copy + Default + Send + Sync + 'static
+{
     /// 0.
     const ZERO: Self;
     /// 1.

@@ -8,6 +8,7 @@ mod memory;
 mod reference;
 mod single_precision;
 mod sqp_oracle;
+mod threads;
 mod thrust_vector;
 mod unseen_jumps;
 mod variants;
