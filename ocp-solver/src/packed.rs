@@ -45,13 +45,11 @@ fn add_combination<T: Scalar, const R: usize, const C: usize>(
     matrix: &[[T; R]; C],
     x: impl Entries<T>,
 ) {
-    let mut sum = *out;
     for (j, x) in x {
         if let Some(column) = matrix.get(j) {
-            add_scaled(&mut sum, x, column);
+            add_scaled(out, x, column);
         }
     }
-    *out = sum;
 }
 
 /// The lower triangle of `matrix += weight · row · rowᵀ`.
@@ -69,16 +67,15 @@ fn add_outer<T: Scalar, const N: usize>(matrix: &mut [[T; N]; N], weight: T, row
     }
 }
 
-/// The vector itself.
+/// Writes the vector itself.
 #[inline(always)]
-fn dense<T: Scalar, const N: usize>(x: impl Entries<T>) -> [T; N] {
-    let mut out = [T::ZERO; N];
+fn write_dense<T: Scalar, const N: usize>(x: impl Entries<T>, out: &mut [T; N]) {
+    out.fill(T::ZERO);
     for (i, x) in x {
         if let Some(slot) = out.get_mut(i) {
             *slot = x;
         }
     }
-    out
 }
 
 /// `C` vectors of length `R`, one after the other, without their zeros: there is room for vectors without any, and
@@ -238,14 +235,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Linearised<T,
     fn write(&self, n: usize, q: &mut Quadratic<'_, T, NX, NU>) {
         *q.x = self.cost_x;
         for (j, column) in q.xx.iter_mut().enumerate() {
-            *column = dense(self.hessian_xx.vector(j));
+            write_dense(self.hessian_xx.vector(j), column);
         }
         if n > 0 {
             *q.u = self.cost_u.map(|g| [g]);
             let columns = q.xu.iter_mut().zip(q.uu.iter_mut()).enumerate();
             for (j, (xu, uu)) in columns.take(n) {
-                *xu = dense(self.hessian_xu.vector(j));
-                *uu = dense(self.hessian_uu.vector(j));
+                write_dense(self.hessian_xu.vector(j), xu);
+                write_dense(self.hessian_uu.vector(j), uu);
             }
         }
     }
@@ -284,7 +281,10 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Linearised<T,
 
     #[inline(always)]
     fn row(&self, i: usize, _: Parts) -> ([T; NX], [T; NU]) {
-        (dense(self.rows_x.vector(i)), dense(self.rows_u.vector(i)))
+        let (mut x, mut u) = ([T::ZERO; NX], [T::ZERO; NU]);
+        write_dense(self.rows_x.vector(i), &mut x);
+        write_dense(self.rows_u.vector(i), &mut u);
+        (x, u)
     }
 
     #[inline(always)]
