@@ -78,7 +78,7 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
     ) -> &'a Self {
         if is_new {
-            scratch.clear();
+            scratch.clear(dims.rows());
             fill(scratch);
             self.pack(scratch, dims);
         }
@@ -106,11 +106,11 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
     fn at<'a>(
         &'a mut self,
         scratch: &'a mut Derivatives<T, NX, NU, NI>,
-        _: Dims,
+        dims: Dims,
         _: bool,
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
     ) -> &'a Derivatives<T, NX, NU, NI> {
-        scratch.clear();
+        scratch.clear(dims.rows());
         fill(scratch);
         scratch
     }

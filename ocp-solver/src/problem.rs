@@ -99,15 +99,18 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Derivatives<T
         }
     }
 
-    /// Zero again, in place.
-    pub(crate) fn clear(&mut self) {
+    /// Zero again, in place; of the rows the first ones, since nobody reads more than a node has.
+    pub(crate) fn clear(&mut self, rows: usize) {
+        let rows = rows.min(NI);
+        let rows_x = self.rows_x.get_mut(..rows).unwrap_or_default();
+        let rows_u = self.rows_u.get_mut(..rows).unwrap_or_default();
         for vector in [
             &mut self.cost_x[..],
             &mut self.cost_u,
             self.dynamics_x.as_flattened_mut(),
             self.dynamics_u.as_flattened_mut(),
-            self.rows_x.as_flattened_mut(),
-            self.rows_u.as_flattened_mut(),
+            rows_x.as_flattened_mut(),
+            rows_u.as_flattened_mut(),
             self.hessian_xx.as_flattened_mut(),
             self.hessian_xu.as_flattened_mut(),
             self.hessian_uu.as_flattened_mut(),

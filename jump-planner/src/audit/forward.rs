@@ -14,6 +14,23 @@ pub(super) type Velocity = Tangent<f64, JOINTS>;
 /// Rows of all feet.
 const ROWS: usize = 3 * LEGS;
 
+/// What a step passes through.
+pub(crate) struct Passed {
+    /// Configuration and velocity in its middle.
+    pub(crate) middle: (State, Velocity),
+    /// Forces on the feet at its start and in its middle, world axes, N.
+    pub(crate) forces_w: [[Vector3<f64>; LEGS]; 2],
+}
+
+/// How a displacement `u` changes at this velocity: `u' = v + ½ u × v + ¹⁄₁₂ u × (u × v)`, and terms of the fourth order, which a step has no use for.
+fn displacement_rate(u: &Velocity, v: &Velocity) -> Velocity {
+    let once = u.base.cross(&v.base);
+    Velocity {
+        base: v.base + once * 0.5 + u.base.cross(&once) * (1.0 / 12.0),
+        ..*v
+    }
+}
+
 /// Scratch of the integration.
 pub(crate) struct Forward<'a> {
     robot: &'a Quadruped,
@@ -36,7 +53,8 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// One step of Heun's midpoint rule; the forces on the feet in the middle, world axes.
+    /// One step of the fourth order, of length `h` (s): the rule of Runge and Kutta on the group of motions, as Munthe-Kaas ("High order
+    /// Runge-Kutta methods on manifolds", 1999) has it.
     pub(crate) fn step(
         &mut self,
         q: &mut State,
@@ -44,14 +62,31 @@ impl<'a> Forward<'a> {
         torques: &[f64; JOINTS],
         contacts: &[bool; LEGS],
         h: f64,
-    ) -> [Vector3<f64>; LEGS] {
-        let (first, _) = self.acceleration(q, v, torques, contacts);
-        let half = *v + first * (0.5 * h);
-        let middle = integrate(q, &(*v * (0.5 * h)));
-        let (rate, forces_w) = self.acceleration(&middle, &half, torques, contacts);
-        *q = integrate(q, &(half * h));
-        *v = *v + rate * h;
-        forces_w
+    ) -> Passed {
+        let (from, speed) = (*q, *v);
+        let mut at = |u: &Velocity, v: &Velocity| {
+            let (a, forces_w) = self.acceleration(&integrate(&from, u), v, torques, contacts);
+            (displacement_rate(u, v), a, forces_w)
+        };
+        let (v1, a1, start_w) = at(&Velocity::ZERO, &speed);
+        let (u2, w2) = (v1 * (0.5 * h), speed + a1 * (0.5 * h));
+        let (v2, a2, forces2_w) = at(&u2, &w2);
+        let (u3, w3) = (v2 * (0.5 * h), speed + a2 * (0.5 * h));
+        let (v3, a3, forces3_w) = at(&u3, &w3);
+        let (v4, a4, _) = at(&(v3 * h), &(speed + a3 * h));
+        *q = integrate(&from, &((v1 + (v2 + v3) * 2.0 + v4) * (h / 6.0)));
+        *v = speed + (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
+        // Each stage in the middle is of the first order there, their mean of the second.
+        let between = forces2_w.iter().zip(&forces3_w).map(|(a, b)| (a + b) * 0.5);
+        let mut middle_w = [Vector3::zeros(); LEGS];
+        middle_w
+            .iter_mut()
+            .zip(between)
+            .for_each(|(f, mean)| *f = mean);
+        Passed {
+            middle: (integrate(&from, &((u2 + u3) * 0.5)), (w2 + w3) * 0.5),
+            forces_w: [start_w, middle_w],
+        }
     }
 
     /// Acceleration and contact forces; balls that stand roll without slip.

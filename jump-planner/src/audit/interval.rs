@@ -1,6 +1,6 @@
 //! The robot between two nodes of a plan, moved from the first of them by its forward dynamics.
 
-use super::forward::{Forward, Velocity};
+use super::forward::{Forward, Passed, Velocity};
 use super::limits::Limits;
 use super::{STEP, state};
 use crate::robot::{JOINTS, LEGS, State};
@@ -76,17 +76,28 @@ impl<'a> Interval<'a> {
         state(self.from)
     }
 
-    /// Moves the robot from the one node to the other and looks at every limit in every step.
+    /// Moves the robot from the one node to the other and looks at every limit twice in every step.
     pub(super) fn watch(&self, forward: &mut Forward<'_>, limits: &Limits<'_>) -> Watched {
         let (held, mut found) = (&self.held, Watched::new(limits));
         let (mut q, mut v) = self.start();
         for i in 0..held.steps {
             let at = self.time() + i as f64 * held.h;
-            let forces_w = held.step(forward, &mut q, &mut v);
-            limits.check(at, &q, &v, held, &forces_w, &mut found);
+            let passed = held.step(forward, &mut q, &mut v);
+            let [start_w, middle_w] = &passed.forces_w;
+            let (middle, middle_v) = &passed.middle;
+            limits.check(
+                at + 0.5 * held.h,
+                middle,
+                middle_v,
+                held,
+                start_w,
+                &mut found,
+            );
+            limits.check(at + held.h, &q, &v, held, middle_w, &mut found);
+            // The middle of an even number of steps is the start of one.
             if i == held.steps / 2 {
                 let told = self.from.forces_w.map(|f| Vector3::from(f.map(f64::from)));
-                let pairs = told.iter().zip(&forces_w);
+                let pairs = told.iter().zip(&passed.forces_w[held.steps % 2]);
                 let gaps = pairs.map(|(a, b)| (a - b).amax() / self.force_range);
                 found.force_error = gaps.fold(0.0, f64::max);
             }
@@ -128,13 +139,13 @@ impl Held {
         })
     }
 
-    /// One step; the forces on the feet in its middle, world axes.
+    /// One step.
     pub(super) fn step(
         &self,
         forward: &mut Forward<'_>,
         q: &mut State,
         v: &mut Velocity,
-    ) -> [Vector3<f64>; LEGS] {
+    ) -> Passed {
         forward.step(q, v, &self.torques, &self.contacts, self.h)
     }
 }

@@ -1,4 +1,4 @@
-//! Every limit, in every step.
+//! Every limit, twice in every step.
 
 use super::clearance::Clearance;
 use super::interval::{Held, Watched};
@@ -80,7 +80,7 @@ impl<'a> Limits<'a> {
         self.limits.iter().zip(&seen.smallest).map(of).collect()
     }
 
-    /// Looks at the state after a step that began at `time`.
+    /// Looks at a state at `time`, half a step after the last; the forces are those of then.
     pub(super) fn check(
         &self,
         time: f64,
@@ -104,12 +104,12 @@ impl<'a> Limits<'a> {
             let spare = f64::min(torque - range[0], range[1] - torque) / limit.effort;
             values.push(spare);
             if spare <= SATURATED {
-                found.saturation[i] += held.h;
+                found.saturation[i] += 0.5 * held.h;
                 saturated = true;
             }
         }
         if saturated {
-            found.any_saturation += held.h;
+            found.any_saturation += 0.5 * held.h;
         }
         let kinematics = self.robot.poses(q);
         for (leg, f) in forces_w.iter().enumerate() {
@@ -134,7 +134,7 @@ impl<'a> Limits<'a> {
         values.push(corners.fold(f64::INFINITY, f64::min));
         let gaps = self.clearance.gaps(&kinematics, held);
         values.extend(gaps.map(|gap| gap / self.robot.leg_length));
-        found.remember(time + held.h, &values);
+        found.remember(time, &values);
     }
 
     /// Height of a point over the ground in legs.
