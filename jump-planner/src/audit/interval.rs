@@ -76,24 +76,22 @@ impl<'a> Interval<'a> {
         state(self.from)
     }
 
-    /// Moves the robot from the one node to the other and looks at every limit twice in every step.
+    /// Moves the robot from the one node to the other and looks at every limit in the middle and at the end of every step.
     pub(super) fn watch(&self, forward: &mut Forward<'_>, limits: &Limits<'_>) -> Watched {
         let (held, mut found) = (&self.held, Watched::new(limits));
         let (mut q, mut v) = self.start();
         for i in 0..held.steps {
             let at = self.time() + i as f64 * held.h;
+            let start = (q, v);
             let passed = held.step(forward, &mut q, &mut v);
-            let [start_w, middle_w] = &passed.forces_w;
-            let (middle, middle_v) = &passed.middle;
-            limits.check(
-                at + 0.5 * held.h,
-                middle,
-                middle_v,
-                held,
-                start_w,
-                &mut found,
-            );
-            limits.check(at + held.h, &q, &v, held, middle_w, &mut found);
+            let [start_w, middle_w, end_w] = &passed.forces_w;
+            let half = 0.5 * held.h;
+            let (middle, end) = (&passed.middle, &(q, v));
+            if i == 0 {
+                limits.check((at, 0.0), &start, held, start_w, &mut found);
+            }
+            limits.check((at + half, half), middle, held, middle_w, &mut found);
+            limits.check((at + held.h, half), end, held, end_w, &mut found);
             // The middle of an even number of steps is the start of one.
             if i == held.steps / 2 {
                 let told = self.from.forces_w.map(|f| Vector3::from(f.map(f64::from)));

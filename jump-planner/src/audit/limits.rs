@@ -1,4 +1,4 @@
-//! Every limit, twice in every step.
+//! Every limit, at one instant.
 
 use super::clearance::Clearance;
 use super::interval::{Held, Watched};
@@ -80,12 +80,11 @@ impl<'a> Limits<'a> {
         self.limits.iter().zip(&seen.smallest).map(of).collect()
     }
 
-    /// Looks at a state at `time`, half a step after the last; the forces are those of then.
+    /// Looks at a state and the forces then. It stands for the time before it, s, in which torques may have been at their limits.
     pub(super) fn check(
         &self,
-        time: f64,
-        q: &State,
-        v: &Velocity,
+        (time, span): (f64, f64),
+        (q, v): &(State, Velocity),
         held: &Held,
         forces_w: &[Vector3<f64>; LEGS],
         found: &mut Watched,
@@ -104,12 +103,12 @@ impl<'a> Limits<'a> {
             let spare = f64::min(torque - range[0], range[1] - torque) / limit.effort;
             values.push(spare);
             if spare <= SATURATED {
-                found.saturation[i] += 0.5 * held.h;
+                found.saturation[i] += span;
                 saturated = true;
             }
         }
         if saturated {
-            found.any_saturation += 0.5 * held.h;
+            found.any_saturation += span;
         }
         let kinematics = self.robot.poses(q);
         for (leg, f) in forces_w.iter().enumerate() {
