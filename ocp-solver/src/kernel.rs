@@ -289,6 +289,23 @@ mod tests {
     }
 
     #[test]
+    fn a_nan_wins_wherever_it_stands() {
+        for values in [
+            [f64::NAN, 1.0, -2.0],
+            [1.0, f64::NAN, -2.0],
+            [1.0, -2.0, f64::NAN],
+        ] {
+            assert!(values.iter().fold(0.0, |most, x| larger(most, *x)).is_nan());
+        }
+        assert!(
+            [1.0, -2.0, 0.5]
+                .iter()
+                .fold(0.0, |most, x| larger(most, *x))
+                == 2.0
+        );
+    }
+
+    #[test]
     fn an_indefinite_block_is_refused() {
         let mut a: [[f64; 2]; 2] = [[1.0, 2.0], [2.0, 1.0]];
         assert!(!factor(&mut a, &mut [0.0; 2], 2, 0.0));

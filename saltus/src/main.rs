@@ -25,7 +25,7 @@ use std::sync::LazyLock;
 #[derive(Parser)]
 #[command(version = VERSION.as_str(), about, after_help = examples::PROGRAM)]
 struct Cli {
-    /// Runs and audits at the same time [default: as many as there are cores]. Results do not depend on it.
+    /// Runs and audits at the same time, and threads of a solve [default: as many as there are cores]. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = cmd::output::whole(1..=1024))]
     jobs: Option<u64>,
     #[command(subcommand)]
