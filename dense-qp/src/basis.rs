@@ -12,8 +12,8 @@
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, dots, floor4, head, head_mut, put, rotate, span, span_mut};
-use crate::kernels::{sub_outer, sub_rows, sub_scaled, sub_triangle};
+use crate::kernels::{at, ceil4, copy, dot, dot_in, dots, head, head_mut, put, rotate, span};
+use crate::kernels::{sub_outer, sub_rows, sub_scaled_in, sub_triangle};
 use crate::settings::dependence_tolerance;
 use so3::{Scalar, math};
 
@@ -27,10 +27,14 @@ pub(crate) struct Candidate<T, const N: usize> {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Basis<T, const N: usize> {
-    /// J by columns, an entry per free variable. Scratch until [`Basis::prepare`].
+    /// J by columns, an entry per variable: what the equalities make of the others is there. Scratch until [`Basis::prepare`].
     pub(crate) j: [[T; N]; N],
-    /// R by rows, zeros outside of its triangle.
+    /// Sum of the squares of the entries of J over the free variables, if there are equalities.
+    square: T,
+    /// R by columns, zeros on its diagonal and below.
     r: [[T; N]; N],
+    /// R_kk.
+    diagonal: [T; N],
     /// 1 / R_kk.
     r_inverse: [T; N],
     pub(crate) len: usize,
@@ -49,16 +53,16 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
         }
     }
 
-    /// |d₂|², given how many rows are active.
-    fn measure(&mut self, len: usize, dim: usize) {
+    /// |d₂|², given how many rows are active; returns |d|².
+    fn measure(&mut self, len: usize, dim: usize) -> T {
         let (active, free) = (head(&self.d, len), span(&self.d, len, dim));
-        let square = |d: &[T]| d.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
-        self.free = square(free);
-        let whole = self.free + square(active);
+        self.free = dot(free, free);
+        let whole = self.free + dot(active, active);
         // False for NaN.
         if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
             self.free = T::ZERO;
         }
+        whole
     }
 }
 
@@ -66,7 +70,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     pub(crate) const fn new() -> Self {
         Self {
             j: [[T::ZERO; N]; N],
+            square: T::ZERO,
             r: [[T::ZERO; N]; N],
+            diagonal: [T::ZERO; N],
             r_inverse: [T::ZERO; N],
             len: 0,
             dim: 0,
@@ -82,7 +88,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     }
 
     /// J of a factor, unless it is there already: a problem without a violated row never needs it.
-    pub(crate) fn prepare(&mut self, factor: &Factor<T, N>) {
+    pub(crate) fn prepare(&mut self, factor: &Factor<T, N>, elimination: &Elimination<T, N>) {
         if self.dim == factor.dim {
             return;
         }
@@ -102,57 +108,63 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             sub_triangle(column, &shares, before, end);
             put(column, c, T::ONE);
         }
+        self.square = T::ZERO;
         for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
             let scale = math::sqrt(*w);
             for x in head_mut(column, c + 1) {
                 *x *= scale;
             }
+            if elimination.rank > 0 {
+                let free = *column;
+                self.square += dot(&free, &free);
+                elimination.expand(&free, c + 1, column);
+            }
         }
     }
 
-    /// d ← Jᵀa for a row over the free variables, with zeros up to the kernels' width.
+    /// d ← Jᵀa.
     pub(crate) fn coordinates(&self, row: &[T; N], d: &mut [T; N]) {
-        let used = |a: &T| *a != T::ZERO;
-        let entries = head(row, self.dim);
-        let first = entries.iter().position(used).unwrap_or(0);
-        let end = entries.iter().rposition(used).map_or(0, |last| last + 1);
-        dots(
-            d,
-            head(&self.j, self.dim),
-            row,
-            [floor4(first), ceil4(end, N)],
-        );
+        let (blocks, rest) = row.as_chunks::<4>();
+        let used = |block: &[T; 4]| *block != [T::ZERO; 4];
+        let first = blocks.iter().position(used).unwrap_or(blocks.len());
+        let end = if rest.iter().any(|a| *a != T::ZERO) {
+            N
+        } else {
+            4 * blocks.iter().rposition(used).map_or(0, |last| last + 1)
+        };
+        dots(d, head(&self.j, self.dim), row, [4 * first, end]);
     }
 
-    /// Measures a candidate whose `d` is set.
-    pub(crate) fn project(&self, c: &mut Candidate<T, N>) {
-        c.measure(self.len, self.dim);
-    }
-
-    /// z = J₂d₂, or J d with `from` = 0, into the free variables of `step`.
-    #[inline]
-    pub(crate) fn direction(
-        &self,
-        from: usize,
-        d: &[T; N],
-        free_variables: &[usize],
-        step: &mut [T; N],
-    ) {
-        let mut z = [T::ZERO; N];
-        let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
-        sub_rows(&mut z, d, columns, 0, ceil4(self.dim, N));
-        for (z, v) in z.iter().zip(free_variables) {
-            put(step, *v, -*z);
+    /// [`Basis::coordinates`] of the unit row of a variable.
+    pub(crate) fn coordinates_of_unit(&self, variable: usize, d: &mut [T; N]) {
+        for (d, column) in d.iter_mut().zip(head(&self.j, self.dim)) {
+            *d = at(column, variable);
         }
     }
 
-    /// Appends an independent candidate whose z is in `step`.
-    pub(crate) fn append(
-        &mut self,
-        c: &mut Candidate<T, N>,
-        elimination: &Elimination<T, N>,
-        step: &[T; N],
-    ) {
+    /// Measures a candidate whose `d` is set; returns |d|².
+    pub(crate) fn project(&self, c: &mut Candidate<T, N>) -> T {
+        c.measure(self.len, self.dim)
+    }
+
+    /// Most that |d|² can be of a row whose entries over the free variables are at most 1, once the equalities are taken out of it.
+    pub(crate) fn most(&self) -> T {
+        self.square * T::of(self.dim as f64)
+    }
+
+    /// z = J₂d₂, or J d with `from` = 0.
+    #[inline]
+    pub(crate) fn direction(&self, from: usize, d: &[T; N], z: &mut [T; N]) {
+        z.fill(T::ZERO);
+        let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
+        sub_rows(z, d, columns, 0, N);
+        for z in z {
+            *z = -*z;
+        }
+    }
+
+    /// Appends an independent candidate whose z is given.
+    pub(crate) fn append(&mut self, c: &mut Candidate<T, N>, z: &[T; N]) {
         let (k, n) = (self.len, self.dim);
         let first = at(&c.d, k);
         let length = math::sqrt(c.free);
@@ -163,16 +175,14 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let columns = self.j.get_mut(k..n).unwrap_or(&mut []);
         let Some(first) = columns.first() else { return };
         let mut shares = *first;
-        for (f, v) in shares.iter_mut().zip(elimination.free_variables()) {
-            *f = (at(step, *v) + signed * *f) * share;
+        for (f, z) in shares.iter_mut().zip(z) {
+            *f = (*z + signed * *f) * share;
         }
-        sub_outer(columns, span(&c.d, k, n), &shares, 0, ceil4(n, N));
-        if let Some((above, [row, ..])) = self.r.split_at_mut_checked(k) {
-            for (r, d) in above.iter_mut().zip(&c.d) {
-                put(r, k, *d);
-            }
-            row.fill(T::ZERO);
-            put(row, k, -signed);
+        sub_outer(columns, span(&c.d, k, n), &shares, 0, N);
+        if let Some(column) = self.r.get_mut(k) {
+            column.fill(T::ZERO);
+            copy(head_mut(column, k), &c.d);
+            put(&mut self.diagonal, k, -signed);
             put(&mut self.r_inverse, k, -T::ONE / signed);
             self.len += 1;
         }
@@ -184,25 +194,25 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             return;
         }
         let last = self.len - 1;
-        for row in self.r.iter_mut().take(self.len) {
-            for i in k..last {
-                let next = at(row.as_slice(), i + 1);
-                put(row, i, next);
-            }
-            put(row, last, T::ZERO);
+        if let Some(columns) = self.r.get_mut(k..=last) {
+            columns.rotate_left(1);
         }
         for i in k..last {
-            let Some([row, below]) = self.r.get_mut(i..).and_then(|r| r.first_chunk_mut()) else {
+            let Some([column, later @ ..]) = self.r.get_mut(i..last) else {
                 break;
             };
-            // What the next row has before its diagonal is turned away.
-            let (x, y) = (at(row.as_slice(), i), at(below.as_slice(), i));
+            // What the next row has in this column, once its own diagonal, is turned away.
+            let (x, y) = (at(column.as_slice(), i), at(&self.diagonal, i + 1));
             let length = math::sqrt(x * x + y * y);
             let inverse = T::ONE / length;
             let (cos, sin) = (x * inverse, y * inverse);
-            rotate(row, below, [cos, sin], [floor4(i), ceil4(last, N)]);
-            put(row, i, length);
-            put(below, i, T::ZERO);
+            put(column, i, T::ZERO);
+            for column in later {
+                if let Some([x, y]) = column.get_mut(i..).and_then(|c| c.first_chunk_mut()) {
+                    (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
+                }
+            }
+            put(&mut self.diagonal, i, length);
             put(&mut self.r_inverse, i, inverse);
             put(&mut self.cos, i, cos);
             put(&mut self.sin, i, sin);
@@ -213,7 +223,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             else {
                 break;
             };
-            rotate(first, second, [cos, sin], [0, ceil4(self.dim, N)]);
+            rotate(first, second, [cos, sin], [0, N]);
             let (x, y) = (at(&c.d, i), at(&c.d, i + 1));
             put(&mut c.d, i, cos * x + sin * y);
             put(&mut c.d, i + 1, cos * y - sin * x);
@@ -225,27 +235,25 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// v ← R⁻¹v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        let len = self.len;
-        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
-        for (k, (row, inverse)) in rows.take(len).rev() {
-            // From the far end: what was found last is needed last.
-            let terms = span(row, k + 1, len).iter().zip(span(v, k + 1, len)).rev();
-            let s = terms.fold(T::ZERO, |sum, (r, v)| sum + *r * *v);
-            if let Some(e) = v.get_mut(k) {
-                *e = (*e - s) * *inverse;
-            }
+        // What is found is written elsewhere: one entry could not be read back as part of four without waiting.
+        let mut rest = *v;
+        // By index: over an iterator of the columns, reversed, the same loop takes more instructions.
+        for k in (0..self.len.min(N)).rev() {
+            let Some(column) = self.r.get(k) else { break };
+            let e = at(rest.as_slice(), k) * at(&self.r_inverse, k);
+            put(v, k, e);
+            sub_scaled_in(&mut rest, e, column, 0, ceil4(k, N));
         }
     }
 
     /// v ← R⁻ᵀv.
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let rows = self.r.iter().zip(&self.r_inverse).enumerate();
-        for (k, (row, inverse)) in rows.take(self.len) {
-            let Some((e, after)) = span_mut(v, k, self.len).split_first_mut() else {
-                break;
-            };
-            *e *= *inverse;
-            sub_scaled(after, *e, span(row, k + 1, self.len));
+        let columns = self.r.iter().zip(&self.r_inverse).enumerate();
+        for (k, (column, inverse)) in columns.take(self.len) {
+            let s = dot_in(column, v, 0, ceil4(k, N));
+            if let Some(e) = v.get_mut(k) {
+                *e = (*e - s) * *inverse;
+            }
         }
     }
 }

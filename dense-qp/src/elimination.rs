@@ -9,7 +9,7 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, copy, dots, floor4, head, head_mut, max_abs, put, row, row_mut};
+use crate::kernels::{at, ceil4, copy, dots, floor4, head, max_abs, put, row, row_mut};
 use crate::kernels::{span, span_mut, sub_rows, sub_scaled};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
@@ -26,14 +26,14 @@ pub(crate) struct Elimination<T, const N: usize> {
     rhs: [T; N],
     /// Variable of each permuted column.
     perm: [usize; N],
-    /// Permuted column of each variable, where `rank` is not 0.
-    place: [usize; N],
     /// Constraint (row i, or M + variable) behind each row of `lu`.
     pub(crate) id: [usize; N],
     /// Number of fixed variables.
     fixed: usize,
     /// Rank r of the equalities.
     pub(crate) rank: usize,
+    /// Whether a row is an equality.
+    pub(crate) has_rows: bool,
 }
 
 /// A dependent equality whose right-hand side contradicts the earlier ones.
@@ -50,10 +50,10 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             inverse: [T::ZERO; N],
             rhs: [T::ZERO; N],
             perm: [0; N],
-            place: [0; N],
             id: [0; N],
             fixed: 0,
             rank: 0,
+            has_rows: false,
         }
     }
 
@@ -74,30 +74,22 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         self.rank > self.fixed
     }
 
-    /// Index of `variable` among the free ones.
-    #[inline(always)]
-    pub(crate) fn free_index(&self, variable: usize) -> Option<usize> {
-        if self.rank == 0 {
-            return Some(variable);
-        }
-        let column = at(&self.place, variable);
-        (column < self.free()).then_some(column)
-    }
-
     /// Factorises the equalities of `problem` (rows and bounds with equal limits). `feasibility` is
-    /// the distance up to which a dependent row may contradict the others.
+    /// the distance up to which a dependent row may contradict the others; the flags say whether there are any such bounds and rows.
     pub(crate) fn build<const M: usize>(
         &mut self,
         problem: &Problem<'_, T, N, M>,
+        [has_fixed, has_rows]: [bool; 2],
         feasibility: T,
         scratch: &mut [T; N],
     ) -> Result<(), Contradiction> {
         self.rank = 0;
         self.fixed = 0;
+        self.has_rows = has_rows;
         for (i, p) in self.perm.iter_mut().enumerate() {
             *p = i;
         }
-        if let (Some(lower), Some(upper)) = (problem.lower, problem.upper) {
+        if let (true, Some(lower), Some(upper)) = (has_fixed, problem.lower, problem.upper) {
             for (i, (l, u)) in lower.iter().zip(upper).enumerate() {
                 if l == u && l.is_finite_number() {
                     self.fix(i, M + i, *l);
@@ -105,16 +97,20 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         self.fixed = self.rank;
-        for (i, (l, u)) in problem.row_lower.iter().zip(problem.row_upper).enumerate() {
-            if l == u && l.is_finite_number() {
-                self.insert(problem, i, *l, feasibility, scratch)?;
+        let mut scales = [T::ONE; N];
+        if has_rows {
+            for (scale, p) in scales.iter_mut().zip(&self.perm) {
+                *scale += at(row(problem.hessian, *p), *p);
             }
         }
-        self.finish(scratch);
-        if self.rank > 0 {
-            for (column, variable) in self.perm.iter().enumerate() {
-                put(&mut self.place, *variable, column);
+        let limits = problem.row_lower.iter().zip(problem.row_upper);
+        for (i, (l, u)) in limits.enumerate().take(if has_rows { M } else { 0 }) {
+            if l == u && l.is_finite_number() {
+                self.insert(problem, i, *l, feasibility, (scratch, &mut scales))?;
             }
+        }
+        if self.rank > 0 {
+            self.finish(scratch);
         }
         Ok(())
     }
@@ -125,6 +121,13 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         rows.map(|(row, v)| (row, *v))
             .take(self.rank)
             .skip(self.fixed)
+    }
+
+    /// Their variables.
+    fn basic_variables(&self) -> impl Iterator<Item = &usize> {
+        span(&self.perm, self.free(), N - self.fixed.min(N))
+            .iter()
+            .rev()
     }
 
     /// Their rows.
@@ -159,44 +162,29 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         i: usize,
         limit: T,
         feasibility: T,
-        work: &mut [T; N],
+        (work, scales): (&mut [T; N], &mut [T; N]),
     ) -> Result<(), Contradiction> {
         let a = row(problem.rows, i);
         for (w, p) in work.iter_mut().zip(&self.perm) {
             *w = at(a, *p);
         }
-        let mut rhs = limit;
-        let rank = self.rank;
-        for (k, (r, c)) in self.lu.iter().zip(&self.rhs).take(rank).enumerate() {
-            let pivot = N - 1 - k;
-            let f = at(work.as_slice(), pivot);
-            if f == T::ZERO {
-                continue;
-            }
-            let f = if k < self.fixed {
-                f
-            } else {
-                let f = f * at(&self.inverse, k);
-                sub_scaled(head_mut(work, pivot), f, head(r, pivot));
-                f
-            };
-            put(work, pivot, f);
-            rhs -= f * *c;
-        }
+        let (rank, free) = (self.rank, self.free());
+        let rhs = self.eliminate(work, limit);
         // The pivot is the entry that is largest for variables measured by their own curvature;
         // w²/c is compared crosswise, without a division.
         let (mut pivot, mut best, mut best_scale) = (0, T::ZERO, T::ONE);
-        let free = self.free();
-        for (j, (w, p)) in work.iter().zip(&self.perm).enumerate().take(free) {
-            let scale = at(row(problem.hessian, *p), *p) + T::ONE;
+        for (j, (w, scale)) in head(work, free).iter().zip(&*scales).enumerate() {
             let square = *w * *w;
-            if square * best_scale > best * scale {
-                (pivot, best, best_scale) = (j, square, scale);
+            if square * best_scale > best * *scale {
+                (pivot, best, best_scale) = (j, square, *scale);
             }
         }
         let size = max_abs(a);
-        let left = max_abs(head(work, free));
-        if rank >= N || left <= row_tolerance::<T>() * size {
+        let least = row_tolerance::<T>() * size;
+        let is_left = |w: T| w > least;
+        let is_new =
+            is_left(math::abs(at(work.as_slice(), pivot))) || is_left(max_abs(head(work, free)));
+        if rank >= N || !is_new {
             let scale = if size > T::ZERO { size } else { T::ONE };
             let noise = T::of(256.0) * T::EPSILON * (math::abs(limit) + size * max_abs(&self.rhs));
             if math::abs(rhs) > math::max(feasibility * scale, noise) {
@@ -214,12 +202,38 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let last = N - 1 - rank;
         if pivot < last {
             self.perm.swap(last, pivot);
+            scales.swap(last, pivot);
             for r in self.lu.iter_mut().take(rank + 1) {
                 r.swap(last, pivot);
             }
         }
         self.rank += 1;
         Ok(())
+    }
+
+    /// Takes the earlier rows out of `work`, whose right-hand side is `limit`; returns what is left of that. Their shares stand in the
+    /// columns of their pivots then.
+    fn eliminate(&self, work: &mut [T; N], limit: T) -> T {
+        let (mut rhs, free) = (limit, self.free());
+        let mut shares = [T::ZERO; N];
+        // Columns that a sweep over whole blocks would have to share with pivots go with these.
+        let swept = floor4(free);
+        let rows = head(&self.lu, self.rank).iter().zip(&self.rhs);
+        for ((k, (r, c)), share) in rows.enumerate().zip(&mut shares) {
+            let Some((open, [at_pivot, ..])) = work.split_at_mut_checked(N - 1 - k) else {
+                break;
+            };
+            if k >= self.fixed && *at_pivot != T::ZERO {
+                *at_pivot *= at(&self.inverse, k);
+                let columns = open.iter_mut().zip(r).skip(swept);
+                columns.for_each(|(w, r)| *w -= *at_pivot * *r);
+                *share = *at_pivot;
+            }
+            rhs -= *at_pivot * *c;
+        }
+        let rows = span(&self.lu, self.fixed, self.rank);
+        sub_rows(work, span(&shares, self.fixed, self.rank), rows, 0, swept);
+        rhs
     }
 
     /// U₁₁⁻¹ on the part of the free columns and on the right-hand side.
@@ -271,21 +285,21 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             return;
         }
         let free = self.free();
-        y.fill(T::ZERO);
         for (y, v) in y.iter_mut().zip(self.free_variables()) {
             *y = at(a, *v);
         }
+        span_mut(y, free, N).fill(T::ZERO);
         if self.has_basic() {
             let mut shares = [T::ZERO; N];
-            for (f, (_, v)) in shares.iter_mut().zip(self.basic()) {
-                *f = at(a, v);
+            for (f, v) in shares.iter_mut().zip(self.basic_variables()) {
+                *f = at(a, *v);
             }
             let used = |f: &T| *f != T::ZERO;
             let first = shares.iter().position(used).unwrap_or(0);
             let end = shares.iter().rposition(used).map_or(0, |last| last + 1);
             let rows = span(self.basic_rows(), first, end);
             sub_rows(y, span(&shares, first, end), rows, 0, ceil4(free, N));
-            span_mut(y, free, N).fill(T::ZERO);
+            span_mut(y, free, ceil4(free, N)).fill(T::ZERO);
         }
     }
 
@@ -305,34 +319,47 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
-    /// [`Elimination::reduce`] of the unit row of `variable`.
-    pub(crate) fn reduce_unit(&self, variable: usize, y: &mut [T; N]) {
-        y.fill(T::ZERO);
-        if let Some(i) = self.free_index(variable) {
-            put(y, i, T::ONE);
+    /// The displacement z of all variables whose free part is y, `used` entries and zeros beside them: z_F = y, z_B = −W y.
+    #[inline]
+    pub(crate) fn expand(&self, y: &[T; N], used: usize, z: &mut [T; N]) {
+        if self.rank == 0 {
+            *z = *y;
             return;
         }
-        let k = (N - 1).saturating_sub(at(&self.place, variable));
-        if k >= self.fixed {
-            let free = self.free();
-            sub_scaled(head_mut(y, free), T::ONE, row(&self.lu, k));
+        for (y, v) in y.iter().zip(self.free_variables()) {
+            put(z, *v, *y);
+        }
+        for v in span(&self.perm, N - self.fixed.min(N), N) {
+            put(z, *v, T::ZERO);
+        }
+        if self.has_basic() {
+            let mut moved = [T::ZERO; N];
+            dots(&mut moved, self.basic_rows(), y, [0, ceil4(used, N)]);
+            for (d, v) in moved.iter().zip(self.basic_variables()) {
+                put(z, *v, -*d);
+            }
+        }
+    }
+
+    /// x_F ← y, x_B ← 0.
+    pub(crate) fn scatter(&self, y: &[T; N], x: &mut [T; N]) {
+        x.fill(T::ZERO);
+        for (y, v) in y.iter().zip(self.free_variables()) {
+            put(x, *v, *y);
         }
     }
 
     /// Completes a displacement whose free part is set: z_B ← −W z_F. `y` is scratch.
-    #[inline]
     pub(crate) fn complete(&self, z: &mut [T; N], y: &mut [T; N]) {
-        if self.rank == 0 {
-            return;
-        }
-        for v in self.perm.iter().rev().take(self.fixed) {
-            put(z, *v, T::ZERO);
-        }
-        if self.has_basic() {
-            let moved = self.moved(z, y);
-            for (d, (_, v)) in moved.iter().zip(self.basic()) {
-                put(z, v, -*d);
-            }
+        self.gather(z, y);
+        self.expand(y, self.free(), z);
+    }
+
+    /// y ← x_F, with zeros beside it.
+    fn gather(&self, x: &[T; N], y: &mut [T; N]) {
+        y.fill(T::ZERO);
+        for (y, v) in y.iter_mut().zip(self.free_variables()) {
+            *y = at(x, *v);
         }
     }
 
@@ -341,23 +368,13 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         if !self.has_basic() {
             return;
         }
-        let moved = self.moved(x, y);
-        let known = span(&self.rhs, self.fixed, self.rank);
-        for ((d, p), (_, v)) in moved.iter().zip(known).zip(self.basic()) {
-            put(x, v, *p - *d);
-        }
-    }
-
-    /// W x_F. `y` is scratch.
-    #[inline]
-    fn moved(&self, x: &[T; N], y: &mut [T; N]) -> [T; N] {
-        y.fill(T::ZERO);
-        for (y, v) in y.iter_mut().zip(self.free_variables()) {
-            *y = at(x, *v);
-        }
+        self.gather(x, y);
         let mut moved = [T::ZERO; N];
         dots(&mut moved, self.basic_rows(), y, [0, ceil4(self.free(), N)]);
-        moved
+        let known = span(&self.rhs, self.fixed, self.rank);
+        for ((d, p), v) in moved.iter().zip(known).zip(self.basic_variables()) {
+            put(x, *v, *p - *d);
+        }
     }
 
     /// Upper triangle of ZᵀHZ into `out` and the size of the terms of its diagonal into `magnitude`. `c` is scratch.
@@ -378,17 +395,18 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let (free, end) = (self.free(), ceil4(self.free(), N));
         // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W.
         let mut shares = [T::ZERO; N];
-        for (c, (_, v)) in c.iter_mut().zip(self.basic()) {
-            let hv = row(h, v);
+        for (c, v) in c.iter_mut().zip(self.basic_variables()) {
+            let hv = row(h, *v);
             for (c, f) in c.iter_mut().zip(self.free_variables()) {
                 *c = at(hv, *f);
             }
-            for (f, (_, other)) in shares.iter_mut().zip(self.basic()) {
-                *f = at(hv, other) * T::HALF;
+            for (f, other) in shares.iter_mut().zip(self.basic_variables()) {
+                *f = at(hv, *other) * T::HALF;
             }
             sub_rows(c, &shares, self.basic_rows(), 0, end);
         }
         let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
+        let mut others = [T::ZERO; N];
         for (i, ((o, v), m)) in out
             .iter_mut()
             .zip(self.free_variables())
@@ -400,7 +418,6 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
                 *o = at(hv, *f);
             }
-            let mut others = [T::ZERO; N];
             for ((f, g), (w, c)) in shares.iter_mut().zip(&mut others).zip(w.iter().zip(c)) {
                 (*f, *g) = (at(w, i), at(c, i));
                 *m += math::abs(*f * *g);

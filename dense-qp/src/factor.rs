@@ -1,9 +1,9 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
-use crate::kernels::{
-    at, ceil4, dot_in, eliminate, floor4, put, scale_from, span_mut, sub_scaled_in,
-};
+use crate::kernels::{at, ceil4, dot_in, floor4, head, put, scale_from, span, span_mut};
+use crate::kernels::{sub_block, sub_rows};
 use crate::settings::{pivot_tolerance, proximal_weight};
+use core::slice::from_ref;
 use so3::Scalar;
 
 /// Factor of the leading `dim`×`dim` block.
@@ -56,11 +56,16 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let tolerance = pivot_tolerance::<T>();
         let mut below = None;
+        let mut shares = [T::ZERO; N];
         for k in 0..n {
             let Some((above, [row, ..])) = self.u.split_at_mut_checked(k) else {
                 break;
             };
-            eliminate(row, above, &self.weight, k, end);
+            // Of the pivot rows above, unscaled as they still are.
+            for ((f, a), w) in shares.iter_mut().zip(&*above).zip(&self.weight) {
+                *f = at(a, k) * *w;
+            }
+            sub_rows(row, &shares, above, floor4(k), end);
             let mut d = at(row.as_slice(), k);
             let diagonal = at(&self.weight, k);
             if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
@@ -95,15 +100,28 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         self.dim = dim;
     }
 
-    /// v ← U⁻ᵀ v. Leading zeros of v cost nothing.
+    /// v ← U⁻ᵀ v, block by block of columns.
     #[inline]
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let end = ceil4(self.dim, N);
-        for (k, r) in self.u.iter().take(self.dim).enumerate() {
-            let f = at(v.as_slice(), k);
-            if f != T::ZERO {
-                sub_scaled_in(v, f, r, floor4(k + 1), end);
-            }
+        let mut column = 0;
+        while column < self.dim.min(N) {
+            let Some((known, open)) = v.split_at_mut_checked(column) else {
+                return;
+            };
+            let (above, own) = (head(&self.u, column), span(&self.u, column, self.dim));
+            column += if let Some(s) = open.first_chunk_mut::<4>() {
+                *s = sub_block(*s, known, above, column);
+                for (i, row) in own.iter().take(3).enumerate() {
+                    let f = at(s.as_slice(), i);
+                    *s = sub_block(*s, &[f], from_ref(row), column);
+                }
+                4
+            } else if let Some(s) = open.first_chunk_mut::<1>() {
+                *s = sub_block(*s, known, above, column);
+                1
+            } else {
+                1
+            };
         }
     }
 

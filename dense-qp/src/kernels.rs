@@ -40,6 +40,23 @@ pub(crate) fn dot_few<T: Scalar>(a: &[T], x: &[T], from: usize, to: usize) -> T 
     sum
 }
 
+/// Σ (f·aᵢ)², in four partial sums, as [`dot`].
+pub(crate) fn square_scaled<T: Scalar>(a: &[T], f: T) -> T {
+    let (a4, a1) = a.as_chunks::<4>();
+    let mut s = [T::ZERO; 4];
+    for v in a4 {
+        let v = v.map(|v| v * f);
+        s = [
+            s[0] + v[0] * v[0],
+            s[1] + v[1] * v[1],
+            s[2] + v[2] * v[2],
+            s[3] + v[3] * v[3],
+        ];
+    }
+    let rest = (s[0] + s[2]) + (s[1] + s[3]);
+    a1.iter().fold(rest, |sum, v| sum + (*v * f) * (*v * f))
+}
+
 /// Σ |aᵢ|, in four partial sums, as [`dot`].
 #[inline(always)]
 pub(crate) fn sum_sizes<T: Scalar>(a: &[T]) -> T {
@@ -136,7 +153,7 @@ pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
 
 /// `W` columns, those from `from`, of y − Σ fᵢ·aᵢ, y being `s`: they stay in registers while all rows pass.
 #[inline(always)]
-fn sub_block<T: Scalar, const N: usize, const W: usize>(
+pub(crate) fn sub_block<T: Scalar, const N: usize, const W: usize>(
     mut s: [T; W],
     factors: &[T],
     rows: &[[T; N]],
@@ -179,6 +196,9 @@ fn sub_blocks<T: Scalar, const N: usize>(
         } else if let (4.., Some(s)) = (left, y.first_chunk_mut::<4>()) {
             *s = sub_block(*s, factors, rows, column);
             4
+        } else if let (3, Some(s)) = (left, y.first_chunk_mut::<3>()) {
+            *s = sub_block(*s, factors, rows, column);
+            3
         } else if let Some(s) = y.first_chunk_mut::<1>() {
             *s = sub_block(*s, factors, rows, column);
             1
@@ -197,7 +217,16 @@ pub(crate) fn sub_rows<T: Scalar, const N: usize>(
     from: usize,
     to: usize,
 ) {
-    sub_blocks(y, factors, rows, [from, to], |_| 0);
+    let mut column = from;
+    // Chains of that many columns hide how long a product takes.
+    while let (true, Some(s)) = (
+        column + 16 <= to,
+        y.get_mut(column..).and_then(|y| y.first_chunk_mut::<16>()),
+    ) {
+        *s = sub_block(*s, factors, rows, column);
+        column += 16;
+    }
+    sub_blocks(y, factors, rows, [column, to], |_| 0);
 }
 
 /// [`sub_rows`] of the rows of a lower triangle, row i of which is zero after column i.
@@ -223,23 +252,6 @@ pub(crate) fn rotate<T: Scalar, const N: usize>(
     for (x, y) in span_mut(x, from, to).iter_mut().zip(span_mut(y, from, to)) {
         (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
     }
-}
-
-/// row ← row − Σ fⱼ·aⱼ over the pivot rows aⱼ above it, fⱼ = aⱼₖ times the inverse of its pivot, on
-/// columns k, rounded down, up to `to`, a multiple of 4 (or N).
-#[inline(always)]
-pub(crate) fn eliminate<T: Scalar, const N: usize>(
-    row: &mut [T; N],
-    above: &[[T; N]],
-    inverses: &[T; N],
-    k: usize,
-    to: usize,
-) {
-    let mut shares = [T::ZERO; N];
-    for ((f, a), w) in shares.iter_mut().zip(above).zip(inverses) {
-        *f = at(a, k) * *w;
-    }
-    sub_rows(row, &shares, above, floor4(k), to);
 }
 
 /// aᵢ ← aᵢ − fᵢ·x for all rows, on columns `from..to`; `from` and `to` are multiples of 4 (or `to` = N).

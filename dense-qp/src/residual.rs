@@ -1,7 +1,7 @@
 //! How far a point and multipliers are from optimal, and whether multipliers prove infeasibility.
 
 use crate::Problem;
-use crate::kernels::{at, dot};
+use crate::kernels::{all_finite, at, dot, max_abs};
 use so3::{Scalar, math};
 
 /// Largest entries of the KKT conditions' violations.
@@ -123,5 +123,9 @@ pub fn infeasibility<T: Scalar, const N: usize, const M: usize>(
 
 /// Largest magnitude, NaN if any entry is.
 pub(crate) fn norm<T: Scalar>(a: &[T]) -> T {
-    a.iter().fold(T::ZERO, |m, v| worse(m, math::abs(*v)))
+    if all_finite(a) {
+        max_abs(a)
+    } else {
+        a.iter().fold(T::ZERO, |m, v| worse(m, math::abs(*v)))
+    }
 }

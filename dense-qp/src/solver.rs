@@ -16,7 +16,7 @@ mod violated;
 
 use so3::{Scalar, math};
 
-use crate::kernels::{at, max_abs};
+use crate::kernels::{at, dot, max_abs, put, square_scaled};
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use exchange::Pass;
 use gauge::{NOISE, SETTLED};
@@ -135,28 +135,23 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         w.is_factorised = false;
         w.basis.clear();
         w.row_scale_inverse.fill(T::ZERO);
-        w.row_state.fill(0);
-        w.bound_state.fill(0);
+        w.row_length_inverse.fill(T::ZERO);
         w.previous.fill(T::ZERO);
-        if let Err(c) = w
-            .elimination
-            .build(self.p, self.s.feasibility, &mut w.vec_a)
-        {
-            return Ok(self.contradiction(c.id, c.residual_positive));
-        }
         // Dependent equalities hold when the others do.
         let limits = self.p.row_lower.iter().zip(self.p.row_upper);
-        for (state, (l, u)) in w.row_state.iter_mut().zip(limits) {
-            if l == u {
-                *state = EQUALITY;
-            }
-        }
+        let has_rows = mark_equal(&mut w.row_state, limits);
+        let mut has_fixed = false;
+        w.bound_state.fill(0);
         if let (Some(lower), Some(upper)) = (self.p.lower, self.p.upper) {
-            for (state, (l, u)) in w.bound_state.iter_mut().zip(lower.iter().zip(upper)) {
-                if l == u {
-                    *state = EQUALITY;
-                }
-            }
+            has_fixed = mark_equal(&mut w.bound_state, lower.iter().zip(upper));
+        }
+        if let Err(c) = w.elimination.build(
+            self.p,
+            [has_fixed, has_rows],
+            self.s.feasibility,
+            &mut w.vec_a,
+        ) {
+            return Ok(self.contradiction(c.id, c.residual_positive));
         }
         w.factor.dim = w.elimination.free();
         w.elimination.reduce_hessian(
@@ -297,6 +292,19 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
     }
 }
 
+/// The states of rows with equal limits and of others; returns whether there are any.
+fn mark_equal<'a, T: Scalar>(
+    states: &mut [i8],
+    limits: impl Iterator<Item = (&'a T, &'a T)>,
+) -> bool {
+    let mut any = 0;
+    for (state, (l, u)) in states.iter_mut().zip(limits) {
+        *state = if l == u { EQUALITY } else { 0 };
+        any |= *state;
+    }
+    any != 0
+}
+
 /// Whether l ≤ x ≤ u is a range that numbers can satisfy; false for a NaN.
 fn is_range<T: Scalar>(l: T, u: T) -> bool {
     l <= u && l < T::INFINITY && u > -T::INFINITY
@@ -327,4 +335,29 @@ fn scale_inverse<T: Scalar, const N: usize, const M: usize>(
         };
     }
     *known
+}
+
+/// 1 / |aᵢ|₂, by which violations of rows are compared.
+#[inline]
+fn length_inverse<T: Scalar, const N: usize, const M: usize>(
+    problem: &Problem<'_, T, N, M>,
+    w: &mut Workspace<T, N, M>,
+    id: usize,
+) -> T {
+    let known = at(&w.row_length_inverse, id);
+    if known != T::ZERO || id >= M {
+        return if id < M { known } else { T::ONE };
+    }
+    let entries = problem.entries(id).1;
+    let square = dot(entries, entries);
+    let least = T::EPSILON * T::EPSILON * (T::EPSILON * T::EPSILON);
+    let inverse = if square > least && square * least < T::ONE {
+        T::ONE / math::sqrt(square)
+    } else {
+        // Scaled, a row of any units has a square.
+        let scale = scale_inverse::<T, N, M>(problem, w, id);
+        scale / math::sqrt(math::max(square_scaled(entries, scale), T::ONE))
+    };
+    put(&mut w.row_length_inverse, id, inverse);
+    inverse
 }

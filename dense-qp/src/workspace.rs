@@ -13,7 +13,7 @@ pub(crate) const POOL: usize = 8;
 /// So many of the most violated rows must be those of the last solve for a start to look like it.
 pub(crate) const ALIKE: usize = 3;
 
-/// Scratch of a solve: about 4N² + 25N + 2M scalars. `new` is const and all zero, so a
+/// Scratch of a solve: about 4N² + 26N + 3M scalars. `new` is const and all zero, so a
 /// `static` of it lives in `.bss`. It remembers the last active set for [`crate::solve_warm`].
 #[derive(Clone, Debug)]
 pub struct Workspace<T, const N: usize, const M: usize> {
@@ -33,6 +33,8 @@ pub struct Workspace<T, const N: usize, const M: usize> {
     pub(crate) bound_state: [i8; N],
     /// 1 / max |aᵢ| of the rows that needed it (1 for a zero row), else 0.
     pub(crate) row_scale_inverse: [T; M],
+    /// 1 / |aᵢ|₂ of the same, by which violations of rows are compared.
+    pub(crate) row_length_inverse: [T; M],
     /// Rows that the last look at all of them found most violated, worst first.
     pub(crate) pool: [(usize, i8); POOL],
     pub(crate) pool_len: usize,
@@ -66,6 +68,7 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
             row_state: [0; M],
             bound_state: [0; N],
             row_scale_inverse: [T::ZERO; M],
+            row_length_inverse: [T::ZERO; M],
             pool: [(0, 0); POOL],
             pool_len: 0,
             first: [(0, 0, T::ZERO); ALIKE],

@@ -3,10 +3,9 @@
 use so3::{Scalar, math};
 
 use super::violated::Look;
-use super::{Search, is_range, scale_inverse};
+use super::{Search, is_range, length_inverse, scale_inverse};
 use crate::Status;
-use crate::basis::Basis;
-use crate::kernels::{at, head_mut, max_abs, put};
+use crate::kernels::{at, max_abs, put};
 use crate::settings::row_tolerance;
 
 /// How the search for a point that satisfies all rows ended.
@@ -145,6 +144,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// in `vec_b`. Changes are told from round-off as forces, |rₖ| max|aₖ|: rows in other units have other multipliers. Most steps
     /// are full, and then it does not matter which changes are round-off.
     fn first_zero(&mut self, full: T) -> (T, Option<usize>) {
+        let mut others = self.w.lambda.iter().zip(&self.w.vec_b);
+        let stays = |(l, r): (&T, &T)| *r <= T::ZERO || full * *r <= *l;
+        if full < T::INFINITY && others.by_ref().take(self.w.basis.len).all(stays) {
+            return (T::INFINITY, None);
+        }
         let first = self.first_above(T::ZERO);
         if full <= first.0 {
             return first;
@@ -182,45 +186,44 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// Coordinates of a row in the basis.
     pub(super) fn prepare(&mut self, id: usize, side: i8) {
         let w = &mut *self.w;
-        w.basis.prepare(&w.factor);
-        // What is left of a row that depends on the equalities is round-off, not a row.
-        let least = if w.elimination.rank == 0 {
-            T::ZERO
-        } else {
-            row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id)
-        };
+        w.basis.prepare(&w.factor, &w.elimination);
         let (basis, d) = (&w.basis, &mut w.candidate.d);
         match self.p.rows.get(id) {
+            Some(row) if self.p.spans.is_none() => basis.coordinates(row, d),
             // Outside of its span nothing of a row is read.
-            Some(row) if w.elimination.rank == 0 && self.p.spans.is_none() => {
-                basis.coordinates(row, d);
-            }
-            Some(row) if w.elimination.has_basic() => {
-                w.elimination.reduce(row, &mut w.vec_a);
-                reduced_coordinates(basis, &w.vec_a, least, d);
-            }
             Some(_) => {
-                let (from, row) = self.p.entries(id);
                 w.vec_a.fill(T::ZERO);
-                for (k, a) in row.iter().enumerate() {
-                    if let Some(i) = w.elimination.free_index(from + k) {
-                        put(&mut w.vec_a, i, *a);
-                    }
-                }
-                reduced_coordinates(basis, &w.vec_a, least, d);
+                self.p.add_row(id, T::ONE, &mut w.vec_a);
+                basis.coordinates(&w.vec_a, d);
             }
-            None => {
-                w.elimination.reduce_unit(id - M, &mut w.vec_a);
-                reduced_coordinates(basis, &w.vec_a, least, d);
-            }
+            None => basis.coordinates_of_unit(id - M, d),
         }
         if side < 0 {
-            for d in head_mut(d, w.factor.dim) {
+            for d in d {
                 *d = -*d;
             }
         }
+        let square = w.basis.project(&mut w.candidate);
+        if w.elimination.rank > 0 && self.depends_on_equalities(id, square) {
+            self.w.candidate.d.fill(T::ZERO);
+            self.w.candidate.free = T::ZERO;
+        }
+    }
+
+    /// Whether what the equalities leave of a row is round-off, not a row; |d|² is `square`.
+    fn depends_on_equalities(&mut self, id: usize, square: T) -> bool {
         let w = &mut *self.w;
-        w.basis.project(&mut w.candidate);
+        // Whose coordinates are larger than such a row can have needs no closer look. False for NaN.
+        let longest = row_tolerance::<T>() / length_inverse::<T, N, M>(self.p, w, id);
+        if square > T::of(4.0) * w.basis.most() * longest * longest {
+            return false;
+        }
+        let least = row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, w, id);
+        w.vec_a.fill(T::ZERO);
+        self.p.add_row(id, T::ONE, &mut w.vec_a);
+        let row = w.vec_a;
+        w.elimination.reduce(&row, &mut w.vec_a);
+        max_abs(&w.vec_a) <= least
     }
 
     /// r (in `vec_b`) of the candidate.
@@ -236,10 +239,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn turn(&mut self) {
         let w = &mut *self.w;
         if w.candidate.free > T::ZERO {
-            let free = w.elimination.free_variables();
-            w.basis
-                .direction(w.basis.len, &w.candidate.d, free, &mut w.step);
-            w.elimination.complete(&mut w.step, &mut w.vec_a);
+            w.basis.direction(w.basis.len, &w.candidate.d, &mut w.step);
         } else {
             w.step.fill(T::ZERO);
         }
@@ -259,7 +259,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn enter(&mut self, id: usize, side: i8, lambda: T) {
         let w = &mut *self.w;
         let k = w.basis.len;
-        w.basis.append(&mut w.candidate, &w.elimination, &w.step);
+        w.basis.append(&mut w.candidate, &w.step);
         put(&mut w.id, k, id);
         put(&mut w.side, k, side);
         put(&mut w.lambda, k, lambda);
@@ -279,20 +279,5 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             put(&mut w.side, i - 1, side);
             put(&mut w.lambda, i - 1, lambda);
         }
-    }
-}
-
-/// d ← Jᵀa for a reduced row, or 0 where no entry of it is larger than `least`.
-#[inline]
-fn reduced_coordinates<T: Scalar, const N: usize>(
-    basis: &Basis<T, N>,
-    row: &[T; N],
-    least: T,
-    d: &mut [T; N],
-) {
-    if max_abs(row) > least {
-        basis.coordinates(row, d);
-    } else {
-        d.fill(T::ZERO);
     }
 }

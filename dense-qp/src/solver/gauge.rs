@@ -3,7 +3,7 @@
 use so3::{Scalar, math};
 
 use super::{EQUALITY, Search, scale_inverse, signed};
-use crate::kernels::{at, dot, dot_sizes, head, max_abs};
+use crate::kernels::{at, dot_sizes, dots, head, max_abs};
 use crate::residual::{norm, worse};
 
 /// Round-off of evaluating a gradient, in ε of its terms.
@@ -25,21 +25,18 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// gradient ← Hx + g + N_Wᵀλ; returns the size of its largest term.
     pub(super) fn evaluate_gradient(&mut self) -> T {
         let w = &mut *self.w;
-        let mut scale = T::ZERO;
-        let mut worth = T::ZERO;
-        for (((out, h), g), x) in w
-            .gradient
-            .iter_mut()
-            .zip(self.p.hessian)
-            .zip(self.p.gradient)
-            .zip(&w.x)
-        {
-            let hx = dot(h, &w.x);
-            let (share, push) = (math::abs(hx), math::abs(*g));
-            scale = worse(scale, worse(share, push));
+        dots(&mut w.gradient, self.p.hessian, &w.x, [0, N]);
+        let larger = |high: T, size: T| if size > high { size } else { high };
+        let (mut scale, mut worth, mut unsound) = (T::ZERO, T::ZERO, T::ZERO);
+        for ((out, g), x) in w.gradient.iter_mut().zip(self.p.gradient).zip(&w.x) {
+            let (share, push) = (math::abs(*out), math::abs(*g));
+            scale = larger(scale, larger(share, push));
             worth += math::abs(*x) * (share + push);
-            *out = hx + *g;
+            *out += *g;
+            // 0·v is 0 for a finite v and NaN otherwise.
+            unsound += *out * T::ZERO;
         }
+        scale += unsound;
         self.worth = worth;
         for k in 0..w.basis.len {
             let (id, f) = (at(&w.id, k), signed(at(&w.side, k), at(&w.lambda, k)));
@@ -113,8 +110,14 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     #[inline]
     pub(super) fn row_noise(&self, i: usize, limit: T, inverse: T) -> T {
         let noise = T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.x) * inverse;
+        math::min(noise, self.most_noise(limit, inverse))
+    }
+
+    /// The most that [`Search::row_noise`] can be.
+    #[inline]
+    pub(super) fn most_noise(&self, limit: T, inverse: T) -> T {
         let most = T::of(1000.0) * self.s.feasibility;
-        math::min(noise, most * math::max(T::ONE, math::abs(limit) * inverse))
+        most * math::max(T::ONE, math::abs(limit) * inverse)
     }
 
     fn is_drift_round_off(&mut self) -> bool {

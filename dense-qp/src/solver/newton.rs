@@ -16,9 +16,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             w.factor.solve_transposed(&mut w.vec_a);
             w.factor.weigh(&mut w.vec_a);
             w.factor.solve(&mut w.vec_a);
-            for (v, y) in w.elimination.free_variables().iter().zip(&w.vec_a) {
-                put(&mut w.step, *v, *y);
-            }
+            let free = w.elimination.free();
+            w.elimination.expand(&w.vec_a, free, &mut w.step);
             self.move_along_step();
         } else {
             if !known {
@@ -28,8 +27,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             for (l, change) in w.lambda.iter_mut().zip(&w.vec_b).take(w.basis.len) {
                 *l += *change;
             }
-            let free = w.elimination.free_variables();
-            w.basis.direction(0, &w.candidate.d, free, &mut w.step);
+            w.basis.direction(0, &w.candidate.d, &mut w.step);
             self.move_along_step();
             self.drop_negative();
         }
@@ -84,10 +82,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         false
     }
 
-    /// x ← x − step, whose free part is set.
+    /// x ← x − step.
     fn move_along_step(&mut self) {
         let w = &mut *self.w;
-        w.elimination.complete(&mut w.step, &mut w.vec_a);
         crate::kernels::sub_scaled(&mut w.x, T::ONE, &w.step);
     }
 
@@ -124,10 +121,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
-    /// Coordinates of `gradient` in the basis, into the candidate.
-    #[inline(always)]
+    /// Coordinates of `gradient` in the basis, into the candidate. What equalities hold of it is taken out first: J, turned again and
+    /// again, does not cancel that to the last digit. `step` is scratch.
     pub(super) fn gradient_coordinates(&mut self) {
         self.elimination.reduce(&self.gradient, &mut self.vec_a);
-        self.basis.coordinates(&self.vec_a, &mut self.candidate.d);
+        self.elimination.scatter(&self.vec_a, &mut self.step);
+        self.basis.coordinates(&self.step, &mut self.candidate.d);
     }
 }

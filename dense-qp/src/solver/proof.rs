@@ -130,11 +130,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn is_concave(&mut self, k: usize) -> bool {
         let w = &mut *self.w;
         w.factor.concave(k, &mut w.vec_b);
-        w.step.fill(T::ZERO);
-        for (v, d) in w.elimination.free_variables().iter().zip(&w.vec_b) {
-            put(&mut w.step, *v, *d);
-        }
-        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        let free = w.elimination.free();
+        w.elimination.expand(&w.vec_b, free, &mut w.step);
         let (mut curvature, mut terms) = (T::ZERO, T::ZERO);
         for (d, h) in w.step.iter().zip(self.p.hessian) {
             curvature += *d * dot(h, &w.step);
@@ -244,7 +241,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     fn purify(&mut self) {
         let w = &mut *self.w;
         w.elimination.complete(&mut w.previous, &mut w.vec_a);
-        w.basis.prepare(&w.factor);
+        w.basis.prepare(&w.factor, &w.elimination);
         for (out, h) in w.gradient.iter_mut().zip(self.p.hessian) {
             *out = dot(h, &w.previous);
         }
@@ -256,9 +253,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
         self.aim();
         let w = &mut *self.w;
-        let free = w.elimination.free_variables();
-        w.basis.direction(0, &w.candidate.d, free, &mut w.step);
-        w.elimination.complete(&mut w.step, &mut w.vec_a);
+        w.basis.direction(0, &w.candidate.d, &mut w.step);
         sub_scaled(&mut w.previous, T::ONE, &w.step);
         let length = max_abs(&w.previous);
         scale_direction(&mut w.previous, length);
