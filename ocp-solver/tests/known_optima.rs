@@ -2,6 +2,7 @@
 
 use crate::common::{BrysonDenham, LeastTime};
 use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicU32, Ordering};
 use ocp_solver::{
     Barrier, Derivatives, Dims, Error, Evaluated, Problem, Settings, Solver, Stage, Status, Values,
     blocking_rows, derivative_errors,
@@ -201,7 +202,7 @@ fn the_gain_of_the_duration_is_its_derivative_at_the_start() {
 /// The metre problem, whose dynamics turn to NaN after a number of evaluations.
 struct Breaking {
     inner: LeastTime,
-    left: core::cell::Cell<u32>,
+    left: AtomicU32,
 }
 
 impl Problem<f64, 8, 4, 4> for Breaking {
@@ -242,8 +243,9 @@ impl Problem<f64, 8, 4, 4> for Breaking {
         values: &mut Values<f64, 8, 4>,
     ) {
         self.inner.evaluate(k, x, u, next, values);
-        self.left.set(self.left.get().saturating_sub(1));
-        if self.left.get() == 0 {
+        let left = self.left.load(Ordering::Relaxed).saturating_sub(1);
+        self.left.store(left, Ordering::Relaxed);
+        if left == 0 {
             values.gap[0] = f64::NAN;
             values.cost = f64::NAN;
         }
@@ -271,7 +273,7 @@ fn numbers_that_break_midway_end_the_solve_with_the_best_iterate() {
         };
         let problem = Breaking {
             inner,
-            left: core::cell::Cell::new(evaluations),
+            left: AtomicU32::new(evaluations),
         };
         let mut stages = least_time(20);
         let solution = Solver::new(Settings::new())

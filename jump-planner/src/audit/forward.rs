@@ -138,6 +138,7 @@ impl<'a> Forward<'a> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use rbd_core::{Motion, Transform, difference};
 
