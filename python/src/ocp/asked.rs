@@ -1,12 +1,12 @@
 //! A user's problem: what it says at a batch of points, and its derivatives by differences.
 
-use core::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 
 use numpy::PyArray1;
 use numpy::PyArrayMethods;
 use ocp_solver::{Derivatives, Dims, Evaluated, Problem, Values};
 use pyo3::types::{PyAnyMethods, PyTuple};
-use pyo3::{Bound, PyAny, PyErr, PyResult};
+use pyo3::{Bound, Py, PyAny, PyErr, PyResult, Python};
 
 use super::differences::{Told, derive};
 use crate::arrays::{Numbers, matrix, numbers};
@@ -16,9 +16,9 @@ use crate::errors::bad;
 pub(super) type Bounds = [Vec<f64>; 2];
 
 /// The user's problem.
-pub(super) struct Asked<'py> {
+pub(super) struct Asked {
     /// evaluate(k, x, u) for a batch of points.
-    pub(super) evaluate: Bound<'py, PyAny>,
+    pub(super) evaluate: Py<PyAny>,
     /// Numbers of a state and of a control.
     pub(super) sizes: [usize; 2],
     /// Of every node.
@@ -26,10 +26,10 @@ pub(super) struct Asked<'py> {
     /// Which coordinates of the first state may be changed.
     pub(super) free: Vec<bool>,
     /// The first error of the user's function: what comes after it does not count.
-    pub(super) error: RefCell<Option<PyErr>>,
+    pub(super) error: Mutex<Option<PyErr>>,
 }
 
-impl Asked<'_> {
+impl Asked {
     /// Whether node `k` is the last.
     const fn is_last(&self, k: usize) -> bool {
         k + 1 >= self.bounds.len()
@@ -45,9 +45,9 @@ impl Asked<'_> {
     }
 
     /// What the user's function says at points: states, then controls, one after the other.
-    fn ask(&self, k: usize, points: &[Vec<f64>]) -> PyResult<Vec<Told>> {
+    fn ask(&self, py: Python<'_>, k: usize, points: &[Vec<f64>]) -> PyResult<Vec<Told>> {
         let (nx, nu) = (self.sizes[0], self.controls(k));
-        let (count, m, py) = (points.len(), self.rows(k), self.evaluate.py());
+        let (count, m) = (points.len(), self.rows(k));
         let states = points.iter().flat_map(|point| &point[..nx]);
         let x = PyArray1::from_iter(py, states.copied()).reshape([count, nx])?;
         // At the last node there are none: the user's function sees zeros, so that it need not know.
@@ -56,7 +56,7 @@ impl Asked<'_> {
             .iter()
             .flat_map(|point| point[nx..].iter().chain(&none));
         let u = PyArray1::from_iter(py, controls.copied()).reshape([count, self.sizes[1]])?;
-        let told = self.evaluate.call1((k, x, u))?;
+        let told = self.evaluate.bind(py).call1((k, x, u))?;
         let told = told.cast_into::<PyTuple>().map_err(|_| {
             bad(format!(
                 "evaluate({k}, x, u): must return (cost, next, rows)"
@@ -91,11 +91,18 @@ impl Asked<'_> {
 
     /// As [`Asked::ask`]; an error is kept, and there is no answer then.
     fn answer(&self, k: usize, points: &[Vec<f64>]) -> Option<Vec<Told>> {
-        let told = self.ask(k, points);
+        let told = Python::attach(|py| self.ask(py, k, points));
         told.map_err(|error| {
-            self.error.borrow_mut().get_or_insert(error);
+            let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert(error);
         })
         .ok()
+    }
+
+    /// Takes the first error of the user's function.
+    pub(super) fn take_error(&self) -> Option<PyErr> {
+        let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
+        first.take()
     }
 
     /// State and control as one point, without what was padded.
@@ -107,7 +114,7 @@ impl Asked<'_> {
 }
 
 /// Coordinates of the state that are not there stay where they are, and cost nothing.
-impl<const NX: usize, const NU: usize, const NI: usize> Problem<f64, NX, NU, NI> for Asked<'_> {
+impl<const NX: usize, const NU: usize, const NI: usize> Problem<f64, NX, NU, NI> for Asked {
     type State = [f64; NX];
 
     fn intervals(&self) -> usize {

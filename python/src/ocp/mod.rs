@@ -3,8 +3,8 @@
 mod asked;
 mod differences;
 
-use core::cell::RefCell;
 use core::ops::ControlFlow;
+use std::sync::Mutex;
 
 use numpy::PyUntypedArrayMethods;
 use ocp_solver::{Settings, Solution, Solver, Stage};
@@ -56,11 +56,11 @@ pub(crate) fn solve_ocp(
     }
     let bounds = (0..nodes).map(|k| read_bounds(bounds.as_ref(), k));
     let asked = Asked {
-        evaluate,
+        evaluate: evaluate.unbind(),
         sizes: guess.sizes,
         bounds: bounds.collect::<PyResult<_>>()?,
         free: (0..nx).map(|i| free.contains(&i)).collect(),
-        error: RefCell::new(None),
+        error: Mutex::new(None),
     };
     let rows = asked.bounds.iter().map(|[lower, _]| lower.len());
     let rows = rows.max().unwrap_or(0);
@@ -130,7 +130,7 @@ impl Guess {
 
 /// Solves among the states, controls and rows of a larger problem.
 fn solve<const NX: usize, const NU: usize, const NI: usize>(
-    asked: &Asked<'_>,
+    asked: &Asked,
     guess: &Guess,
     settings: Settings<f64>,
     mut observe: impl FnMut(usize, f64, f64) -> PyResult<()>,
@@ -149,7 +149,7 @@ fn solve<const NX: usize, const NU: usize, const NI: usize>(
     }
     let mut stopped: Option<PyErr> = None;
     let outcome = Solver::new(settings).solve(asked, &mut stages, |p| {
-        let told = match asked.error.borrow_mut().take() {
+        let told = match asked.take_error() {
             Some(error) => Err(error),
             None => observe(p.iteration, p.cost, p.residual.primal),
         };
@@ -161,7 +161,7 @@ fn solve<const NX: usize, const NU: usize, const NI: usize>(
             }
         }
     });
-    if let Some(error) = stopped.or_else(|| asked.error.borrow_mut().take()) {
+    if let Some(error) = stopped.or_else(|| asked.take_error()) {
         return Err(error);
     }
     let first = |x: &[f64], count: usize| x[..count].to_vec();
