@@ -284,8 +284,8 @@ impl<'a> Setup<'a> {
 /// The edge of the task's box, moved so that feet in the air keep away from it, but neither to the feet that stand nor to where they land.
 ///
 /// Off a box, landing feet are taken to be below their hips, but stand outside. In `a1/lateral-down` the smoothed ground is 3.7 cm above the
-/// floor there, so that no plan meets the goal: feet go over it by the whole of [`GOAL_TOLERANCE`], and farther from the box. From where feet
-/// do land there are plans within millimetres of the goal, in fewer iterations (14, not 19), but 12 of 40 labs are on target and not 28.
+/// floor there, so that no plan meets the goal: feet go over it by the whole of [`GOAL_TOLERANCE`], and farther from the box, which is what
+/// carries more jumps over its edge in the lab (`ARCHITECTURE.md`, 2026-11-26).
 fn cautious(task: &Task) -> Option<Edge<f64>> {
     let mut edge = task.problem.edge?;
     let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;

@@ -30,6 +30,13 @@ fn displacement_rate(u: &Velocity, v: &Velocity) -> Velocity {
     }
 }
 
+/// The largest entry of a velocity or displacement.
+pub(super) fn largest(x: &Velocity) -> f64 {
+    let parts = x.base.to_array();
+    let parts = parts.iter().chain(&x.joints);
+    parts.fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
 /// Scratch of the integration.
 pub(crate) struct Forward<'a> {
     robot: &'a Quadruped,
@@ -76,12 +83,7 @@ impl<'a> Forward<'a> {
         *q = integrate(&from, &((v1 + (v2 + v3) * 2.0 + v4) * (h / 6.0)));
         *v = speed + (a1 + (a2 + a3) * 2.0 + a4) * (h / 6.0);
         // Each stage in the middle is of the first order there, their mean of the second.
-        let between = forces2_w.iter().zip(&forces3_w).map(|(a, b)| (a + b) * 0.5);
-        let mut middle_w = [Vector3::zeros(); LEGS];
-        middle_w
-            .iter_mut()
-            .zip(between)
-            .for_each(|(f, mean)| *f = mean);
+        let middle_w = core::array::from_fn(|leg| (forces2_w[leg] + forces3_w[leg]) * 0.5);
         Passed {
             middle: (integrate(&from, &((u2 + u3) * 0.5)), (w2 + w3) * 0.5),
             forces_w: [start_w, middle_w, end_w],
@@ -168,12 +170,7 @@ mod tests {
     }
 
     fn off((q, v): &(State, Velocity), (to, to_v): &(State, Velocity)) -> f64 {
-        let (moved, faster) = (difference(q, to), *v - *to_v);
-        [moved, faster].iter().fold(0.0, |most: f64, d| {
-            let parts = d.base.to_array();
-            let parts = parts.iter().chain(&d.joints);
-            parts.fold(most, |most, x| most.max(x.abs()))
-        })
+        largest(&difference(q, to)).max(largest(&(*v - *to_v)))
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The robot between two nodes of a plan, moved from the first of them by its forward dynamics.
 
-use super::forward::{Forward, Passed, Velocity};
+use super::forward::{Forward, Passed, Velocity, largest};
 use super::limits::Limits;
 use super::{STEP, state};
 use crate::robot::{JOINTS, LEGS, State};
@@ -101,11 +101,6 @@ impl<'a> Interval<'a> {
             }
         }
         let (end, end_v) = state(self.to);
-        let largest = |x: &Velocity| {
-            let parts = x.base.to_array();
-            let parts = parts.iter().chain(&x.joints);
-            parts.fold(0.0, |most: f64, x| most.max(x.abs()))
-        };
         found.defect = [largest(&difference(&end, &q)), largest(&(v - end_v))];
         found
     }

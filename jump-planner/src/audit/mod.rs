@@ -27,6 +27,8 @@ pub use values::check as check_values;
 
 /// Step of the integration, s.
 const STEP: f64 = 5e-4;
+/// More than rounding makes of a time that is stored in single precision, and less than any interval, s.
+const ROUNDING: f64 = 5e-5;
 /// Largest orientation error after the flight, rad.
 const ORIENTATION: f64 = 2.0 * core::f64::consts::PI / 180.0;
 /// Largest position error after the flight, m.
@@ -113,8 +115,7 @@ impl Audit {
         let start = nodes.first().map(|node| state(node).0).ok_or("no nodes")?;
         let limits = Limits::new(robot, plan.header(), &start);
         let intervals = Interval::all(plan, &nodes)?;
-        // Half a step earlier: times are stored in single precision.
-        let in_flight = |interval: &&Interval<'_>| interval.time() >= takeoff - 0.5 * STEP;
+        let in_flight = |interval: &&Interval<'_>| interval.time() >= takeoff - ROUNDING;
         // No interval knows of another, so that as many are watched at once as the machine has cores.
         let (landed, watched) = rayon::join(
             || flown(robot, intervals.iter().filter(in_flight)),
