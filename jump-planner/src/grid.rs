@@ -197,7 +197,7 @@ impl<'a> Grid<'a> {
             match timing {
                 Timing::Given => progress.attempt == 0 && pace.keeps_up(violation, FIRST_PATIENCE),
                 // The violation falls late where durations have to move first.
-                Timing::Free => progress.iteration <= FIRST_PATIENCE,
+                Timing::Free => true,
             }
         })
     }

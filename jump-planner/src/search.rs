@@ -1,8 +1,8 @@
 //! The search for a motion of the whole body.
 //!
 //! First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long
-//! intervals, which cost a quarter: with all the torque there is and then with less, in the given durations and then in others, for what a
-//! rigid body can do in a time, legs with motors may not. What is found there is the guess on the short ones.
+//! intervals, which cost a quarter: with all the torque there is and then with less, in other durations and then in the given ones, for what
+//! a rigid body can do in a time, legs with motors may not. What is found there is the guess on intervals half as long, and so on.
 //!
 //! A first try that does not arrive takes seconds. So where it takes longer than those that do, the search on long intervals begins beside
 //! it, on a core of its own if the machine has one. What comes out is the same, since the first try is waited for, and sooner.
@@ -18,6 +18,8 @@ use std::thread::{self, Scope, ScopedJoinHandle};
 
 /// Lengths of intervals on which a motion is searched for that the first try did not find.
 const LONG: usize = 4;
+/// Parts of an interval on the way back to short ones.
+const HALVES: usize = 2;
 /// Iterations after which the search begins beside the first try: easy jumps have almost arrived by then.
 const SLOW: usize = 20;
 /// Stack of the search beside it, B: a solver's scratch lies there, and in a build without optimisation many times.
@@ -124,18 +126,23 @@ impl<'scope, 'a: 'scope> Beside<'scope, 'a> {
 }
 
 /// The search on long intervals; a motion that it finds is made one on short ones.
+///
+/// First in durations of its own: what the first try did not find in the given ones, long intervals rarely have in them either.
 fn on_long_intervals<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
     observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Found<'a> {
-    let (given, plan) = on_long_intervals_in(task, srb, timing, observer)?;
-    if is_decided(&plan) || timing == Timing::Free || task.has_given_durations() {
-        return Ok((given, plan));
+    if timing == Timing::Free || task.has_given_durations() {
+        return on_long_intervals_in(task, srb, timing, observer);
     }
     let (free, plan) = on_long_intervals_in(task, srb, Timing::Free, observer)?;
-    Ok((free.after(given), plan))
+    if is_decided(&plan) {
+        return Ok((free, plan));
+    }
+    let (given, plan) = on_long_intervals_in(task, srb, timing, observer)?;
+    Ok((given.after(free), plan))
 }
 
 /// The same with durations from one place.
@@ -147,8 +154,11 @@ fn on_long_intervals_in<'a>(
 ) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
     let mut plan = grid.with_most_torque(observer)?;
-    if plan.outcome.status == Status::Solved {
-        grid = grid.split(LONG)?;
+    let mut left = LONG;
+    // In halves: at once in as many parts as there will be, a motion is too far from the next one for half of those jumps.
+    while plan.outcome.status == Status::Solved && left > 1 {
+        left /= HALVES;
+        grid = grid.split(HALVES)?;
         plan = grid.resume(observer)?;
     }
     Ok((grid, plan))

@@ -30,6 +30,8 @@ pub const POSED: f64 = 0.05;
 const EDGE_MARGIN: f64 = 0.12;
 /// At most this share of the way from the feet that stand to a box to jump onto is taken from them: with less, feet meet its edge in simulation.
 const ONTO_SHARE: f64 = 0.5;
+/// The same where a plan is made again because a foot met it.
+const ONTO_MOST: f64 = 0.8;
 /// The way that is left to them, in widths of the smoothed edge at least: the ground that they stand on is then a 400th of the box's height too
 /// high for them. With much more they cannot lift off, since no foot is over it an instant later.
 const ONTO_WIDTHS: f64 = 3.0;
@@ -227,7 +229,7 @@ impl<'a> Setup<'a> {
                 } else {
                     0.0
                 },
-            edge: cautious(task),
+            edge: cautious(task, self.rise(drawn)),
             phases: &self.phases,
             reference: &self.reference,
             start: pose(&task.start.base, &task.start.joints),
@@ -283,10 +285,12 @@ impl<'a> Setup<'a> {
 
 /// The edge of the task's box, moved so that feet in the air keep away from it, but neither to the feet that stand nor to where they land.
 ///
+/// A box to jump onto is nearer by `rise` as well: what the audit finds in the ground is then often a foot in its edge, which no height keeps out.
+///
 /// Off a box, landing feet are taken to be below their hips, but stand outside. In `a1/lateral-down` the smoothed ground is 3.7 cm above the
 /// floor there, so that no plan meets the goal: feet go over it by the whole of [`GOAL_TOLERANCE`], and farther from the box, which is what
 /// carries more jumps over its edge in the lab (`ARCHITECTURE.md`, 2026-11-26).
-fn cautious(task: &Task) -> Option<Edge<f64>> {
+fn cautious(task: &Task, rise: f64) -> Option<Edge<f64>> {
     let mut edge = task.problem.edge?;
     let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
     let turn = heading_matrix(task.heading);
@@ -299,7 +303,8 @@ fn cautious(task: &Task) -> Option<Edge<f64>> {
     let land = landed.into_iter().fold(f64::INFINITY, f64::min);
     if edge.drop < 0.0 {
         let way = -stand.min(0.0);
-        let taken = EDGE_MARGIN.min(ONTO_SHARE * way);
+        let taken = EDGE_MARGIN.min(ONTO_SHARE * way) + rise;
+        let taken = taken.min(ONTO_MOST * way);
         edge.distance -= taken;
         // Feet at the edge itself are no jump, but a width is positive.
         edge.width = edge.width.min(((way - taken) / ONTO_WIDTHS).max(1e-3));
@@ -365,7 +370,7 @@ mod tests {
         let mut task = Task::load("a1/lateral-down").unwrap();
         task.goal.y = aside;
         task.problem.edge.as_mut().unwrap().drop = drop;
-        cautious(&task).unwrap().distance - task.problem.edge.unwrap().distance
+        cautious(&task, 0.0).unwrap().distance - task.problem.edge.unwrap().distance
     }
 
     #[test]
@@ -393,7 +398,7 @@ mod tests {
             let edge = task.problem.edge.as_mut().unwrap();
             edge.distance = front + beyond;
             let height = -edge.drop;
-            let cautious = cautious(&task).unwrap();
+            let cautious = cautious(&task, 0.0).unwrap();
             assert!(cautious.distance > front && cautious.distance < front + beyond);
             let under = feet.map(|foot| cautious.ground(&foot).height / height);
             assert!(under.iter().all(|share| *share < 1.0 / 350.0), "{under:?}");

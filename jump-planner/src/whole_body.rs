@@ -108,7 +108,7 @@ pub struct Audited {
 /// Plans the whole body and audits the plan.
 ///
 /// First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long ones, with all
-/// the torque there is and then with less, in the given durations and then in others; beside a slow first try, if there is a second core.
+/// the torque there is and then with less, in other durations and then in the given ones; beside a slow first try, if there is a second core.
 ///
 /// Where the audit finds limits exceeded between nodes, they are drawn in by that much and the plan is made again from where it is
 /// ([`Tightening`]). Where that is no remedy, or the flight is not true to the dynamics, the intervals were too long for this robot: they are
