@@ -89,7 +89,8 @@ impl<T: Scalar> Solver<T> {
             &run.free,
             barrier.rank_tolerance,
         )?;
-        Some(substitute(problem, stages, start, barrier, shift, pass))
+        let with = (barrier, shift);
+        Some(substitute(problem, stages, start, with, pass, workers))
     }
 
     /// Moves the trial point along the step until it is good enough.

@@ -178,15 +178,14 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
 
 /// Forward substitution from the step of the first state: states, controls, slacks, bound multipliers, and
 /// the full-step costates and multipliers of equalities.
-///
 #[inline(never)]
 pub(crate) fn substitute<T, P, K, const NX: usize, const NU: usize, const NI: usize>(
     problem: &P,
     stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
     start: [T; NX],
-    barrier: RowBarrier<T>,
-    shift: T,
+    (barrier, shift): (RowBarrier<T>, T),
     pass: Pass,
+    workers: usize,
 ) -> Direction<T>
 where
     T: Scalar,
@@ -204,29 +203,38 @@ where
         first.node.step.state = start;
         first.node.step.costate = first.node.riccati.costate(&start);
     }
-    let mut scratch = Derivatives::new();
+    #[cfg(feature = "std")]
+    if workers > 1
+        && let Some(direction) = crate::threads::substitute(stages, barrier, direction)
+    {
+        return direction;
+    }
+    let _ = workers;
+    let (mut scratch, mut slope) = (Derivatives::new(), T::ZERO);
     let mut rest = stages;
     let mut k = 0usize;
     while let Some((stage, tail)) = rest.split_first_mut() {
         let seen = tail.first().map(|next| At::Iterate.of(next));
         let (node, d) = stage.linearise(problem, k, seen, &mut scratch, pass);
-        let next = tail.first_mut().map(|next| &mut next.node);
-        node.substitute(d, next, barrier, &mut direction);
+        let mut next = tail.first_mut().map(|next| &mut next.node);
+        node.propagate(d, next.as_deref_mut(), &mut slope);
+        node.complete(d, next, barrier, &mut direction);
         rest = tail;
         k = k.wrapping_add(1);
     }
+    direction.slope += slope;
     direction
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, NU, NI> {
-    /// One step of the forward substitution.
+    /// One step of the forward substitution: the controls, the cost's part of the slope, and the state of the next node with its costate,
+    /// which lacks that node's rows until [`Node::complete`].
     #[inline(always)]
-    fn substitute(
+    pub(crate) fn propagate(
         &mut self,
         d: &impl Linearised<T, NX, NU>,
         next: Option<&mut Self>,
-        barrier: RowBarrier<T>,
-        direction: &mut Direction<T>,
+        slope: &mut T,
     ) {
         let step = self.step.state;
         let n = self.dims.controls.min(NU);
@@ -236,25 +244,33 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         for (control, (gain, feedforward)) in self.step.control.iter_mut().zip(law) {
             *control = feedforward[0] + dot(gain, &step);
         }
-        direction.slope += dot(d.cost_x(), &step) + dot(d.cost_u(), &self.step.control);
-        self.step_rows(d, barrier, direction);
+        *slope += dot(d.cost_x(), &step) + dot(d.cost_u(), &self.step.control);
+        if let Some(next) = next {
+            next.step.state = self.values.gap;
+            d.push_forward(&step, &self.step.control, &mut next.step.state);
+            next.step.costate = next.riccati.costate(&next.step.state);
+        }
+    }
 
-        // The costate of this node lacks its rows until here.
+    /// What follows from the steps of a node's and the next one's state and from its controls: slacks, multipliers, what rows add to its costate.
+    #[inline(always)]
+    pub(crate) fn complete(
+        &mut self,
+        d: &impl Linearised<T, NX, NU>,
+        next: Option<&mut Self>,
+        barrier: RowBarrier<T>,
+        direction: &mut Direction<T>,
+    ) {
+        self.step_rows(d, barrier, direction);
         let carried = &self.riccati.carried;
         let own_rows = carried.rows.iter().zip(&carried.multiplier);
         for (row, y) in own_rows.take(carried.count) {
             add_scaled(&mut self.step.costate, *y, row);
         }
-        let mut costate = [T::ZERO; NX];
-        let mut carried = None;
-        if let Some(next) = next {
-            let mut step_next = self.values.gap;
-            d.push_forward(&step, &self.step.control, &mut step_next);
-            next.step.state = step_next;
-            costate = next.riccati.costate(&step_next);
-            next.step.costate = costate;
-            carried = Some(&mut next.riccati.carried);
-        }
+        let costate = next
+            .as_ref()
+            .map_or([T::ZERO; NX], |next| next.step.costate);
+        let carried = next.map(|next| &mut next.riccati.carried);
         if self.has_equalities(carried.as_deref()) {
             self.recover_multipliers(d, &costate, carried, direction.shift, barrier.mu);
         }

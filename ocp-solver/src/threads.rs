@@ -5,6 +5,7 @@
 
 use crate::keep::Keep;
 use crate::project::{OfControls, Work};
+use crate::riccati::Direction;
 use crate::rows::RowBarrier;
 use crate::stage::Stage;
 use crate::sweep::{At, Next, part};
@@ -128,5 +129,59 @@ where
             next = Some(&node.riccati);
         }
         Some(true)
+    })
+}
+
+/// The forward substitution ([`crate::riccati`]) beside a thread that does what no later node waits for; nothing as in [`factorise`].
+pub(crate) fn substitute<T: Scalar, X, K, const NX: usize, const NU: usize, const NI: usize>(
+    stages: &mut [Stage<T, X, NX, NU, NI, K>],
+    barrier: RowBarrier<T>,
+    direction: Direction<T>,
+) -> Option<Direction<T>>
+where
+    X: Send,
+    K: Keep<T, NX, NU, NI>,
+{
+    stages.first()?.kept.kept()?;
+    let (ready, propagated) = channel::<&mut Stage<T, X, NX, NU, NI, K>>();
+    // A node is completed once the next one, to which it hands multipliers, is not needed any more either.
+    let complete = move || {
+        let mut direction = direction;
+        let mut complete =
+            |stage: &mut Stage<T, X, NX, NU, NI, K>,
+             next: Option<&mut Stage<T, X, NX, NU, NI, K>>| {
+                let Stage { node, kept, .. } = stage;
+                let next = next.map(|next| &mut next.node);
+                node.complete(kept.kept()?, next, barrier, &mut direction);
+                Some(())
+            };
+        let mut stage = propagated.recv().ok()?;
+        for next in propagated {
+            complete(stage, Some(&mut *next))?;
+            stage = next;
+        }
+        complete(stage, None)?;
+        Some(direction)
+    };
+    scope(|scope| {
+        let thread = Builder::new().stack_size(STACK);
+        let completed = thread.spawn_scoped(scope, complete).ok()?;
+        let (mut slope, mut rest) = (T::ZERO, stages);
+        while let Some((stage, tail)) = rest.split_first_mut() {
+            let Stage { node, kept, .. } = &mut *stage;
+            let next = tail.first_mut().map(|next| &mut next.node);
+            node.propagate(kept.kept()?, next, &mut slope);
+            // Without a receiver the thread has panicked, and so does this one below.
+            let _ = ready.send(stage);
+            rest = tail;
+        }
+        drop(ready);
+        match completed.join() {
+            Ok(found) => found.map(|mut direction| {
+                direction.slope += slope;
+                direction
+            }),
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
     })
 }
