@@ -18,6 +18,11 @@ pub(crate) struct Point<T> {
     pub(crate) phi: T,
 }
 
+/// Growth of the violation beyond which a second-order correction is not worth its factorisation, where the violation is large.
+const BENT: f64 = 3.0;
+/// A large violation, in those at the start.
+const LARGE: f64 = 0.1;
+
 /// Earlier iterates that a step must not fall back to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filter<T> {
@@ -28,6 +33,8 @@ pub(crate) struct Filter<T> {
     /// Violation below which a step that promises descent must descend, and the largest allowed.
     small: T,
     largest: T,
+    /// Violation from which on one that grew is not the mere bend of a step.
+    large: T,
 }
 
 impl<T: Scalar> Filter<T> {
@@ -44,6 +51,7 @@ impl<T: Scalar> Filter<T> {
             mu: T::ZERO,
             small: T::of(1e-4) * scale,
             largest: T::of(1e4) * scale,
+            large: T::of(LARGE) * scale,
         }
     }
 
@@ -78,6 +86,12 @@ impl<T: Scalar> Filter<T> {
                 to.theta <= (T::ONE - share) * from.theta
                     || to.phi <= from.phi - share * from.theta + rounding
             }
+    }
+
+    /// Whether a whole step from `from` to `to`, which is refused, may only lack a second-order correction. Far from the rows steps
+    /// miss by more than their curvature, and a correction is refused as well.
+    pub(crate) fn may_be_bent(&self, from: Point<T>, to: Point<T>) -> bool {
+        to.theta <= self.large || to.theta <= T::of(BENT) * from.theta
     }
 
     /// Remembers where an accepted step left from, unless it was taken for its descent.
@@ -164,6 +178,15 @@ mod tests {
         assert!(filter.accepts(at(3.0, 7.0), at(0.9, 6.0), 1.0, 1.0));
         filter.turn_to(0.01);
         assert!(filter.accepts(at(3.0, 7.0), at(1.5, 6.0), 1.0, 1.0));
+    }
+
+    #[test]
+    fn a_violation_that_grows_far_from_the_rows_is_no_bend() {
+        let filter = Filter::new(100.0);
+        let bent = |from, to| filter.may_be_bent(at(from, 0.0), at(to, 0.0));
+        assert!(bent(20.0, 60.0) && !bent(20.0, 60.1));
+        // Near the rows a whole step may make much of a little.
+        assert!(bent(1e-9, 10.0) && !bent(1e-9, 10.1));
     }
 
     #[test]

@@ -163,7 +163,8 @@ impl<T: Scalar> Solver<T> {
                 run.filter.remember(here, step.primal, step.slope);
                 return Some((trial, step));
             }
-            if halvings == 0 && trial.is_finite() && trial.sum >= from.sum {
+            let worse = trial.is_finite() && trial.sum >= from.sum;
+            if halvings == 0 && worse && run.filter.may_be_bent(here, there) {
                 iterate::correct(problem, stages, &step, workers);
                 if let Some(mut bent) =
                     self.direction(problem, stages, run, step.shift, Pass::Corrected)
