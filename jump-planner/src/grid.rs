@@ -395,29 +395,3 @@ fn finish<S: Copy, const X: usize>(
         phases: problem.phases.to_vec(),
     })
 }
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::*;
-
-    #[test]
-    fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
-        let task = Task::load("a1/lateral").unwrap();
-        let go = |_: &Progress<f64>| ControlFlow::Continue(());
-        let srb = task.attempt(&Settings::new(), go).unwrap();
-        let mut grid = Grid::new(&task, &srb, Timing::Given, 4.0).unwrap();
-        let mut solves = 0;
-        let plan = grid.with_most_torque(&mut |progress| {
-            solves += usize::from(progress.iteration == 1);
-            if solves < 2 {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        });
-        assert_eq!(plan.unwrap().outcome.status, Status::Cancelled);
-        let ended: Vec<_> = grid.path.iter().map(|solve| solve.status).collect();
-        assert_eq!(ended, [Status::Solved, Status::Cancelled]);
-    }
-}

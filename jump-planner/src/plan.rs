@@ -199,32 +199,3 @@ impl End {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::*;
-
-    #[test]
-    fn a_task_near_another_is_planned_in_fewer_iterations_and_to_the_same_cost() {
-        let go = |_, _: Option<&Progress<f64>>| ControlFlow::Continue(());
-        let options = Options::default();
-        let task = Task::load("a1/lateral").unwrap();
-        let kept = plan(&task, &options, go).unwrap().kept.unwrap();
-        let mut moved = task.clone();
-        moved.goal.x += 0.1;
-        moved.problem.goal_w.x += 0.1;
-        let afar = plan(&moved, &options, go).unwrap();
-        let near = replan(&moved, &kept, &options, go).unwrap();
-        assert!(near.answer.is_none() && near.audit.unwrap().passes());
-        assert_eq!(near.path.len(), 1);
-        let cost = |out: &Option<WholeBodyPlan>| out.as_ref().unwrap().judged.cost;
-        let (one, other) = (cost(&near.whole_body), cost(&afar.whole_body));
-        assert!((one / other - 1.0).abs() < 1e-4, "{one} {other}");
-        assert!(near.path[0].iterations < afar.path[0].iterations);
-        let body = |out: Option<SrbPlan>| out.unwrap().iterations;
-        assert!(2 * body(near.srb) < body(afar.srb));
-        // What has other phases is planned as if there were nothing.
-        assert!(!kept.is_of_phases(&Task::load("a1/diagonal").unwrap()));
-    }
-}
