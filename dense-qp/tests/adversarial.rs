@@ -186,17 +186,17 @@ fn margins() {
 #[test]
 fn nearly_dependent_rows() {
     let tally = Tally::default();
-    each::<6, 9>(400, 7, |mut r| {
-        let mut w = Workspace::<f64, 6, 9>::new();
-        let mut q = Qp::<f64, 6, 9>::zero();
-        q.set_hessian(&mut r, 6, 0.1);
+    each::<4, 6>(400, 7, |mut r| {
+        let mut w = Workspace::<f64, 4, 6>::new();
+        let mut q = Qp::<f64, 4, 6>::zero();
+        q.set_hessian(&mut r, 4, 0.1);
         let equalities = r.below(3);
         q.set_rows(&mut r, equalities, false);
-        for i in 1..9 {
+        for i in 1..6 {
             if r.chance(0.6) {
                 let angle = 10f64.powf(-4.0 - 10.0 * r.unit());
                 let from = r.below(i);
-                for j in 0..6 {
+                for j in 0..4 {
                     q.a[i][j] = q.a[from][j] + angle * r.sym();
                 }
                 if q.u[i] == q.l[i] && r.chance(0.5) {
