@@ -1,7 +1,7 @@
 //! Writes families of made-up, controller-like programs to files, so that this crate (the example `recorded`) and its peers
 //! (`tests/peers/dense_qp.py`) solve the same numbers.
 //!
-//! `cargo run --release -p dense-qp --example peers -- FOLDER` writes `FOLDER/NAME.qps` of each family: little-endian f64, sizes N, M
+//! `cargo run --release -p dense-qp --features bench --example peers -- FOLDER` writes `FOLDER/NAME.qps` of each family: little-endian f64, sizes N, M
 //! and count, then per program H, g, A, l, u and the bounds of the variables, which are infinite.
 #![allow(
     clippy::unwrap_used,

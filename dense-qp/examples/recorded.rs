@@ -1,6 +1,6 @@
 //! Solves recorded programs, cold and warm, and writes answers and times for `tests/peers/programs.py`.
 //!
-//! `cargo run --release -p dense-qp --example recorded -- PROGRAMS ANSWERS` for times (s, least of 7 each);
+//! `cargo run --release -p dense-qp --features bench --example recorded -- PROGRAMS ANSWERS` for times (s, least of 7 each);
 //! `… -- PROGRAMS ANSWERS cold` and `… warm` solve each program once, in [`cold`] and [`warm`], for callgrind.
 //!
 //! PROGRAMS is what the example `peers`, `wbc-qp`'s example `ticks` and `saltus run TASK --programs` leave: little-endian f64, sizes

@@ -18,12 +18,12 @@ const INF: f64 = f64::INFINITY;
 /// honest status, never a hang, and the workspace works afterwards.
 #[test]
 fn bad_numbers_are_named() {
-    each::<6, 7>(1, 5, name_bad_numbers);
+    each::<6, 9>(1, 5, name_bad_numbers);
 }
 
 fn name_bad_numbers(mut r: Draw) {
     const N: usize = 6;
-    const M: usize = 7;
+    const M: usize = 9;
     let mut q = Qp::<f64, N, M>::zero();
     q.set_hessian(&mut r, N, 0.5);
     q.set_rows(&mut r, 2, false);
@@ -116,8 +116,8 @@ fn inverted_limits_and_concave_costs_are_errors() {
 /// Rows and costs scaled by 1e-8 to 1e8: the same minimiser and an honest residual.
 #[test]
 fn scaling() {
-    const N: usize = 10;
-    const M: usize = 16;
+    const N: usize = 12;
+    const M: usize = 20;
     each::<N, M>(60, 6, |mut r| {
         let mut w = Box::new(Workspace::<f64, N, M>::new());
         let mut q = Qp::<f64, N, M>::zero();
@@ -289,11 +289,11 @@ fn overdetermined() {
 /// The cap is kept, and the status says so.
 #[test]
 fn cap() {
-    each::<20, 40>(1, 9, |mut r| {
-        let mut q = Qp::<f64, 20, 40>::zero();
-        q.set_hessian(&mut r, 20, 0.1);
+    each::<16, 32>(1, 9, |mut r| {
+        let mut q = Qp::<f64, 16, 32>::zero();
+        q.set_hessian(&mut r, 16, 0.1);
         q.set_rows(&mut r, 4, false);
-        let mut w = Box::new(Workspace::<f64, 20, 40>::new());
+        let mut w = Box::new(Workspace::<f64, 16, 32>::new());
         let free = solve(&q.problem(), &Settings::default(), &mut w)
             .unwrap()
             .iterations;
@@ -315,10 +315,10 @@ fn cap() {
 #[test]
 fn cap_on_steps() {
     let tally = Tally::default();
-    each::<20, 40>(40, 10, |mut r| {
-        let mut w = Box::new(Workspace::<f64, 20, 40>::new());
-        let mut q = Qp::<f64, 20, 40>::zero();
-        q.set_hessian(&mut r, 20, 0.1);
+    each::<16, 32>(40, 10, |mut r| {
+        let mut w = Box::new(Workspace::<f64, 16, 32>::new());
+        let mut q = Qp::<f64, 16, 32>::zero();
+        q.set_hessian(&mut r, 16, 0.1);
         q.set_rows(&mut r, 4, false);
         for max_steps in [0, 1, 3, 6, 10, 15, 25, 40] {
             let settings = Settings {
@@ -328,7 +328,7 @@ fn cap_on_steps() {
             for again in [solve, solve_warm, resume] {
                 let s = again(&q.problem(), &settings, &mut w).unwrap();
                 // Rows that pull leave together, at most all of them.
-                assert!(s.steps <= max_steps + 20 && s.iterations <= s.steps);
+                assert!(s.steps <= max_steps + 16 && s.iterations <= s.steps);
                 assert!(s.x.iter().all(|v| v.is_finite()));
                 match s.status {
                     Status::Limit => tally.add("limits"),
@@ -349,18 +349,18 @@ fn cap_on_steps() {
 #[test]
 fn resumed_is_solved() {
     let tally = Tally::default();
-    let last = core::cell::RefCell::new(Box::new(Workspace::<f64, 20, 40>::new()));
+    let last = core::cell::RefCell::new(Box::new(Workspace::<f64, 16, 32>::new()));
     let settings = Settings::default();
-    each::<20, 40>(200, 11, |mut r| {
+    each::<16, 32>(200, 11, |mut r| {
         let mut w = last.borrow_mut();
-        let mut fresh = Box::new(Workspace::<f64, 20, 40>::new());
-        let mut q = Qp::<f64, 20, 40>::zero();
-        q.set_hessian(&mut r, 20, 0.1);
+        let mut fresh = Box::new(Workspace::<f64, 16, 32>::new());
+        let mut q = Qp::<f64, 16, 32>::zero();
+        q.set_hessian(&mut r, 16, 0.1);
         q.set_rows(&mut r, 4, false);
         // Sums that bounds do not allow.
         let narrow = r.chance(0.5);
         let mut tight = q.clone();
-        for i in 0..20 {
+        for i in 0..16 {
             let x = if narrow { 0.01 } else { 20.0 };
             (tight.lb[i], tight.ub[i]) = (-x, x);
         }
@@ -384,11 +384,11 @@ fn resumed_is_solved() {
     assert!(infeasible > 20 && infeasible < 200, "{infeasible}");
     assert!(tally.of("resumed") < tally.of("fresh"));
     // Without a last solve it is a solve; after another program it is none that lies.
-    each::<20, 40>(1, 12, |mut r| {
-        let mut q = Qp::<f64, 20, 40>::zero();
-        q.set_hessian(&mut r, 20, 0.1);
+    each::<16, 32>(1, 12, |mut r| {
+        let mut q = Qp::<f64, 16, 32>::zero();
+        q.set_hessian(&mut r, 16, 0.1);
         q.set_rows(&mut r, 4, false);
-        let mut new = Box::new(Workspace::<f64, 20, 40>::new());
+        let mut new = Box::new(Workspace::<f64, 16, 32>::new());
         let s = resume(&q.problem(), &settings, &mut new).unwrap();
         assert_eq!(s.status, Status::Solved);
         let mut old = last.borrow_mut();
@@ -427,8 +427,8 @@ fn single_precision() {
             );
         });
     }
-    check::<5, 4>(300);
+    check::<6, 4>(300);
     check::<12, 20>(300);
     check::<35, 60>(150);
-    check::<60, 80>(50);
+    check::<60, 90>(50);
 }

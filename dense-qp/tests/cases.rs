@@ -60,7 +60,7 @@ fn optimum_without_gradient_is_solved() {
     }
     check::<6, 4>(3);
     check::<12, 20>(6);
-    check::<30, 20>(12);
+    check::<30, 40>(12);
 }
 
 /// g = −H x* with a singular H and x* inside all limits: the least cost is −½ x*ᵀHx*, reached along a whole plane.
@@ -159,15 +159,15 @@ fn gross_contradictions_are_proved() {
             }
         });
     }
-    check::<4, 8>(2);
-    check::<12, 28>(6);
-    check::<30, 60>(10);
+    check::<6, 9>(3);
+    check::<12, 20>(6);
+    check::<30, 40>(10);
 }
 
 /// Torques of a humanoid in SI units, as nobody should hand them to f32: accelerations in m/s², forces in N, moments in N m, task weights
 /// from 1e-3 to 1e3, a mass of 32 kg. The equalities are the base's equations of motion.
-fn torque_program(r: &mut Draw) -> Box<Qp<f64, 35, 55>> {
-    let mut q = Qp::<f64, 35, 55>::zero();
+fn torque_program(r: &mut Draw) -> Box<Qp<f64, 35, 60>> {
+    let mut q = Qp::<f64, 35, 60>::zero();
     for i in 0..29 {
         let row = core::array::from_fn(|j| if j < 29 { r.sym() } else { 0.0 });
         let (w, target) = (10f64.powf(2.0 * r.sym()), 5.0 * r.sym());
@@ -197,7 +197,7 @@ fn torque_program(r: &mut Draw) -> Box<Qp<f64, 35, 55>> {
         }
         q.u[i] = 0.0;
     }
-    for i in 14..55 {
+    for i in 14..60 {
         for j in 0..35 {
             q.a[i][j] = if j < 29 { r.sym() } else { 0.2 * r.sym() };
         }
@@ -210,7 +210,7 @@ fn torque_program(r: &mut Draw) -> Box<Qp<f64, 35, 55>> {
 #[test]
 fn single_precision_solves_torques_in_si_units() {
     let tally = Tally::default();
-    each::<35, 55>(60, 4, |mut r| {
+    each::<35, 60>(60, 4, |mut r| {
         let q = torque_program(&mut r);
         let f = q.single();
         let p = q.problem();

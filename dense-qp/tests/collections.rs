@@ -86,8 +86,8 @@ macro_rules! family {
             each::<6, 9>(12, $seed, |mut r| {
                 judge($make::<6, 9>(&mut r), label, &tally)
             });
-            each::<16, 24>(12, $seed + 100, |mut r| {
-                judge($make::<16, 24>(&mut r), label, &tally)
+            each::<16, 32>(12, $seed + 100, |mut r| {
+                judge($make::<16, 32>(&mut r), label, &tally)
             });
             each::<30, 40>(12, $seed + 200, |mut r| {
                 judge($make::<30, 40>(&mut r), label, &tally)

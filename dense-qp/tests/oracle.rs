@@ -191,7 +191,7 @@ fn assert_unbounded<const N: usize, const M: usize>(
 }
 
 fn sizes(kind: Kind, count: u64) {
-    check::<5, 4>(kind, 1, 4 * count);
+    check::<6, 4>(kind, 1, 4 * count);
     check::<12, 20>(kind, 2, 3 * count);
     check::<16, 32>(kind, 3, 2 * count);
     check::<35, 60>(kind, 4, count);

@@ -10,8 +10,8 @@ use crate::common::{INF, Qp, definite, dot};
 use dense_qp::{Settings, Status, Workspace, kkt_residual, resume, solve, solve_warm};
 use proptest::prelude::*;
 
-const N: usize = 10;
-const M: usize = 16;
+const N: usize = 12;
+const M: usize = 20;
 
 /// Least point, multipliers of rows and bounds, steps.
 struct Optimum {

@@ -4,6 +4,7 @@
 //! with the point of least violation that it came to and the rows that are violated there. The relaxations are not guessed from those
 //! rows: each is a task that was planned.
 
+use super::Observe;
 use super::audit::Audit;
 use super::bounds::Impossible;
 use super::search::roughly;
@@ -139,18 +140,23 @@ impl Answer {
     /// With the changes of the task that give the rigid body a plan. `observe` hears every iteration of the easier tasks, and stops by
     /// `Break`: what was found until then is told.
     #[must_use]
-    pub fn with_easier_tasks(self, task: &Task, observe: impl Observer) -> Self {
+    pub fn with_easier_tasks(self, task: &Task, mut observe: impl Observer) -> Self {
         Self {
-            relaxations: relaxations(task, observe),
+            relaxations: relaxations(task, &mut observe),
             ..self
         }
     }
 
     /// With the joints that would give the whole body a plan; `observe` as in [`Answer::with_easier_tasks`].
     #[must_use]
-    pub fn with_stronger_joints(self, task: &Task, srb: &SrbPlan, observe: impl Observer) -> Self {
+    pub fn with_stronger_joints(
+        self,
+        task: &Task,
+        srb: &SrbPlan,
+        mut observe: impl Observer,
+    ) -> Self {
         Self {
-            relaxations: stronger(task, srb, observe).into_iter().collect(),
+            relaxations: stronger(task, srb, &mut observe).into_iter().collect(),
             ..self
         }
     }
@@ -331,12 +337,12 @@ const EASINGS: [Easing; 5] = [
 ];
 
 /// Every easing with which the rigid body finds a plan, as little of it as halving finds.
-fn relaxations(task: &Task, mut observe: impl Observer) -> Vec<String> {
+fn relaxations(task: &Task, observe: Observe<'_>) -> Vec<String> {
     let mut settings = Settings::new();
     (settings.max_iterations, settings.restoration_iterations) = (PATIENCE, 0);
     settings.attempt_iterations = PATIENCE;
     let mut solve = |eased: &Task| {
-        let plan = eased.attempt(&settings, &mut observe).ok()?;
+        let plan = eased.attempt(&settings, &mut *observe).ok()?;
         let possible = super::bounds::impossible(eased).is_none();
         (plan.status == Status::Solved && possible).then_some(plan)
     };
@@ -361,7 +367,7 @@ fn relaxations(task: &Task, mut observe: impl Observer) -> Vec<String> {
 }
 
 /// What the joints would have to give, if that is all that is missing.
-fn stronger(task: &Task, srb: &SrbPlan, observe: impl Observer) -> Option<String> {
+fn stronger(task: &Task, srb: &SrbPlan, observe: Observe<'_>) -> Option<String> {
     let mut strong = task.clone();
     strong.limits.torque_shares = [10.0; 3];
     strong.limits.speed_share *= 10.0;

@@ -129,6 +129,3 @@ fn joint_power(task: &Task, i: usize, torque_share: f64) -> f64 {
     let at = f64::max(0.5 * top, top - torque / slope);
     (slope * (top - at) * at).max(torque.min(motor.torque) * (top - torque / slope).max(0.0))
 }
-
-#[cfg(test)]
-mod tests;

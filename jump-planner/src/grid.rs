@@ -1,6 +1,7 @@
 //! A task's whole-body problem on a grid of intervals, and the ways in which it is solved there.
 
 use super::FOOT_COUNT;
+use super::Observe;
 use super::kept::Kept;
 use super::pace::Pace;
 use super::setup::{N, NI, NU, NX, Setup, times};
@@ -149,7 +150,7 @@ impl<'a> Grid<'a> {
     /// Plans with the least torque, from the guess.
     pub(crate) fn with_least_torque(
         &mut self,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        observer: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         self.torque_share = self.task.limits.torque_shares[0];
         self.descend(observer)
@@ -158,7 +159,7 @@ impl<'a> Grid<'a> {
     /// Plans with the most torque, from the guess, and then with as much less as still has a motion.
     pub(crate) fn with_most_torque(
         &mut self,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        observer: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         let [least, middle, most] = self.task.limits.torque_shares;
         self.torque_share = most;
@@ -170,7 +171,7 @@ impl<'a> Grid<'a> {
             }
             let before = (self.torque_share, self.stages.clone(), self.timed.clone());
             self.torque_share = share;
-            let less = self.solve(&warm(), &none, observer, |progress| {
+            let less = self.solve(&warm(), &none, observer, &mut |progress| {
                 progress.iteration <= LESS_PATIENCE
             })?;
             match less.outcome.status {
@@ -187,27 +188,23 @@ impl<'a> Grid<'a> {
 
     /// Solves from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there take longer than a
     /// search elsewhere.
-    fn descend(
-        &mut self,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
+    fn descend(&mut self, observer: Observe<'_>) -> Result<WholeBodyPlan, String> {
         let (mut pace, timing) = (Pace::default(), self.timing);
-        self.solve(&settings(), &Tightening::default(), observer, |progress| {
+        let mut goes_on = |progress: &Progress<f64>| {
             let violation = progress.residual.primal;
             match timing {
                 Timing::Given => progress.attempt == 0 && pace.keeps_up(violation, FIRST_PATIENCE),
                 // The violation falls late where durations have to move first.
                 Timing::Free => true,
             }
-        })
+        };
+        let none = Tightening::default();
+        self.solve(&settings(), &none, observer, &mut goes_on)
     }
 
     /// Plans from the motion of the long intervals that these are parts of, with its torque.
-    pub(crate) fn resume(
-        &mut self,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Result<WholeBodyPlan, String> {
-        self.solve(&warm(), &Tightening::default(), observer, |progress| {
+    pub(crate) fn resume(&mut self, observer: Observe<'_>) -> Result<WholeBodyPlan, String> {
+        self.solve(&warm(), &Tightening::default(), observer, &mut |progress| {
             progress.iteration <= PARTS_PATIENCE
         })
     }
@@ -216,11 +213,11 @@ impl<'a> Grid<'a> {
     pub(crate) fn moved(
         &mut self,
         drawn: &Tightening,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        observer: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         let mut settings = warm();
         settings.initial_mu = NEAR_MU;
-        self.solve(&settings, drawn, observer, |progress| {
+        self.solve(&settings, drawn, observer, &mut |progress| {
             progress.iteration <= NEAR_PATIENCE
         })
     }
@@ -229,9 +226,9 @@ impl<'a> Grid<'a> {
     pub(crate) fn again(
         &mut self,
         drawn: &Tightening,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        observer: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
-        self.solve(&warm(), drawn, observer, |_| true)
+        self.solve(&warm(), drawn, observer, &mut |_| true)
     }
 
     /// Solves from what the stages hold, and keeps a note of it. A solve that the observer ends is cancelled, one that does not go on by
@@ -240,11 +237,11 @@ impl<'a> Grid<'a> {
         &mut self,
         settings: &Settings<f64>,
         drawn: &Tightening,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-        mut goes_on: impl FnMut(&Progress<f64>) -> bool,
+        observer: Observe<'_>,
+        goes_on: &mut dyn FnMut(&Progress<f64>) -> bool,
     ) -> Result<WholeBodyPlan, String> {
         let (clock, mut cancelled) = (Instant::now(), false);
-        let mut plan = self.solved(drawn, settings, |progress| {
+        let mut plan = self.solved(drawn, settings, &mut |progress| {
             cancelled = observer(progress).is_break();
             if !cancelled && goes_on(progress) {
                 ControlFlow::Continue(())
@@ -271,7 +268,7 @@ impl<'a> Grid<'a> {
         &mut self,
         drawn: &Tightening,
         settings: &Settings<f64>,
-        watch: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        watch: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         let clearances = self.setup.clearances(drawn);
         let mut problem = Problem {
@@ -397,30 +394,4 @@ fn finish<S: Copy, const X: usize>(
         intervals: intervals.collect(),
         phases: problem.phases.to_vec(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::*;
-
-    #[test]
-    fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
-        let task = Task::load("a1/lateral").unwrap();
-        let go = |_: &Progress<f64>| ControlFlow::Continue(());
-        let srb = task.attempt(&Settings::new(), go).unwrap();
-        let mut grid = Grid::new(&task, &srb, Timing::Given, 4.0).unwrap();
-        let mut solves = 0;
-        let plan = grid.with_most_torque(&mut |progress| {
-            solves += usize::from(progress.iteration == 1);
-            if solves < 2 {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        });
-        assert_eq!(plan.unwrap().outcome.status, Status::Cancelled);
-        let ended: Vec<_> = grid.path.iter().map(|solve| solve.status).collect();
-        assert_eq!(ended, [Status::Solved, Status::Cancelled]);
-    }
 }

@@ -26,6 +26,8 @@ pub use kept::Kept;
 pub use plan::{Options, Outcome, Step, plan, replan};
 pub use whole_body::Timing;
 
+use core::ops::ControlFlow;
+use ocp_solver::Progress;
 use rbd_core::{Configuration, Tangent};
 
 /// Joints of the robot.
@@ -37,6 +39,8 @@ pub const FOOT_COUNT: usize = 4;
 pub type State = Configuration<f64, JOINTS>;
 /// How it moves.
 pub type Velocity = Tangent<f64, JOINTS>;
+/// Who hears every iteration of a solver, and stops it by `Break`: of one type, so that the solvers are compiled once and here.
+pub(crate) type Observe<'a> = &'a mut dyn FnMut(&Progress<f64>) -> ControlFlow<()>;
 /// A node of its plan.
 pub type Node = jump_control::Node<f64, JOINTS, FOOT_COUNT>;
 

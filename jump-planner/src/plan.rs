@@ -1,11 +1,12 @@
 //! The whole way: bounds, rigid body, whole body, bytes, audit.
 
+use crate::Observe;
 use crate::answer::Answer;
 use crate::audit::Audit;
 use crate::bounds::impossible;
 use crate::kept::Kept;
 use crate::task::{SrbPlan, Task};
-use crate::whole_body::{Attempt, Timing, WholeBodyPlan, audited, audited_near};
+use crate::whole_body::{Attempt, Timing, WholeBodyPlan, audited_near, audited_observed};
 use core::cell::Cell;
 use core::ops::ControlFlow;
 use core::time::Duration;
@@ -16,6 +17,9 @@ use std::time::Instant;
 const NEAR_MU: f64 = 1e-5;
 /// Iterations in which it has to arrive; from the guess easy jumps take 13 to 25, others to 190.
 const NEAR_ITERATIONS: usize = 40;
+
+/// As [`Observe`], of the whole way.
+type ObserveSteps<'a> = &'a mut dyn FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>;
 
 /// How to plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,9 +70,9 @@ pub struct Outcome {
 pub fn plan(
     task: &Task,
     options: &Options,
-    observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
+    mut observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
 ) -> Result<Outcome, String> {
-    planned(task, None, options, observe)
+    planned(task, None, options, &mut observe)
 }
 
 /// As [`plan`], for a task that differs little from the one that `kept` is of: in its goal, friction, masses or posture. Both stages begin
@@ -82,17 +86,17 @@ pub fn replan(
     task: &Task,
     kept: &Kept,
     options: &Options,
-    observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
+    mut observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
 ) -> Result<Outcome, String> {
     let same = options.timing == Timing::Given && kept.is_of_phases(task);
-    planned(task, same.then_some(kept), options, observe)
+    planned(task, same.then_some(kept), options, &mut observe)
 }
 
 fn planned(
     task: &Task,
     kept: Option<&Kept>,
     options: &Options,
-    mut observe: impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
+    observe: ObserveSteps<'_>,
 ) -> Result<Outcome, String> {
     let clock = Instant::now();
     let mut out = Outcome::default();
@@ -116,7 +120,7 @@ fn planned(
             &guess
         }
         Timing::Given => {
-            let found = body(task, kept, |p| observe(Step::Body, Some(p)))?;
+            let found = body(task, kept, &mut |p| observe(Step::Body, Some(p)))?;
             let srb = &*out.srb.insert(found);
             if srb.status != Status::Solved {
                 let blocked = Answer::no_body_plan(task, srb);
@@ -132,10 +136,10 @@ fn planned(
             srb
         }
     };
-    let watch = |p: &Progress<f64>| observe(Step::WholeBody, Some(p));
+    let watch: Observe<'_> = &mut |p| observe(Step::WholeBody, Some(p));
     let whole = match kept {
         Some(kept) => audited_near(task, srb, kept, watch)?,
-        None => audited(task, srb, options.timing, watch)?,
+        None => audited_observed(task, srb, options.timing, watch)?,
     };
     out.answer = match &whole.audit {
         Some(audit) if audit.passes() => None,
@@ -159,16 +163,12 @@ fn planned(
 }
 
 /// The motion of the rigid body, from the one that is kept, or from the guess.
-fn body(
-    task: &Task,
-    kept: Option<&Kept>,
-    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-) -> Result<SrbPlan, String> {
+fn body(task: &Task, kept: Option<&Kept>, observer: Observe<'_>) -> Result<SrbPlan, String> {
     if let Some(kept) = kept {
         let mut settings = Settings::new();
         (settings.warm_start, settings.initial_mu) = (true, NEAR_MU);
         settings.max_iterations = NEAR_ITERATIONS;
-        let found = task.attempt_from(kept.body.clone(), &settings, &mut observer)?;
+        let found = task.attempt_from(kept.body.clone(), &settings, &mut *observer)?;
         if matches!(found.status, Status::Solved | Status::Cancelled) {
             return Ok(found);
         }
@@ -188,11 +188,7 @@ enum End {
 
 impl End {
     /// After a solve that ended so. A solver that found nothing is asked for easier tasks, unless the observer wants no more.
-    fn of(
-        status: Status,
-        late: &Cell<Option<Duration>>,
-        observe: &mut impl FnMut(Step, Option<&Progress<f64>>) -> ControlFlow<()>,
-    ) -> Self {
+    fn of(status: Status, late: &Cell<Option<Duration>>, observe: ObserveSteps<'_>) -> Self {
         if status == Status::Cancelled {
             return late.get().map_or(Self::Cancelled, Self::Late);
         }
@@ -201,34 +197,5 @@ impl End {
         } else {
             Self::Itself
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::*;
-
-    #[test]
-    fn a_task_near_another_is_planned_in_fewer_iterations_and_to_the_same_cost() {
-        let go = |_, _: Option<&Progress<f64>>| ControlFlow::Continue(());
-        let options = Options::default();
-        let task = Task::load("a1/lateral").unwrap();
-        let kept = plan(&task, &options, go).unwrap().kept.unwrap();
-        let mut moved = task.clone();
-        moved.goal.x += 0.1;
-        moved.problem.goal_w.x += 0.1;
-        let afar = plan(&moved, &options, go).unwrap();
-        let near = replan(&moved, &kept, &options, go).unwrap();
-        assert!(near.answer.is_none() && near.audit.unwrap().passes());
-        assert_eq!(near.path.len(), 1);
-        let cost = |out: &Option<WholeBodyPlan>| out.as_ref().unwrap().judged.cost;
-        let (one, other) = (cost(&near.whole_body), cost(&afar.whole_body));
-        assert!((one / other - 1.0).abs() < 1e-4, "{one} {other}");
-        assert!(near.path[0].iterations < afar.path[0].iterations);
-        let body = |out: Option<SrbPlan>| out.unwrap().iterations;
-        assert!(2 * body(near.srb) < body(afar.srb));
-        // What has other phases is planned as if there were nothing.
-        assert!(!kept.is_of_phases(&Task::load("a1/diagonal").unwrap()));
     }
 }

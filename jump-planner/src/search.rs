@@ -7,6 +7,7 @@
 //! A first try that does not arrive takes seconds. So where it takes longer than those that do, the search on long intervals begins beside
 //! it, on a core of its own if the machine has one. What comes out is the same, since the first try is waited for, and sooner.
 
+use crate::Observe;
 use crate::grid::Grid;
 use crate::task::{SrbPlan, Task};
 use crate::whole_body::{Timing, WholeBodyPlan};
@@ -33,7 +34,7 @@ pub(crate) fn searched<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, 1.0)?;
     let is_alone = crate::threads() == 1;
@@ -66,9 +67,9 @@ pub(crate) fn roughly(
     task: &Task,
     srb: &SrbPlan,
     timing: Timing,
-    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Result<WholeBodyPlan, String> {
-    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(&mut observer)
+    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(observer)
 }
 
 /// Whether nothing is to be searched for any more.
@@ -108,11 +109,7 @@ impl<'scope, 'a: 'scope> Beside<'scope, 'a> {
     }
 
     /// Waits for its end, while the observer hears of every iteration since the beginning and may stop it.
-    fn end(
-        self,
-        stop: &AtomicBool,
-        observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
-    ) -> Found<'a> {
+    fn end(self, stop: &AtomicBool, observer: Observe<'_>) -> Found<'a> {
         for progress in self.progress {
             if observer(&progress).is_break() {
                 stop.store(true, Ordering::Relaxed);
@@ -132,7 +129,7 @@ fn on_long_intervals<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Found<'a> {
     if timing == Timing::Free || task.has_given_durations() {
         return on_long_intervals_in(task, srb, timing, observer);
@@ -150,7 +147,7 @@ fn on_long_intervals_in<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Found<'a> {
     let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
     let mut plan = grid.with_most_torque(observer)?;

@@ -412,7 +412,7 @@ mod tests {
     #[test]
     fn heights_that_are_drawn_in_are_higher() {
         let task = Task::load("a1/lateral").unwrap();
-        let srb = task.solve().unwrap();
+        let srb = task.guess().unwrap();
         let setup = Setup::new(&task, &srb, 4.0).unwrap();
         let drawn = Tightening {
             height: 0.1,

@@ -1,9 +1,9 @@
 //! The whole-body plan of a task as it is to be executed: timings from the single rigid body, or found on the whole body itself.
 
-use super::FOOT_COUNT;
 pub use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
 use super::stored::{open, store};
 use super::task::{SrbPlan, Task};
+use super::{FOOT_COUNT, Observe};
 use crate::audit::Audit;
 use crate::grid::Grid;
 use crate::kept::Kept;
@@ -122,10 +122,19 @@ pub fn audited(
     timing: Timing,
     mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
 ) -> Result<Audited, String> {
+    audited_observed(task, srb, timing, &mut observer)
+}
+
+pub(crate) fn audited_observed(
+    task: &Task,
+    srb: &SrbPlan,
+    timing: Timing,
+    observer: Observe<'_>,
+) -> Result<Audited, String> {
     let clock = Instant::now();
-    let (grid, plan) = searched(task, srb, timing, &mut observer)?;
+    let (grid, plan) = searched(task, srb, timing, observer)?;
     let none = Tightening::default();
-    finished(clock, task, grid, (plan, none), &mut observer)
+    finished(clock, task, grid, (plan, none), observer)
 }
 
 /// As [`audited`], beginning with an earlier plan of the same phases in given durations; from the start where that leads nowhere.
@@ -133,10 +142,9 @@ pub(crate) fn audited_near(
     task: &Task,
     srb: &SrbPlan,
     kept: &Kept,
-    mut observer: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let clock = Instant::now();
-    let observer = &mut observer;
     let mut near = Grid::near(task, srb, kept)?;
     let plan = near.moved(&kept.drawn, observer)?;
     if matches!(plan.outcome.status, Status::Solved | Status::Cancelled) {
@@ -153,7 +161,7 @@ fn finished<'a>(
     task: &'a Task,
     mut grid: Grid<'a>,
     (plan, mut drawn): (WholeBodyPlan, Tightening),
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let mut told = tightened(task, &mut grid, (plan, &mut drawn), observer)?;
     // Shorter intervals make no link thinner.
@@ -177,7 +185,7 @@ fn tightened(
     task: &Task,
     grid: &mut Grid<'_>,
     (plan, drawn): (WholeBodyPlan, &mut Tightening),
-    observer: &mut impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let mut told = plan.audited(task)?;
     for _ in 0..TIGHTENINGS {

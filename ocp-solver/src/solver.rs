@@ -12,6 +12,9 @@ use core::ops::ControlFlow;
 use so3::Scalar;
 use so3::math::{max, min};
 
+/// Who hears every iteration, and stops the solver by `Break`.
+type Observer<'a, T> = &'a mut dyn FnMut(&Progress<T>) -> ControlFlow<()>;
+
 /// The solver: settings only; all state lives in the stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Solver<T> {
@@ -67,6 +70,8 @@ impl<T: Scalar> Solver<T> {
         P: Problem<T, NX, NU, NI>,
         K: Keep<T, NX, NU, NI>,
     {
+        // Of one type: the iteration is compiled once for all observers of a problem.
+        let observer: Observer<'_, T> = &mut observer;
         self.settings.check()?;
         prepare(problem, stages, self.settings.workers())?;
         let mut run = Run::new(problem);
@@ -94,7 +99,7 @@ impl<T: Scalar> Solver<T> {
                 }
                 run.warm = true;
             }
-            status = self.attempt(problem, stages, &mut run, mu, &mut observer);
+            status = self.attempt(problem, stages, &mut run, mu, observer);
             run.warm = false;
             if matches!(status, Status::Solved | Status::Cancelled) || run.iterations >= run.limit {
                 break;
@@ -107,7 +112,7 @@ impl<T: Scalar> Solver<T> {
         );
         if !give_up && run.iterations < limit {
             restarts = restarts.saturating_add(1);
-            status = self.restore(problem, stages, &mut run, status, &mut observer);
+            status = self.restore(problem, stages, &mut run, status, observer);
         }
         if !matches!(status, Status::Solved | Status::LocallyInfeasible) {
             for stage in stages.iter_mut() {
@@ -137,7 +142,7 @@ impl<T: Scalar> Solver<T> {
         stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         run: &mut Run<T, NX>,
         status: Status,
-        observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
+        observer: Observer<'_, T>,
     ) -> Status
     where
         P: Problem<T, NX, NU, NI>,
@@ -214,7 +219,7 @@ impl<T: Scalar> Solver<T> {
         stages: &mut [Stage<T, P::State, NX, NU, NI, K>],
         run: &mut Run<T, NX>,
         initial_mu: T,
-        observer: &mut impl FnMut(&Progress<T>) -> ControlFlow<()>,
+        observer: Observer<'_, T>,
     ) -> Status
     where
         P: Problem<T, NX, NU, NI>,

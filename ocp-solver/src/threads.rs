@@ -51,6 +51,32 @@ fn lock<V>(mutex: &Mutex<V>) -> MutexGuard<'_, V> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Works here and on as many threads more, or as many as there are. Not generic, as little here is: what `std` does for it is compiled once
+/// and not for every pass of every problem.
+fn share(more: usize, worker: &(dyn Fn() + Sync)) {
+    scope(|scope| {
+        for _ in 0..more {
+            let thread = Builder::new().stack_size(STACK);
+            if thread.spawn_scoped(scope, worker).is_err() {
+                break;
+            }
+        }
+        worker();
+    });
+}
+
+/// What comes out here, while the other runs beside it; nothing where there is no thread to be had.
+fn run_beside<'a>(
+    other: Box<dyn FnOnce() + Send + 'a>,
+    here: Box<dyn FnOnce() -> Option<bool> + 'a>,
+) -> Option<bool> {
+    scope(|scope| {
+        let thread = Builder::new().stack_size(STACK);
+        thread.spawn_scoped(scope, other).ok()?;
+        here()
+    })
+}
+
 /// See [`crate::sweep::each`].
 pub(crate) fn each<T: Scalar, X, O, K, const NX: usize, const NU: usize, const NI: usize>(
     workers: usize,
@@ -78,15 +104,7 @@ pub(crate) fn each<T: Scalar, X, O, K, const NX: usize, const NU: usize, const N
         let mut end = lock(&end);
         (*end)(own);
     };
-    scope(|scope| {
-        for _ in 1..workers.min(parts) {
-            let thread = Builder::new().stack_size(STACK);
-            if thread.spawn_scoped(scope, worker).is_err() {
-                break;
-            }
-        }
-        worker();
-    });
+    share(workers.min(parts).saturating_sub(1), &worker);
 }
 
 /// The backward recursion ([`crate::riccati`]) beside a thread that condenses stages before it comes to them; nothing if there is none to
@@ -115,9 +133,7 @@ where
             }
         }
     };
-    scope(|scope| {
-        let thread = Builder::new().stack_size(STACK);
-        thread.spawn_scoped(scope, condense).ok()?;
+    let recur = move || {
         let mut work = Work::new();
         let mut next = None;
         for (stage, q) in condensed {
@@ -129,7 +145,8 @@ where
             next = Some(&node.riccati);
         }
         Some(true)
-    })
+    };
+    run_beside(Box::new(condense), Box::new(recur))
 }
 
 /// The forward substitution ([`crate::riccati`]) beside a thread that does what no later node waits for; nothing as in [`factorise`].

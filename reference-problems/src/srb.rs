@@ -9,6 +9,11 @@ use serde_json::{Value, json};
 use srb_opt::{Problem, State};
 use std::time::Instant;
 
+/// Gives a number to add to the guess.
+pub(crate) type Noise<'a> = &'a mut dyn FnMut() -> f64;
+/// Who hears every iteration, and stops the solver by `Break`.
+pub(crate) type Observe<'a> = &'a mut dyn FnMut(&Progress<f64>) -> ControlFlow<()>;
+
 /// Legs in the file's order.
 const LEGS: [&str; FEET] = ["FL", "FR", "RL", "RR"];
 /// Controls of four feet, and rows.
@@ -38,8 +43,19 @@ impl File {
         &self,
         name: &str,
         barrier: Barrier,
-        noise: impl FnMut() -> f64,
-        observe: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        mut noise: impl FnMut() -> f64,
+        mut observe: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<Answer, String> {
+        self.solve_srb_observed(name, barrier, &mut noise, &mut observe)
+    }
+
+    /// [`Self::solve_srb`], compiled once and here: the solver is large.
+    fn solve_srb_observed(
+        &self,
+        name: &str,
+        barrier: Barrier,
+        noise: Noise<'_>,
+        observe: Observe<'_>,
     ) -> Result<Answer, String> {
         match self.task(name)?.phase_count() {
             0..=4 => self.sized::<4, 16>(name, barrier, noise, observe),
@@ -51,8 +67,8 @@ impl File {
         &self,
         name: &str,
         barrier: Barrier,
-        noise: impl FnMut() -> f64,
-        observe: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        noise: Noise<'_>,
+        observe: Observe<'_>,
     ) -> Result<Answer, String> {
         let problem: Problem<f64, FEET, PHASES> = self.problem(name)?;
         let count = problem.intervals() + 1;

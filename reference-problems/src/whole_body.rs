@@ -3,6 +3,7 @@
 use crate::answer::Answer;
 use crate::file::{FEET, File};
 use crate::legs::{DT, N, SrbMotion};
+use crate::srb::{Noise, Observe};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
 use ocp_solver::{Barrier, Progress, SparseStage};
@@ -28,8 +29,20 @@ impl File {
         name: &str,
         srb: &SrbMotion,
         barrier: Barrier,
-        noise: impl FnMut() -> f64,
-        observe: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+        mut noise: impl FnMut() -> f64,
+        mut observe: impl FnMut(&Progress<f64>) -> ControlFlow<()>,
+    ) -> Result<Answer, String> {
+        self.solve_whole_body_observed(name, srb, barrier, &mut noise, &mut observe)
+    }
+
+    /// [`Self::solve_whole_body`], compiled once and here: the solver is large.
+    fn solve_whole_body_observed(
+        &self,
+        name: &str,
+        srb: &SrbMotion,
+        barrier: Barrier,
+        noise: Noise<'_>,
+        observe: Observe<'_>,
     ) -> Result<Answer, String> {
         let data = self.whole_body(name, srb)?;
         let problem = data.problem();

@@ -1,6 +1,6 @@
 //! Time per iteration against the number of nodes, and its parts, on the reference problems.
 //!
-//! `cargo run --release -p srb-opt --example nodes -- [task, default lateral] [noisy guesses each]`
+//! `cargo run --release -p srb-opt --features bench --example nodes -- [task, default lateral] [noisy guesses each]`
 #![allow(
     clippy::unwrap_used,
     clippy::panic,

@@ -1,6 +1,6 @@
 //! Solves many random jumps of the reference problem's form and says which fail.
 //!
-//! `cargo run --release -p srb-opt --example variants -- [how many] [first seed] [noisy guesses each]`
+//! `cargo run --release -p srb-opt --features bench --example variants -- [how many] [first seed] [noisy guesses each]`
 //! `… -- --file SEED` prints a jump as a problem file for `saltus plan --problem` and `tests/peers/srb_ratio.py`.
 #![allow(
     clippy::unwrap_used,

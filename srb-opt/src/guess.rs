@@ -75,6 +75,8 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
         mut perturb: impl FnMut() -> T,
     ) {
+        // Of one type: what is long is compiled once for all who perturb.
+        let mut perturb: &mut dyn FnMut() -> T = &mut perturb;
         let mut durations = [T::ZERO; PHASES];
         for (slot, phase) in durations.iter_mut().zip(self.used_phases()) {
             *slot = phase.duration_guess;

@@ -25,6 +25,16 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
         mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Result<Solution<T>, Error> {
+        self.plan_observed(settings, stages, &mut observer)
+    }
+
+    /// [`Self::plan`], compiled once for all observers.
+    fn plan_observed<const NX: usize, const NU: usize, const NI: usize, K: Keep<T, NX, NU, NI>>(
+        &self,
+        settings: &Settings<T>,
+        stages: &mut [Stage<T, State<T, PHASES>, NX, NU, NI, K>],
+        observer: &mut dyn FnMut(&Progress<T>) -> ControlFlow<()>,
+    ) -> Result<Solution<T>, Error> {
         self.check()?;
         let fits = NX >= TIMES.saturating_add(PHASES)
             && NU >= FEET.saturating_mul(3)
@@ -32,7 +42,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         if !fits {
             return Err(Error::Capacity);
         }
-        let first = Solver::new(*settings).solve(self, stages, &mut observer)?;
+        let first = Solver::new(*settings).solve(self, stages, &mut *observer)?;
         let is_good = match first.status {
             Status::Solved => !self.has_collapsed_phase(stages),
             status => status == Status::Cancelled,
@@ -49,7 +59,7 @@ impl<T: Scalar, const FEET: usize, const PHASES: usize> Problem<T, FEET, PHASES>
         let mut cold = *settings;
         cold.warm_start = false;
         cold.initial_mu = max(settings.initial_mu, Settings::new().initial_mu);
-        let mut last = Solver::new(cold).solve(self, stages, &mut observer)?;
+        let mut last = Solver::new(cold).solve(self, stages, observer)?;
         let iterations = first.iterations.saturating_add(last.iterations);
         let factorisations = first.factorisations.saturating_add(last.factorisations);
         let is_better = last.status == Status::Solved

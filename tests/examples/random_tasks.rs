@@ -1,4 +1,4 @@
-//! How planning jumps that nobody chose ends: `cargo run --release -p saltus-tests --example random_tasks -- [TASKS] [SEED] [SECONDS] [ROBOT] [explain]`.
+//! How planning jumps that nobody chose ends: `cargo run --release -p saltus-tests --features bench --example random_tasks -- [TASKS] [SEED] [SECONDS] [ROBOT] [explain]`.
 //!
 //! A row a task: how it ended, in what time, what was asked. Then how many ended in a plan that passed its audit or in a proof.
 #![allow(missing_docs, reason = "a program")]

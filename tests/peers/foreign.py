@@ -135,7 +135,8 @@ def check(urdf, path):
 
 
 def main():
-    command = ["cargo", "build", "--release", "-q", "-p", "saltus-tests", "--example", "foreign", "--message-format=json"]
+    command = ["cargo", "build", "--release", "-q", "-p", "saltus-tests", "--features", "bench"]
+    command += ["--example", "foreign", "--message-format=json"]
     built = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     binary = [m["executable"] for m in map(json.loads, built.splitlines()) if m.get("executable")][-1]
     bad = False

@@ -16,7 +16,8 @@ REPEAT = 7  # as in the example `recorded`
 
 def example(package, name):
     """Builds an example, and returns its path."""
-    build = ["cargo", "build", "--release", "-q", "-p", package, "--example", name, "--message-format=json"]
+    build = ["cargo", "build", "--release", "-q", "-p", package, "--features", "bench", "--example", name]
+    build.append("--message-format=json")
     built = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     paths = [json.loads(line).get("executable") for line in built.splitlines() if line.startswith("{")]
     return next(path for path in reversed(paths) if path)

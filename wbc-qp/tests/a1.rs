@@ -49,7 +49,7 @@ fn run(end: f64, wanted: impl Fn(f64) -> Wanted) -> Vec<Tick> {
     let start = standing();
     plant.reset(&start, &Tangent::ZERO);
     let mut contacts = FEET.map(|foot| Contact::new(&foot, 0.5, 120.0));
-    let mut qp = TorqueQp::<f64, 12, 12, 24, 40>::new();
+    let mut qp = TorqueQp::<f64, 12, 12, 24, 46>::new();
     let mut s = Snapshot::ZERO;
     s.update(&A1, &start, &Tangent::ZERO);
     let home = s.com_w();

@@ -1,7 +1,7 @@
 //! Ground that comes: contacts of part of their load, and the landing on them.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, config, crouch, each, snapshot};
+use crate::common::{M, N, config, crouch, each, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
@@ -11,7 +11,6 @@ use wbc_qp::{Contact, Snapshot, TorqueAnswer, TorqueQp};
 
 const K: usize = 12;
 const V: usize = 35;
-const M: usize = 55;
 
 fn contacts(load: f64) -> [Contact<f64>; 2] {
     SOLES.map(|sole| Contact {

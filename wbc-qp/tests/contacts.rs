@@ -1,7 +1,7 @@
 //! Contacts on inclined ground, polygons, feedback, and what is refused.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, config, each, snapshot};
+use crate::common::{M, N, VELOCITY_ROWS, config, each, snapshot};
 use a1_model::{A1, FEET, FOOT_RADIUS};
 use core::cell::Cell;
 use icub_model::{Icub23, SOLES};
@@ -187,7 +187,7 @@ fn contacts_go_back_to_where_they_were() {
         };
         let size = |e: &[f64]| e.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let before = size(&miss(&snapshot(&q, &v)));
-        let mut qp = VelocityQp::<f64, N, 29, 12>::new();
+        let mut qp = VelocityQp::<f64, N, 29, VELOCITY_ROWS>::new();
         for _ in 0..100 {
             let s = snapshot(&q, &Tangent::ZERO);
             qp.begin(&Icub23, &s, &contacts).unwrap();
@@ -203,7 +203,7 @@ fn contacts_go_back_to_where_they_were() {
 
         // At the level of torques: the acceleration asked for is had.
         let s = snapshot(&q, &Tangent::ZERO);
-        let mut qp = TorqueQp::<f64, N, 12, 35, 55>::new();
+        let mut qp = TorqueQp::<f64, N, 12, 35, M>::new();
         qp.begin(&Icub23, &s, &contacts, &[0.0; N]).unwrap();
         let wanted = core::array::from_fn(|k| 0.1 * (k as f64 - 6.0));
         qp.correct_contacts(&wanted);
@@ -225,7 +225,7 @@ fn forces_that_contradict_each_other_are_refused() {
     let s = standing(&Transform::IDENTITY);
     let mut contacts = feet(Vector3::z());
     contacts[2].min_force = 301.0;
-    let mut qp = TorqueQp::<f64, 12, 12, 24, 40>::new();
+    let mut qp = TorqueQp::<f64, 12, 12, 24, 46>::new();
     let refused = Err(Error::NormalForces { contact: 2 });
     assert_eq!(qp.begin(&A1, &s, &contacts, &[0.0; 12]), refused);
     contacts[2].min_force = f64::NAN;

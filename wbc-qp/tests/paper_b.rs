@@ -1,7 +1,7 @@
 //! The two programs of paper B as they are printed, beside what comes out of them.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, config, crouched, each, snapshot};
+use crate::common::{M, N, VELOCITY_ROWS, config, crouched, each, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -16,7 +16,6 @@ use wbc_qp::{Contact, Snapshot, anchored};
 
 const K: usize = 12;
 const V: usize = 35;
-const M: usize = 55;
 
 /// A crouch on both soles with each joint's velocity.
 fn crouch(speeds: &[f64; N]) -> (Configuration<f64, N>, Tangent<f64, N>) {
@@ -54,7 +53,8 @@ fn angular_momentum(s: &Snapshot<f64, N>, v: &Tangent<f64, N>) -> Vector3<f64> {
 #[test]
 fn velocity_control() {
     let settings = profile::VELOCITY;
-    let mut controller = VelocityJump::<f64, N, 29, 12>::new(settings, crouch(&[0.0; N]).0.joints);
+    let mut controller =
+        VelocityJump::<f64, N, 29, VELOCITY_ROWS>::new(settings, crouch(&[0.0; N]).0.joints);
     let (mut q, mut v) = crouch(&[0.0; N]);
     let (mut integral, dt) = (Vector3::zeros(), 1e-3);
     for k in 0..100 {
@@ -152,7 +152,7 @@ fn posture_of_the_velocity_program() {
         ..profile::VELOCITY
     };
     let posture = core::array::from_fn(|i| q.joints[i] + 0.002 * (i as f64 - 11.0));
-    let mut controller = VelocityJump::<f64, N, 29, 12>::new(settings, posture);
+    let mut controller = VelocityJump::<f64, N, 29, VELOCITY_ROWS>::new(settings, posture);
     let mut last = [0.0; N];
     for _ in 0..3 {
         let tick = controller

@@ -1,7 +1,7 @@
 //! Rows of the user in both programs: what they keep, how they give way, and what the report says of it.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, config, crouch, crouched, each, oracle, snapshot};
+use crate::common::{M, N, VELOCITY_ROWS, config, crouch, crouched, each, oracle, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use proptest::prelude::*;
 use wbc_qp::{
@@ -10,7 +10,6 @@ use wbc_qp::{
 };
 
 const K: usize = 12;
-const M: usize = 61;
 const FREE: f64 = f64::INFINITY;
 
 /// Without, and with, room for three slacks.
@@ -321,7 +320,7 @@ fn a_row_over_forces_bounds_them() {
     });
 }
 
-type Velocity = VelocityQp<f64, N, 29, 18>;
+type Velocity = VelocityQp<f64, N, 29, VELOCITY_ROWS>;
 
 fn begin_velocity(qp: &mut Velocity, s: &Snapshot<f64, N>) {
     qp.begin(&Icub23, s, &contacts()).unwrap();

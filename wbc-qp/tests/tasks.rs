@@ -1,7 +1,7 @@
 //! Tasks, contacts and limits against finite differences and against what they promise.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, Verdict, config, each, oracle, snapshot, state};
+use crate::common::{N, VELOCITY_ROWS, Verdict, config, each, oracle, snapshot, state};
 use core::cell::{Cell, RefCell};
 use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
@@ -174,7 +174,7 @@ fn capsules_stay_apart() {
         let task = s.distance(&Icub23, &hand, &chest);
         let left = s.clearance(&hand, &chest).distance - margin;
         least = least.min(left);
-        let mut air = VelocityQp::<f64, N, 29, 2>::new();
+        let mut air = VelocityQp::<f64, N, 29, VELOCITY_ROWS>::new();
         air.begin(&Icub23, &s, &[]).unwrap();
         air.constrain(
             &task,
@@ -230,7 +230,7 @@ fn the_velocity_program_always_has_an_answer() {
         acceleration: 500.0,
     };
     let (qp, certain) = (
-        RefCell::new(VelocityQp::<f64, N, 29, 12>::new()),
+        RefCell::new(VelocityQp::<f64, N, 29, VELOCITY_ROWS>::new()),
         Cell::new(0),
     );
     let outside = prop_oneof![Just([0.0; N]), prop::array::uniform(-0.5..0.5_f64)];
@@ -294,7 +294,7 @@ fn absent_contacts_and_bad_numbers() {
         let s = snapshot(&q, &v);
         let mut contacts = SOLES.map(|sole| Contact::new(&sole, 0.5, 600.0));
         contacts[1].load = 0.0;
-        let mut qp = VelocityQp::<f64, N, 29, 12>::new();
+        let mut qp = VelocityQp::<f64, N, 29, VELOCITY_ROWS>::new();
         let foot = s.frame_position(&Icub23, &SOLES[1].frame);
         qp.begin(&Icub23, &s, &contacts).unwrap();
         qp.minimise(&foot, &[0.0, 0.0, 0.3], &[1e6; 3]);

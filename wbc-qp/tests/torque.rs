@@ -1,7 +1,7 @@
 //! The torque program against the equations of motion, its limits, and Clarabel.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{N, Verdict, config, crouch, each, oracle, snapshot};
+use crate::common::{M, N, Verdict, config, crouch, each, oracle, snapshot};
 use core::cell::{Cell, RefCell};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use proptest::prelude::*;
@@ -14,7 +14,6 @@ use wbc_qp::{
 
 const K: usize = 12;
 const V: usize = 35;
-const M: usize = 55;
 
 fn contacts(friction: f64) -> [Contact<f64>; 2] {
     SOLES.map(|sole| Contact::new(&sole, friction, 1000.0))
@@ -150,7 +149,7 @@ fn weights_tend_to_strict_priority() {
     each(config(10, 3), &crouch(0.1, 0.3), |(q, v)| {
         let s = snapshot(&q, &v);
         let solve = |weight: Option<f64>| {
-            let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
+            let mut qp = TorqueQp::<f64, N, K, V, M>::new();
             qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
             let (com, turn) = (s.com(), s.angular_momentum());
             match weight {
@@ -311,7 +310,7 @@ fn levels_are_optimal_one_after_the_other() {
 fn a_held_task_yields_before_limits_and_contacts() {
     each(config(8, 6), &crouch(0.05, 0.0), |(q, v)| {
         let s = snapshot(&q, &v);
-        let mut qp = TorqueQp::<f64, N, K, V, 61>::new();
+        let mut qp = TorqueQp::<f64, N, K, V, M>::new();
         qp.begin(&Icub23, &s, &contacts(0.5), &[0.0; N]).unwrap();
         // No ground pulls a robot down at 3 g.
         qp.hold(&s.com(), &[0.0, 0.0, -30.0]).unwrap();
@@ -382,8 +381,8 @@ fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
 fn single_precision_follows() {
     let posture = [0.0; N];
     let controllers = RefCell::new((
-        TorqueJump::<f64, N, K, V, 61>::new(strict(), posture),
-        TorqueJump::<f32, N, K, V, 61>::new(strict(), [0.0; N]),
+        TorqueJump::<f64, N, K, V, M>::new(strict(), posture),
+        TorqueJump::<f32, N, K, V, M>::new(strict(), [0.0; N]),
     ));
     let f = |x: f64| x as f32;
     let soles = icub_model::hardware::SOLES_F32.map(|sole| Contact::new(&sole, 0.5, 1000.0));

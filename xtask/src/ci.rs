@@ -48,7 +48,7 @@ const HOST: &[Step<'_>] = &[
             "--workspace",
             "--all-targets",
             "--features",
-            "saltus-tests/bench,saltus-tests/fused,saltus-tests/long",
+            "dense-qp/bench,wbc-qp/bench,srb-opt/bench,saltus-tests/bench,saltus-tests/fused,saltus-tests/long",
             "--",
             "-D",
             "warnings",

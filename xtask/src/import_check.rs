@@ -132,6 +132,8 @@ fn at_run_time(python: &Path, root: &Path, folder: &Path, mjcf: bool) -> Result<
         "saltus-tests",
         "--bin",
         "every-urdf",
+        "--features",
+        "saltus-tests/bench",
         "--",
     ]);
     run::succeed(check.arg(golden))

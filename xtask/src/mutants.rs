@@ -39,6 +39,9 @@ pub(crate) struct Args {
     /// So many mutants of each crate.
     #[arg(long, default_value_t = SIZE)]
     size: usize,
+    /// Leave out so many that an earlier run has made: a sample may be made in parts.
+    #[arg(long, default_value_t = 0)]
+    from: usize,
 }
 
 /// What became of the sample of one crate.
@@ -64,7 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         named.collect()
     };
     let outcomes: Vec<Outcome> = (crates.into_iter())
-        .map(|name| measure(name, args.size).with_context(|| name.to_owned()))
+        .map(|name| measure(name, args).with_context(|| name.to_owned()))
         .collect::<Result<_>>()?;
     print!("{}", table(&outcomes));
     let weak: Vec<&str> = (outcomes.iter())
@@ -81,11 +84,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 }
 
 /// Makes the sample of one crate, in a copy of the repository.
-fn measure(name: &str, size: usize) -> Result<Outcome> {
+fn measure(name: &str, args: &Args) -> Result<Outcome> {
     let list =
         run::stdout(run::cargo().args(["mutants", "--list", "--colors=never", "--package", name]))?;
     let listed: Vec<&str> = list.lines().collect();
-    let drawn = sample(&listed, size)?;
+    let drawn = sample(&listed, args.from, args.size)?;
     // Without a pattern cargo-mutants would make them all.
     ensure!(!drawn.is_empty(), "no mutants");
     let folder = run::root().join("target/mutants").join(name);
@@ -99,6 +102,12 @@ fn measure(name: &str, size: usize) -> Result<Outcome> {
     }
     // Every copy has builds of its own: cargo tells workspaces apart by their times alone, and would take another copy's mutant for built.
     cargo.env_remove("CARGO_TARGET_DIR");
+    // What a mutant changes is compiled in every instance, which takes longer than the tests run.
+    cargo.envs([
+        ("CARGO_PROFILE_DEV_OPT_LEVEL", "1"),
+        ("CARGO_PROFILE_DEV_DEBUG", "0"),
+        ("CARGO_INCREMENTAL", "1"),
+    ]);
     // In builds as in tests: without them, examples would be built for every mutant.
     cargo.args(["--cargo-arg=--lib", "--cargo-arg=--test=all"]);
     let status = cargo.status().context("cannot start cargo mutants")?;
@@ -128,7 +137,7 @@ fn lines(path: &Path) -> Result<Vec<String>> {
 ///
 /// The draw goes by the file and the change, and by how many alike stand before it in the file. Lines that move, and mutants that come
 /// or go elsewhere, do not draw others.
-fn sample<'a>(listed: &[&'a str], size: usize) -> Result<Vec<&'a str>> {
+fn sample<'a>(listed: &[&'a str], from: usize, size: usize) -> Result<Vec<&'a str>> {
     let mut alike = BTreeMap::new();
     let mut ranked = Vec::new();
     for line in listed {
@@ -141,6 +150,7 @@ fn sample<'a>(listed: &[&'a str], size: usize) -> Result<Vec<&'a str>> {
     ranked.sort_unstable();
     Ok(ranked
         .into_iter()
+        .skip(from)
         .take(size)
         .map(|(_, line)| line)
         .collect())
@@ -220,7 +230,7 @@ mod tests {
 
     fn drawn(listed: &[String], size: usize) -> Vec<&str> {
         let lines: Vec<&str> = listed.iter().map(String::as_str).collect();
-        sample(&lines, size).unwrap_or_default()
+        sample(&lines, 0, size).unwrap_or_default()
     }
 
     #[test]
@@ -229,6 +239,8 @@ mod tests {
         let all = drawn(&listed, 100);
         assert_eq!(all.len(), 30);
         assert_eq!(drawn(&listed, 7), all[..7]);
+        let lines: Vec<&str> = listed.iter().map(String::as_str).collect();
+        assert_eq!(sample(&lines, 7, 5).unwrap_or_default(), all[7..12]);
         let mut sorted = all.clone();
         sorted.sort_unstable();
         sorted.dedup();
@@ -249,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_list_that_cannot_be_read_is_refused() {
-        assert!(sample(&["no mutant"], 1).is_err());
+        assert!(sample(&["no mutant"], 0, 1).is_err());
     }
 
     #[test]

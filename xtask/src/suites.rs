@@ -43,7 +43,7 @@ fn algorithms() -> Result<()> {
         cargo.args(["test", "--workspace"]);
         cargo
     };
-    run::succeed(test().args(["--lib", "--", "--ignored", "bounds::tests"]))?;
+    run::succeed(test().args(["--test", "all", "--", "--ignored", "bounds::"]))?;
     let mut long = test();
     long.args(["--features", "saltus-tests/long"]);
     long.args(["--test", "golden", "--test", "no_alloc"]);

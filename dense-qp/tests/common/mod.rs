@@ -44,19 +44,27 @@ impl Draw {
 }
 
 /// As many numbers as a program of this size takes, at most.
-pub fn draw<const N: usize, const M: usize>() -> impl Strategy<Value = Draw> {
-    let len = N * N + M * (2 * N + 12) + 8 * N + 16;
+const fn most_numbers(n: usize, m: usize) -> usize {
+    n * n + m * (2 * n + 12) + 8 * n + 16
+}
+
+fn draw(len: usize) -> impl Strategy<Value = Draw> {
     prop::collection::vec(0.0..1.0_f64, len).prop_map(|numbers| Draw { numbers, at: 0 })
 }
 
 /// Runs a property on `cases` draws: the same ones on every machine unless `PROPTEST_RNG_SEED` says otherwise.
 pub fn each<const N: usize, const M: usize>(cases: u32, seed: u64, body: impl Fn(Draw)) {
+    run(most_numbers(N, M), cases, seed, &body);
+}
+
+/// [`each`], compiled once: proptest's runner is larger than most properties.
+fn run(len: usize, cases: u32, seed: u64, body: &dyn Fn(Draw)) {
     let mut config = Config::with_cases(cases);
     if config.rng_seed == RngSeed::Random {
         config.rng_seed = RngSeed::Fixed(seed);
     }
     config.failure_persistence = None;
-    let outcome = TestRunner::new(config).run(&draw::<N, M>(), |draw| {
+    let outcome = TestRunner::new(config).run(&draw(len), |draw| {
         body(draw);
         Ok(())
     });
@@ -219,7 +227,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub fn definite<const N: usize, const M: usize>(
     equalities: usize,
 ) -> impl Strategy<Value = Box<Qp<f64, N, M>>> {
-    draw::<N, M>().prop_map(move |mut r| {
+    draw(most_numbers(N, M)).prop_map(move |mut r| {
         let mut q = Qp::zero();
         q.set_hessian(&mut r, N, 0.1);
         q.set_rows(&mut r, equalities, false);

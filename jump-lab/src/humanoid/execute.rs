@@ -178,7 +178,17 @@ pub fn run(
     sim: Sim,
     disturbance: &Disturbance,
     seed: u64,
-    progress: impl FnMut(f64, Phase),
+    mut progress: impl FnMut(f64, Phase),
+) -> Result<Run, String> {
+    run_told(task, sim, (disturbance, seed), &mut progress)
+}
+
+/// [`run`], compiled once and here: robot, simulators and controllers are large.
+fn run_told(
+    task: &Task,
+    sim: Sim,
+    (disturbance, seed): (&Disturbance, u64),
+    progress: &mut dyn FnMut(f64, Phase),
 ) -> Result<Run, String> {
     task.check()?;
     let start = on_the_floor(squat());

@@ -261,21 +261,23 @@ pub fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
     }
 }
 
+/// May change what the controller is told in a millisecond.
+type Tamper<'a> = dyn FnMut(u64, &mut Observed) + 'a;
+/// Sees the landing's memory.
+type Watch<'a> = dyn FnMut(&landing::Workspace<f64, 12, 4>) + 'a;
+
 /// What is kept of a run.
-struct Keeper<'a, 'p, T, W> {
+struct Keeper<'a, 'p> {
     run: Run,
     plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
     /// Node of the plan's last sample.
     node: usize,
-    tamper: T,
-    watch: W,
+    tamper: &'a mut Tamper<'a>,
+    watch: &'a mut Watch<'a>,
 }
 
-impl<'m, T, W> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
-    for Keeper<'_, '_, T, W>
-where
-    T: FnMut(u64, &mut Observed),
-    W: FnMut(&landing::Workspace<f64, 12, 4>),
+impl<'m> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
+    for Keeper<'_, '_>
 {
     fn tell(&mut self, k: u64, told: &mut Observed) {
         (self.tamper)(k, told);
@@ -323,9 +325,22 @@ pub fn run_watched(
     task: &Task,
     reference: &Reference,
     trial: Trial<'_>,
-    tamper: impl FnMut(u64, &mut Observed),
-    progress: impl FnMut(f64, Phase),
-    watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
+    mut tamper: impl FnMut(u64, &mut Observed),
+    mut progress: impl FnMut(f64, Phase),
+    mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
+) -> Result<Run, String> {
+    run_told(
+        (task, reference, trial),
+        (&mut tamper, &mut watch),
+        &mut progress,
+    )
+}
+
+/// [`run_watched`], compiled once and here: robot, simulators and controllers are large.
+fn run_told<'a>(
+    (task, reference, trial): (&'a Task, &'a Reference, Trial<'_>),
+    (tamper, watch): (&'a mut Tamper<'a>, &'a mut Watch<'a>),
+    progress: &mut dyn FnMut(f64, Phase),
 ) -> Result<Run, String> {
     let robot = task.robot;
     let (drives, build) = (robot.drives(), robot.build(&task.start));

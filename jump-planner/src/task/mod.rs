@@ -3,6 +3,7 @@
 //! The reference problems use Table I of paper A literally; a plan that is to be executed needs the robot that executes it:
 //! its mass, the composite inertia of the crouch, and margins on friction and force.
 
+mod attempt;
 pub mod file;
 mod guess;
 mod values;
@@ -13,7 +14,7 @@ use super::FOOT_COUNT;
 use crate::range::{Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
-use ocp_solver::{Progress, Settings, Solver, Stage, Status};
+use ocp_solver::{Stage, Status};
 use rbd_core::Transform;
 use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
 use std::path::Path;
@@ -265,60 +266,6 @@ impl Task {
             FOOT_COUNT => "four legs".to_owned(),
             _ => on.join(" "),
         }
-    }
-
-    /// Tries to solve the single-rigid-body problem.
-    ///
-    /// # Errors
-    /// As [`Task::guess`].
-    pub fn attempt(
-        &self,
-        settings: &Settings<f64>,
-        observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
-    ) -> Result<SrbPlan, String> {
-        self.attempt_from(self.guess()?.stages, settings, observer)
-    }
-
-    /// As [`Task::attempt`], from these nodes instead of the guess.
-    ///
-    /// # Errors
-    /// What the solver cannot begin with.
-    pub fn attempt_from(
-        &self,
-        mut stages: Vec<SrbStage>,
-        settings: &Settings<f64>,
-        observer: impl FnMut(&Progress<f64>) -> core::ops::ControlFlow<()>,
-    ) -> Result<SrbPlan, String> {
-        let problem = &self.problem;
-        let clock = std::time::Instant::now();
-        let solution = Solver::new(*settings)
-            .solve(problem, &mut stages, observer)
-            .map_err(|error| error.to_string())?;
-        let wall_ms = clock.elapsed().as_secs_f64() * 1e3;
-        let judged = problem.judge(stages.iter().map(|stage| (&stage.state, &stage.control)));
-        Ok(SrbPlan {
-            stages,
-            status: solution.status,
-            iterations: solution.iterations as u32,
-            wall_ms,
-            cost: judged.cost,
-            max_violation: judged.max_violation,
-        })
-    }
-
-    /// Solves the single-rigid-body problem; anything but a solved problem is an error.
-    ///
-    /// # Errors
-    /// As [`Task::attempt`], or that it was not solved.
-    pub fn solve(&self) -> Result<SrbPlan, String> {
-        let plan = self.attempt(&Settings::new(), |_| core::ops::ControlFlow::Continue(()))?;
-        if plan.status != Status::Solved {
-            return Err(format!(
-                "task {}: the planner ended with {:?} after {} iterations, violation {:.1e}",
-                self.name, plan.status, plan.iterations, plan.max_violation
-            ));
-        }
-        Ok(plan)
     }
 }
 

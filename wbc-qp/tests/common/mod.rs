@@ -16,6 +16,10 @@ use rbd_core::{Configuration, Motion, Tangent, Transform};
 use wbc_qp::{Snapshot, anchored};
 
 pub const N: usize = 23;
+/// Rows of iCub's programs on two soles, where a test does not need others: a solver is compiled for each size. Those of the soles, their
+/// cones and the torques, and six more; in the velocity program those of the soles, and six more.
+pub const M: usize = 61;
+pub const VELOCITY_ROWS: usize = 18;
 
 /// The same cases on every machine, unless `PROPTEST_RNG_SEED` says otherwise.
 pub fn config(cases: u32, seed: u64) -> Config {

@@ -1,10 +1,9 @@
 //! The bounds beside the solver.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-use super::impossible;
-use crate::task::Task;
-use crate::task::file::BUILT_IN;
 use core::ops::ControlFlow;
+use jump_planner::bounds::impossible;
+use jump_planner::task::Task;
+use jump_planner::task::file::BUILT_IN;
 use ocp_solver::{Settings, Status};
 use proptest::prelude::*;
 

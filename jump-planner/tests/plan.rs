@@ -1,0 +1,59 @@
+//! The whole way to a plan.
+
+use core::ops::ControlFlow;
+use jump_planner::task::{SrbPlan, Task};
+use jump_planner::whole_body::WholeBodyPlan;
+use jump_planner::{Options, Step, plan, replan};
+use ocp_solver::{Progress, Status};
+
+#[test]
+fn a_task_near_another_is_planned_in_fewer_iterations_and_to_the_same_cost() {
+    let go = |_, _: Option<&Progress<f64>>| ControlFlow::Continue(());
+    let options = Options::default();
+    let task = Task::load("a1/lateral").unwrap();
+    let kept = plan(&task, &options, go).unwrap().kept.unwrap();
+    let mut moved = task.clone();
+    moved.goal.x += 0.1;
+    moved.problem.goal_w.x += 0.1;
+    let afar = plan(&moved, &options, go).unwrap();
+    let near = replan(&moved, &kept, &options, go).unwrap();
+    assert!(near.answer.is_none() && near.audit.unwrap().passes());
+    assert_eq!(near.path.len(), 1);
+    let cost = |out: &Option<WholeBodyPlan>| out.as_ref().unwrap().judged.cost;
+    let (one, other) = (cost(&near.whole_body), cost(&afar.whole_body));
+    assert!((one / other - 1.0).abs() < 1e-4, "{one} {other}");
+    assert!(near.path[0].iterations < afar.path[0].iterations);
+    let body = |out: Option<SrbPlan>| out.unwrap().iterations;
+    assert!(2 * body(near.srb) < body(afar.srb));
+    // What has other phases is planned as if there were nothing.
+    assert!(!kept.is_of_phases(&Task::load("a1/diagonal").unwrap()));
+}
+
+/// With as little torque as the first try has there is no motion; on long intervals there is one with all of it, and with half of it
+/// another is looked for: there the observer ends it.
+#[test]
+fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
+    let mut task = Task::load("a1/lateral").unwrap();
+    task.limits.torque_shares = [0.05, 0.8, 1.0];
+    let mut solves = 0;
+    let observe = |step, progress: Option<&Progress<f64>>| {
+        let begins = progress.is_some_and(|progress| progress.iteration == 0);
+        solves += usize::from(step == Step::WholeBody && begins);
+        if solves < 3 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    };
+    // On one thread the search on long intervals begins after the first try and not beside it.
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let out = alone
+        .build()
+        .unwrap()
+        .install(|| plan(&task, &Options::default(), observe))
+        .unwrap();
+    let ended: Vec<_> = out.path.iter().map(|solve| solve.status).collect();
+    assert_eq!(ended, [Status::Stalled, Status::Solved, Status::Cancelled]);
+    assert_eq!(out.answer.unwrap().status, "Cancelled");
+    assert!(out.bytes.is_empty());
+}
