@@ -35,6 +35,8 @@ const ONTO_MOST: f64 = 0.8;
 /// The way that is left to them, in widths of the smoothed edge at least: the ground that they stand on is then a 400th of the box's height too
 /// high for them. With much more they cannot lift off, since no foot is over it an instant later.
 const ONTO_WIDTHS: f64 = 3.0;
+/// Least width of a smoothed edge, m.
+const NARROWEST: f64 = 1e-3;
 /// Height over the ground that feet keep on their way onto a box, m.
 const ONTO_RISE: f64 = 0.03;
 /// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
@@ -303,11 +305,12 @@ fn cautious(task: &Task, rise: f64) -> Option<Edge<f64>> {
     let land = landed.into_iter().fold(f64::INFINITY, f64::min);
     if edge.drop < 0.0 {
         let way = -stand.min(0.0);
-        let taken = EDGE_MARGIN.min(ONTO_SHARE * way) + rise;
-        let taken = taken.min(ONTO_MOST * way);
+        let first = EDGE_MARGIN.min(ONTO_SHARE * way);
+        let most = (ONTO_MOST * way).min(way - ONTO_WIDTHS * NARROWEST);
+        let taken = (first + rise).min(most.max(first));
         edge.distance -= taken;
         // Feet at the edge itself are no jump, but a width is positive.
-        edge.width = edge.width.min(((way - taken) / ONTO_WIDTHS).max(1e-3));
+        edge.width = edge.width.min(((way - taken) / ONTO_WIDTHS).max(NARROWEST));
     } else {
         edge.distance += EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0));
     }
@@ -365,29 +368,34 @@ mod tests {
     use crate::tightening::Tightening;
     use nalgebra::Vector3;
 
-    /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside and a drop.
-    fn moved(aside: f64, drop: f64) -> f64 {
+    /// How much farther the edge of `a1/lateral-down` is taken to be, m, with a goal aside, a drop and heights drawn in.
+    fn moved(aside: f64, drop: f64, rise: f64) -> f64 {
         let mut task = Task::load("a1/lateral-down").unwrap();
         task.goal.y = aside;
         task.problem.edge.as_mut().unwrap().drop = drop;
-        cautious(&task, 0.0).unwrap().distance - task.problem.edge.unwrap().distance
+        cautious(&task, rise).unwrap().distance - task.problem.edge.unwrap().distance
     }
 
     #[test]
     fn edges_are_moved_away_from_feet_in_the_air_and_not_into_others() {
-        assert!((moved(0.5, 0.3) - EDGE_MARGIN).abs() < 1e-12);
+        assert!((moved(0.5, 0.3, 0.0) - EDGE_MARGIN).abs() < 1e-12);
         // The right feet land 0.13 m right of the goal, the edge is 0.18 m left of the start.
-        let near = moved(0.4, 0.3);
+        let near = moved(0.4, 0.3, 0.0);
         assert!(near > 0.01 && near < 0.04, "{near}");
-        assert_eq!(moved(0.32, 0.3), 0.0);
+        assert_eq!(moved(0.32, 0.3, 0.0), 0.0);
         // Onto a box: towards the left feet, 0.05 m before it, and not as far as they are.
-        let onto = moved(0.5, -0.3);
+        let onto = moved(0.5, -0.3, 0.0);
         assert!(onto < -0.01 && onto > -0.03, "{onto}");
+        // Nearer where a foot met it; off a box that is no remedy.
+        assert!((moved(0.5, -0.3, 0.005) - onto + 0.005).abs() < 1e-12);
+        assert_eq!(moved(0.4, 0.3, 0.005), near);
     }
 
     #[test]
     fn a_box_to_jump_onto_does_not_begin_under_feet_that_stand() {
-        for beyond in [0.01, 0.03, 0.1, 0.5] {
+        let cases =
+            [0.01, 0.03, 0.1, 0.5].map(|beyond| [0.0, 0.01, 1.0].map(|rise| (beyond, rise)));
+        for (beyond, rise) in cases.into_iter().flatten() {
             let file = concat!(
                 env!("CARGO_MANIFEST_DIR"),
                 "/tasks/extra/forward-onto-box.toml"
@@ -398,7 +406,7 @@ mod tests {
             let edge = task.problem.edge.as_mut().unwrap();
             edge.distance = front + beyond;
             let height = -edge.drop;
-            let cautious = cautious(&task, 0.0).unwrap();
+            let cautious = cautious(&task, rise).unwrap();
             assert!(cautious.distance > front && cautious.distance < front + beyond);
             let under = feet.map(|foot| cautious.ground(&foot).height / height);
             assert!(under.iter().all(|share| *share < 1.0 / 350.0), "{under:?}");

@@ -102,12 +102,6 @@ fn measure(name: &str, args: &Args) -> Result<Outcome> {
     }
     // Every copy has builds of its own: cargo tells workspaces apart by their times alone, and would take another copy's mutant for built.
     cargo.env_remove("CARGO_TARGET_DIR");
-    // What a mutant changes is compiled in every instance, which takes longer than the tests run.
-    cargo.envs([
-        ("CARGO_PROFILE_DEV_OPT_LEVEL", "1"),
-        ("CARGO_PROFILE_DEV_DEBUG", "0"),
-        ("CARGO_INCREMENTAL", "1"),
-    ]);
     // In builds as in tests: without them, examples would be built for every mutant.
     cargo.args(["--cargo-arg=--lib", "--cargo-arg=--test=all"]);
     let status = cargo.status().context("cannot start cargo mutants")?;
