@@ -95,6 +95,8 @@ const RELEASE: &[Step<'_>] = &[
     ),
     ("instruction counts", &["xtask", "icount"]),
     ("the Python package", &["xtask", "python"]),
+    // It builds where the checks with MuJoCo did, which are through by then.
+    ("the first hour", &["xtask", "first-hour"]),
 ];
 
 /// The lane of bare targets and of the firmware's workspace.
@@ -105,8 +107,6 @@ const FIRMWARE: &[Step<'_>] = &[
     ("host equals target", &["xtask", "qemu"]),
     ("control ticks within budgets", &["xtask", "firmware"]),
     ("C interface", &["xtask", "c-abi"]),
-    // It builds where the checks with MuJoCo did, which are through by then.
-    ("the first hour", &["xtask", "first-hour"]),
 ];
 
 /// Runs every step; stops soon after the first that fails, and names it.
