@@ -125,6 +125,7 @@ pub fn audited(
     audited_observed(task, srb, timing, &mut observer)
 }
 
+/// [`audited`], compiled once and here.
 pub(crate) fn audited_observed(
     task: &Task,
     srb: &SrbPlan,
