@@ -19,6 +19,7 @@
 //! | *reach* | neither then can a foot that the second node's stance needs come into its leg's box |
 //! | *goal* | position and rotation at the end are given: the trunk there must be over the ground |
 //! | *feet* | a foot that stands is on the ground |
+//! | *landing* | position, rotation and joints at the end are given, within tolerances: the feet there are beyond the edge of a box |
 
 mod facts;
 mod motion;
@@ -57,7 +58,9 @@ const SLACK: f64 = 1e-6;
 #[must_use]
 pub fn impossible(task: &Task) -> Option<Impossible> {
     let places = core::array::from_fn(|foot| task.robot.place(foot));
-    rigid_body(&task.problem, places).or_else(|| power(task))
+    rigid_body(&task.problem, places)
+        .or_else(|| places::landing(task))
+        .or_else(|| power(task))
 }
 
 /// The first bound that a problem on the rigid body breaks, whose feet have these names.

@@ -2,8 +2,9 @@
 
 use core::ops::ControlFlow;
 use jump_planner::bounds::impossible;
+use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
-use jump_planner::task::file::BUILT_IN;
+use jump_planner::task::file::{BUILT_IN, TaskFile};
 use ocp_solver::{Settings, Status};
 use proptest::prelude::*;
 
@@ -86,6 +87,34 @@ fn the_solver_agrees_with_every_bound() {
         let proof = impossible(&task);
         assert_eq!(proof.map(|proof| proof.bound), Some(name));
         assert!(!solves(&task), "{name}: the solver contradicts the bound");
+    }
+}
+
+/// Where the feet come down is a matter of the legs' posture, which the rigid body does not have: onto a box the feet must come over its
+/// edge, and off a box out of it, whichever foot is last.
+#[test]
+fn feet_land_beyond_the_edge_of_a_box() {
+    let near = |name: &str, goal: [f64; 2]| {
+        let mut file = TaskFile::load(name).unwrap().0;
+        (file.goal_m[0], file.goal_m[1]) = (goal[0], goal[1]);
+        let task = Task::from_file(name, &file, Quadruped::a1().unwrap()).unwrap();
+        impossible(&task)
+    };
+    let onto = "tasks/extra/forward-onto-box.toml";
+    let off = "a1/lateral-down";
+    assert_eq!(near(onto, [0.6, 0.0]), None);
+    assert_eq!(near(off, [0.0, 0.5]), None);
+    for (name, goal, words) in [
+        (onto, [0.3, 0.0], ["foot R", "in the air"]),
+        (off, [0.0, 0.29], ["R comes down", "inside it"]),
+        (off, [0.3, 0.29], ["foot", "inside it"]),
+    ] {
+        let proof = near(name, goal).unwrap();
+        assert_eq!(proof.bound, "landing", "{proof}");
+        for word in words {
+            assert!(proof.because.contains(word), "{proof}");
+        }
+        assert!(proof.relaxation.contains("farther"));
     }
 }
 

@@ -237,6 +237,10 @@ impl ProfileFile {
             for (limit, motor) in data.limits.iter_mut().zip(&motors) {
                 // A joint gives what its motor gives, whatever the URDF says.
                 limit.effort = motor.torque;
+                // Where the URDF has no speed limit, or a placeholder, the motor's is the only one.
+                if !(limit.speed > 0.0 && limit.speed.is_finite()) {
+                    limit.speed = motor.no_load_speed;
+                }
             }
             data.table = hardware::geared(&data.table, &motors)?;
             data.motors = Some(motors);

@@ -1,0 +1,126 @@
+//! Robots of others: what a file lacks is named with its remedy, and a profile gives it.
+
+use jump_planner::robot::{JOINTS, Quadruped};
+use rbd_core::Model;
+use std::path::{Path, PathBuf};
+
+/// A1's URDF.
+fn a1() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/a1.urdf");
+    std::fs::read_to_string(path).unwrap()
+}
+
+/// The text without what stands from each `begin` to the next `end`.
+fn without(text: &str, begin: &str, end: &str) -> String {
+    let mut parts = text.split(begin);
+    let mut out = parts.next().unwrap().to_owned();
+    for part in parts {
+        out += part.split_once(end).unwrap().1;
+    }
+    out
+}
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("robots-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn load(&self, name: &str, text: &str, locks: &[&str]) -> Result<Quadruped, String> {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        let locks: Vec<_> = locks.iter().map(|lock| (*lock).to_owned()).collect();
+        Quadruped::load(&path, &locks).map_err(|error| error.to_string())
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).unwrap();
+    }
+}
+
+/// A URDF without any `<limit>`, as of a mini cheetah, is refused alone and good with the motors of a profile.
+#[test]
+fn motors_of_a_profile_stand_in_for_limits_that_a_urdf_lacks() {
+    let folder = Folder::new("limits");
+    let bare = without(&a1(), "<limit ", "/>");
+    let bare = bare.replace("type=\"revolute\"", "type=\"continuous\"");
+    let alone = folder
+        .load("bare.urdf", &bare, &[])
+        .map(|_| ())
+        .unwrap_err();
+    for word in ["FL_hip_joint", "effort", "<limit>", "profile"] {
+        assert!(alone.contains(word), "{word}: {alone}");
+    }
+    let profile = "urdf = \"bare.urdf\"\n[motors.all]\ntorque_nm = 20\ncorner_speed_rad_s = 15\nno_load_speed_rad_s = 30\n";
+    let robot = folder.load("bare.toml", profile, &[]).unwrap();
+    let limits: &[_; JOINTS] = Model::limits(&robot);
+    assert!(
+        limits
+            .iter()
+            .all(|limit| (limit.effort, limit.speed) == (20.0, 30.0))
+    );
+    // The speed limit of the URDF stays where there is one.
+    folder.load("bare.urdf", &a1(), &[]).unwrap();
+    let robot = folder.load("bare.toml", profile, &[]).unwrap();
+    let limits: &[_; JOINTS] = Model::limits(&robot);
+    assert!(
+        limits
+            .iter()
+            .all(|limit| (limit.effort, limit.speed) == (20.0, 21.0))
+    );
+}
+
+/// What is refused names the culprit and a remedy that a plan has.
+#[test]
+fn files_that_are_no_quadruped_are_told_what_they_lack() {
+    let folder = Folder::new("refused");
+    let mut footless = a1();
+    for leg in ["FR", "FL", "RR", "RL"] {
+        let begin = format!("<joint name=\"{leg}_foot_fixed\"");
+        footless = without(&footless, &begin, "</joint>");
+        footless = without(&footless, &format!("<link name=\"{leg}_foot\">"), "</link>");
+    }
+    let negative = a1().replacen("ixx=\"0.0158533\"", "ixx=\"-1\"", 1);
+    assert_ne!(negative, a1());
+    for (text, locks, words, never) in [
+        (
+            footless,
+            &[][..],
+            &["calf_joint", "where the foot is", "sphere"][..],
+            "out of reach",
+        ),
+        (negative, &[], &["trunk", "negative"], "--inertia"),
+        (
+            "<mujoco/>".to_owned(),
+            &[],
+            &["<mujoco>", "MJCF", "saltus import", "URDF"],
+            "or <mujoco>",
+        ),
+        (
+            "<sdf/>".to_owned(),
+            &[],
+            &["<sdf>", "<robot>", "xacro"],
+            "MJCF",
+        ),
+        (
+            a1(),
+            &["FL_hip_joint=0"],
+            &["12", "11", "three revolute joints"],
+            "--lock",
+        ),
+    ] {
+        let error = folder
+            .load("robot.urdf", &text, locks)
+            .map(|_| ())
+            .unwrap_err();
+        for word in words {
+            assert!(error.contains(word), "{word}: {error}");
+        }
+        assert!(!error.contains(never), "{never}: {error}");
+    }
+}
