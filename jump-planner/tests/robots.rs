@@ -1,6 +1,10 @@
 //! Robots of others: what a file lacks is named with its remedy, and a profile gives it.
 
+use jump_planner::planned::Planner;
 use jump_planner::robot::{JOINTS, Quadruped};
+use jump_planner::stored::open_for;
+use jump_planner::task::Task;
+use jump_planner::task::file::TaskFile;
 use rbd_core::Model;
 use std::path::{Path, PathBuf};
 
@@ -122,5 +126,37 @@ fn files_that_are_no_quadruped_are_told_what_they_lack() {
             assert!(error.contains(word), "{word}: {error}");
         }
         assert!(!error.contains(never), "{never}: {error}");
+    }
+}
+
+/// A name that is neither built in nor a file.
+#[test]
+fn a_robot_that_is_not_built_in_is_told_what_is() {
+    let text = "robot = \"spot\"\ngoal_m = [0, 0, 0]\n[[phase]]\nfeet = []\nguess_s = 0.3\n";
+    let file = TaskFile::parse(Path::new("t.toml"), text).unwrap();
+    let error = file
+        .own_robot("t.toml", Path::new(""))
+        .map(|_| ())
+        .unwrap_err();
+    let error = error.to_string();
+    assert!(
+        error.contains("spot") && error.contains("\"a1\""),
+        "{error}"
+    );
+}
+
+/// A plan opened for another robot tells which it is for.
+#[test]
+fn a_plan_for_another_robot_names_both() {
+    let folder = Folder::new("plan");
+    let task = Task::load("a1/lateral").unwrap();
+    let srb = task.solve().unwrap();
+    let bytes = Planner::Kinematics.plan(&task, &srb).unwrap().bytes;
+    assert!(open_for(&bytes, &task.robot).is_ok());
+    let text = a1().replacen("name=\"a1\"", "name=\"wolf\"", 1);
+    let other = folder.load("wolf.urdf", &text, &[]).unwrap();
+    let error = open_for(&bytes, &other).map(|_| ()).unwrap_err();
+    for word in ["another robot, a1 ", "not for wolf ", "--robot"] {
+        assert!(error.contains(word), "{word}: {error}");
     }
 }

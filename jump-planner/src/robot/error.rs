@@ -9,6 +9,9 @@ use std::path::PathBuf;
 /// Why a robot cannot be planned for.
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
+    /// Neither the built-in quadruped nor a file.
+    #[error("no built-in quadruped has this name: write \"a1\", or the path of a URDF or profile")]
+    Unknown,
     /// The file cannot be read.
     #[error("{}", crate::file::told(.0))]
     File(#[from] std::io::Error),
