@@ -73,13 +73,6 @@ fn the_solver_agrees_with_every_bound() {
             task("a1/lateral", |task| task.problem.goal_w.y += 5.0),
         ),
         (
-            "run-up",
-            task("a1/lateral", |task| {
-                task.problem.phase_count = 1;
-                task.problem.min_total = 0.3;
-            }),
-        ),
-        (
             "free fall",
             task("a1/double-backflip", |task| {
                 task.fix_timing(&[0.5, 0.33, 0.2]).unwrap();
