@@ -84,6 +84,29 @@ fn torque_is_told_beside_the_limit_of_its_joint() {
     assert!(line.ends_with("of 0.70"), "{line}");
 }
 
+/// A plan that `saltus plan` would refuse for what its links pass through is flown, and that is told.
+#[test]
+fn what_the_audit_refuses_is_told_where_it_is_flown() {
+    let folder = folder("audit");
+    fs::write(folder.join("robot.urdf"), urdf()).unwrap();
+    let thick = "urdf = \"robot.urdf\"\n[limbs]\nthigh_radius_m = 0.19\n";
+    fs::write(folder.join("thick.toml"), thick).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["run", "a1/lateral", "--robot", "thick.toml", "--out", "out"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let line = said
+        .lines()
+        .find(|line| line.starts_with("audit "))
+        .unwrap();
+    for word in ["refuses the plan", "_thigh passes through the ground"] {
+        assert!(line.contains(word), "{line}");
+    }
+}
+
 /// A limit of effort that no motor of this size has is told, before anything is planned with it.
 #[test]
 #[ignore = "long: cargo xtask suites"]

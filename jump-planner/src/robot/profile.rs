@@ -17,6 +17,8 @@ const TORQUE: Range = Above(0.0, 1e4);
 const SPEED: Range = Above(0.0, 1e3);
 /// Lengths on a robot, m.
 const SIZE: Range = Above(0.0, 10.0);
+/// Half the thickness of a limb, as a share of the leg: a thicker one stands in the ground.
+const LIMB: f64 = 0.5;
 /// Inertias, kg m².
 const INERTIA: Range = Above(0.0, 1e4);
 /// Times, ms.
@@ -258,12 +260,13 @@ impl ProfileFile {
             let centre = Vector3::from(trunk.centre_m);
             data.corners = hardware::corners(&half).map(|corner| centre + corner);
         }
+        let thickest = Above(0.0, LIMB * data.leg_length);
         for (key, radius) in [
             ("limbs.shank_radius_m", self.limbs.shank_radius_m),
             ("limbs.thigh_radius_m", self.limbs.thigh_radius_m),
             ("limbs.hip_radius_m", self.limbs.hip_radius_m),
         ] {
-            radius.map_or(Ok(()), |radius| within(radius, SIZE, key))?;
+            radius.map_or(Ok(()), |radius| within(radius, thickest, key))?;
         }
         data.limbs = self.limbs;
         let strongest = data.limits.iter().map(|limit| limit.effort);
@@ -391,6 +394,11 @@ mod tests {
                 "radius_m = 0.02\n",
                 "radius_m = 0\n",
                 ["foot.radius_m", "above 0"],
+            ),
+            (
+                "hip_radius_m = 0.041",
+                "hip_radius_m = 0.21",
+                ["limbs.hip_radius_m", "up to 0.2"],
             ),
             (
                 "stop_ms = 10",

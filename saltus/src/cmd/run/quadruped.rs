@@ -13,11 +13,12 @@ use jump_lab::quadruped::judge::Judged;
 use jump_lab::quadruped::programs::Programs;
 use jump_lab::quadruped::{Planned, execute, log};
 use jump_planner::answer::Answer;
+use jump_planner::audit::Audit;
 use jump_planner::bounds::impossible;
 use jump_planner::planned::{Origin, Planner};
 use jump_planner::reference::Reference;
 use jump_planner::robot::{JOINTS, Quadruped};
-use jump_planner::stored::joint_name;
+use jump_planner::stored::{joint_name, open_for};
 use jump_planner::task::{SrbPlan, Task};
 use serde_json::json;
 use std::path::Path;
@@ -29,6 +30,8 @@ struct Made {
     task: Task,
     srb: Option<SrbPlan>,
     reference: Reference,
+    /// What the audit has against a plan that is flown all the same: its links pass through the ground or one another.
+    complaint: Option<String>,
 }
 
 /// Runs the jump.
@@ -116,11 +119,23 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
         .planner
         .unwrap_or(Planner::WholeBody)
         .plan(&task, &srb)?;
+    let complaint = match reference.origin {
+        Origin::WholeBody(_) => refusal(&task.robot, &reference)?,
+        _ => None,
+    };
     Ok(Made {
         task,
         srb: Some(srb),
         reference,
+        complaint,
     })
+}
+
+/// Why `saltus plan` would refuse this plan, if it does.
+fn refusal(robot: &Quadruped, reference: &Reference) -> Result<Option<String>, String> {
+    let plan = open_for(&reference.bytes, robot)?;
+    let audit = Audit::of(robot, &plan)?;
+    Ok((!audit.passes()).then(|| audit.complaint()))
 }
 
 /// Reads a stored plan, and the task by which its run is judged.
@@ -145,6 +160,7 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
         task,
         srb: None,
         reference,
+        complaint: None,
     })
 }
 
@@ -173,6 +189,10 @@ fn table(
     let mut lines = vec![plain("task", made.task.name.clone())];
     lines.extend(verdict::lines(&judged.verdict));
     lines.extend(plan_lines(made));
+    if let Some(complaint) = &made.complaint {
+        let refused = format!("refuses the plan, which is flown all the same: {complaint}");
+        lines.push(("audit", refused, Some(false)));
+    }
     lines.extend([
         plain(
             "simulated",
