@@ -68,6 +68,13 @@ fn motors_of_a_profile_stand_in_for_limits_that_a_urdf_lacks() {
             .iter()
             .all(|limit| (limit.effort, limit.speed) == (20.0, 30.0))
     );
+    // So they do where a limit is a placeholder.
+    let fast = a1().replace("velocity=\"21\"", "velocity=\"1000\"");
+    folder.load("bare.urdf", &fast, &[]).unwrap();
+    let robot = folder.load("bare.toml", profile, &[]).unwrap();
+    let limits: &[_; JOINTS] = Model::limits(&robot);
+    assert!(limits.iter().all(|limit| limit.speed == 30.0));
+    assert_eq!(robot.placeholders(), [String::new(); 0]);
     // The speed limit of the URDF stays where there is one.
     folder.load("bare.urdf", &a1(), &[]).unwrap();
     let robot = folder.load("bare.toml", profile, &[]).unwrap();
@@ -91,7 +98,17 @@ fn files_that_are_no_quadruped_are_told_what_they_lack() {
     }
     let negative = a1().replacen("ixx=\"0.0158533\"", "ixx=\"-1\"", 1);
     assert_ne!(negative, a1());
+    // Its root stands 0.3 m before its legs.
+    let aside = r#"<link name="dummy"/><joint name="aside" type="fixed"><parent link="dummy"/><child link="base"/>
+        <origin xyz="-0.3 0 0.5"/></joint></robot>"#;
+    let aside = a1().replace("</robot>", aside);
     for (text, locks, words, never) in [
+        (
+            aside,
+            &[][..],
+            &["no leg stands at FL", "(-0.119, 0.131)", "frame between"][..],
+            "--lock",
+        ),
         (
             footless,
             &[][..],

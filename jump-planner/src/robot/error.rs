@@ -76,9 +76,14 @@ pub enum RobotError {
     NoFoot(String),
     /// Two legs in one quadrant.
     #[error(
-        "no leg stands at {0}: legs must be in four quadrants around the base, x forwards and y to the left"
+        "no leg stands at {place}: legs must be in four quadrants around the root link's frame, x forwards and y to the left; their feet stand at {feet} m: give the robot a root frame between them"
     )]
-    Quadrant(&'static str),
+    Quadrant {
+        /// The quadrant.
+        place: &'static str,
+        /// Where the legs hang, base axes, m.
+        feet: String,
+    },
     /// A joint without a limit that a plan can keep to.
     #[error(
         "joint {joint}: its {what} limit is {value}: a quadruped's joints have finite limits above 0; write it into the <limit> of the URDF, or [motors] into a profile, a TOML file beside the URDF"

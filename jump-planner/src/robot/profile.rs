@@ -239,8 +239,8 @@ impl ProfileFile {
             for (limit, motor) in data.limits.iter_mut().zip(&motors) {
                 // A joint gives what its motor gives, whatever the URDF says.
                 limit.effort = motor.torque;
-                // Where the URDF has no speed limit, or a placeholder, the motor's is the only one.
-                if !(limit.speed > 0.0 && limit.speed.is_finite()) {
+                // Nor faster than its motor, where the URDF has a placeholder or no speed limit.
+                if !(limit.speed > 0.0 && limit.speed <= motor.no_load_speed) {
                     limit.speed = motor.no_load_speed;
                 }
             }

@@ -229,7 +229,12 @@ fn quadrants(hips: &[Vector3<f64>; LEGS]) -> Result<[usize; LEGS], RobotError> {
         *slot = hips
             .iter()
             .position(stands)
-            .ok_or(RobotError::Quadrant(place))?;
+            .ok_or_else(|| RobotError::Quadrant {
+                place,
+                feet: hips
+                    .map(|hip| format!("({:.3}, {:.3})", hip.x, hip.y))
+                    .join(", "),
+            })?;
     }
     Ok(legs)
 }
