@@ -10,6 +10,7 @@
 //! | *durations* | T_i ≥ T_i,min, so Σ T ≥ Σ T_min; likewise from above |
 //! | *falling* | without contact p̈ = −g ẑ from rest: no sideways motion, no turn, p_z falls by g T²/2 |
 //! | *sideways* | every axis of a friction pyramid gives at most μ n F, so \|p̈\| ≤ a = μ n F/m while feet stand, for at most T_s; farthest is a at first and coasting then, a T_s (T − T_s/2) |
+//! | *run-up* | see `run_up` |
 //! | *free fall* | see `free_fall` |
 //! | *force* | as free fall, upwards with p̈_z ≤ n F/m − g |
 //! | *hanging* | after that, p_z ends at most as in free flight for the shortest time there is |
@@ -19,6 +20,7 @@
 //! | *reach* | neither then can a foot that the second node's stance needs come into its leg's box |
 //! | *goal* | position and rotation at the end are given: the trunk there must be over the ground |
 //! | *feet* | a foot that stands is on the ground |
+//! | *landing* | position, rotation and joints at the end are given, within tolerances: the feet there are beyond the edge of a box |
 
 mod facts;
 mod motion;
@@ -57,7 +59,9 @@ const SLACK: f64 = 1e-6;
 #[must_use]
 pub fn impossible(task: &Task) -> Option<Impossible> {
     let places = core::array::from_fn(|foot| task.robot.place(foot));
-    rigid_body(&task.problem, places).or_else(|| power(task))
+    rigid_body(&task.problem, places)
+        .or_else(|| places::landing(task))
+        .or_else(|| power(task))
 }
 
 /// The first bound that a problem on the rigid body breaks, whose feet have these names.
@@ -67,7 +71,7 @@ pub fn rigid_body<const P: usize>(
     places: [&'static str; FOOT_COUNT],
 ) -> Option<Impossible> {
     let facts = Facts::of(problem, places);
-    let bounds: [fn(&Body<P>, &Facts) -> Option<Impossible>; 11] = [
+    let bounds: [fn(&Body<P>, &Facts) -> Option<Impossible>; 12] = [
         motion::durations,
         motion::falling,
         places::feet,
@@ -75,6 +79,7 @@ pub fn rigid_body<const P: usize>(
         places::reach,
         places::goal,
         motion::sideways,
+        motion::run_up,
         motion::free_fall,
         motion::impulse,
         motion::force,

@@ -149,7 +149,7 @@ fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, Str
     if outcome.status != Status::Solved {
         return Err(format!(
             "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
-             ask for less, or try --planner kinematics",
+             `saltus plan` tells what blocks and what would have to change; ask for less, or try --planner kinematics",
             task.name, outcome.status, outcome.iterations, plan.judged.max_violation
         ));
     }

@@ -235,6 +235,22 @@ pub fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, Contai
     Container::open(bytes, hash(robot))
 }
 
+/// As [`open`], for people: of a plan for another robot it tells which, and what to do.
+///
+/// # Errors
+/// A sentence.
+pub fn open_for<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, String> {
+    open(bytes, robot).map_err(|error| match (error, Stored::read(bytes)) {
+        (ContainerError::Robot { planned, given }, Ok(plan)) => format!(
+            "a plan for another robot, {} (model {planned:016x}), and not for {} (model {given:016x}): \
+             give the URDF or profile that it was planned for, with --robot",
+            plan.header().robot,
+            robot.name
+        ),
+        (error, _) => error.to_string(),
+    })
+}
+
 fn hash(robot: &Quadruped) -> u64 {
     model_hash::<f64, _, JOINTS>(robot)
 }

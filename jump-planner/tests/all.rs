@@ -5,3 +5,4 @@ mod bounds;
 mod plan;
 mod planned;
 mod reference;
+mod robots;

@@ -73,7 +73,7 @@ pub enum ImportError {
     },
     /// A joint type that is not revolute, continuous, prismatic or fixed.
     #[error(
-        "{element} is of type `{kind}`: supported are revolute, continuous, prismatic and fixed; replace it by several of those"
+        "{element} is of type `{kind}`: supported are revolute, continuous, prismatic and fixed, and one floating joint from a root link that has no <inertial> and no other joint; replace it by several of those"
     )]
     UnsupportedJoint {
         /// The joint.

@@ -10,6 +10,7 @@ pub mod robot;
 pub mod urdf;
 
 mod canonical;
+mod floating;
 mod locks;
 mod size;
 mod tree;

@@ -130,9 +130,11 @@ impl Urdf {
             warnings: Vec::new(),
             sorted: true,
         };
+        let mut floating = Vec::new();
         for node in robot.children() {
             match node.tag_name().name() {
                 "link" => urdf.add_link(node)?,
+                "joint" if node.attribute("type") == Some("floating") => floating.push(node),
                 "joint" => urdf.add_joint(node)?,
                 _ => {}
             }
@@ -140,6 +142,7 @@ impl Urdf {
         if urdf.links.is_empty() {
             return Err(ImportError::NoLinks);
         }
+        crate::floating::settle(&mut urdf, &floating)?;
         Ok(urdf)
     }
 
@@ -340,7 +343,7 @@ pub(crate) fn line_of(node: Node<'_, '_>) -> usize {
 }
 
 /// Name of a link or joint, and how messages call it.
-fn named(node: Node<'_, '_>) -> Result<(String, String), ImportError> {
+pub(crate) fn named(node: Node<'_, '_>) -> Result<(String, String), ImportError> {
     let tag = node.tag_name().name();
     let line = line_of(node);
     match node.attribute("name") {
@@ -358,7 +361,7 @@ fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|c| c.tag_name().name() == tag)
 }
 
-fn required<'a, 'i>(
+pub(crate) fn required<'a, 'i>(
     node: Node<'a, 'i>,
     tag: &str,
     element: &str,
@@ -370,7 +373,7 @@ fn required<'a, 'i>(
     })
 }
 
-fn attribute<'a>(
+pub(crate) fn attribute<'a>(
     node: Node<'a, '_>,
     name: &str,
     element: &str,

@@ -433,3 +433,38 @@ proptest! {
         }
     }
 }
+
+/// A file that writes the floating base down, as a joint from a link that stands for the world, is the robot without both.
+#[test]
+fn a_floating_joint_at_the_root_is_the_floating_base() {
+    let world = r#"<link name="world"/><joint name="free" type="floating">
+        <parent link="world"/><child link="trunk"/></joint></robot>"#;
+    let [plain, written] =
+        [arm(), arm().replace("</robot>", world)].map(|text| import(&text).unwrap());
+    assert_eq!(format!("{written:?}"), format!("{plain:?}"));
+    for (from, to, words) in [
+        (
+            r#"<link name="world"/>"#,
+            format!(r#"<link name="world">{BOX}</link>"#),
+            "floating",
+        ),
+        (
+            r#"<parent link="world"/>"#,
+            r#"<parent link="fore"/>"#.to_owned(),
+            "floating",
+        ),
+        (
+            r#"<parent link="world"/>"#,
+            r#"<parent link="word"/>"#.to_owned(),
+            "`word`",
+        ),
+        (r#"<child link="trunk"/>"#, String::new(), "child"),
+    ] {
+        let text = arm().replace("</robot>", &world.replace(from, &to));
+        let message = import(&text).unwrap_err().to_string();
+        assert!(
+            message.contains("`free`") && message.contains(words),
+            "{message}"
+        );
+    }
+}

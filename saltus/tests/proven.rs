@@ -5,7 +5,7 @@ use crate::values::problem;
 use serde_json::{Value, json};
 
 /// Problems that a closed form can see have no solution, and what it says of them.
-fn proven_problems() -> [(&'static str, &'static str, Value, &'static [&'static str]); 3] {
+fn proven_problems() -> [(&'static str, &'static str, Value, &'static [&'static str]); 4] {
     [
         (
             "inside the box",
@@ -18,6 +18,12 @@ fn proven_problems() -> [(&'static str, &'static str, Value, &'static [&'static 
             "lateral_down",
             json!({ "/constants/Z0": 0.5 }),
             &["out of reach of its leg along z", "(reach bound)"],
+        ),
+        (
+            "eight metres aside",
+            "lateral_down",
+            json!({ "/tasks/lateral_down/goal": [0.0, 8.0, -0.3] }),
+            &["the goal is 8.000 m away", "(run-up bound)"],
         ),
         (
             "two seconds in the air",

@@ -47,6 +47,66 @@ fn a_robot_from_its_urdf_is_on_target() {
     }
 }
 
+/// The torque of a plan is told beside the limit of the joint that has it, and friction beside the task's.
+#[test]
+fn torque_is_told_beside_the_limit_of_its_joint() {
+    let folder = folder("torque");
+    let mut parts = Vec::new();
+    for part in urdf().split("<joint ") {
+        let hip = part.contains("_hip_joint\"");
+        parts.push(if hip {
+            part.replace("effort=\"33.5\"", "effort=\"20\"")
+        } else {
+            part.to_owned()
+        });
+    }
+    fs::write(folder.join("robot.urdf"), parts.join("<joint ")).unwrap();
+    let task = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+    fs::write(
+        folder.join("t.toml"),
+        format!("{task}\n[limits]\nfriction = 0.7\n"),
+    )
+    .unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["run", "t.toml", "--robot", "robot.urdf", "--out", "out"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    let line = said
+        .lines()
+        .find(|line| line.starts_with("leg plan"))
+        .unwrap();
+    assert!(
+        line.contains("of 33.5 N m (") && line.contains("_calf)"),
+        "{line}"
+    );
+    assert!(line.ends_with("of 0.70"), "{line}");
+}
+
+/// A plan that `saltus plan` would refuse for what its links pass through is flown, and that is told.
+#[test]
+fn what_the_audit_refuses_is_told_where_it_is_flown() {
+    let folder = folder("audit");
+    fs::write(folder.join("robot.urdf"), urdf()).unwrap();
+    let thick = "urdf = \"robot.urdf\"\n[limbs]\nthigh_radius_m = 0.19\n";
+    fs::write(folder.join("thick.toml"), thick).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_saltus"))
+        .args(["run", "a1/lateral", "--robot", "thick.toml", "--out", "out"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stdout).unwrap();
+    let line = said
+        .lines()
+        .find(|line| line.starts_with("audit "))
+        .unwrap();
+    for word in ["refuses the plan", "_thigh passes through the ground"] {
+        assert!(line.contains(word), "{line}");
+    }
+}
+
 /// A limit of effort that no motor of this size has is told, before anything is planned with it.
 #[test]
 #[ignore = "long: cargo xtask suites"]

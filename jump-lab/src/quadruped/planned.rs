@@ -27,7 +27,7 @@ impl Planned {
         bytes: &[u8],
         task: impl FnOnce(&str) -> Result<Task, E>,
     ) -> Result<Self, String> {
-        let plan = stored::open(bytes, robot).map_err(|error| error.to_string())?;
+        let plan = stored::open_for(bytes, robot)?;
         check_values(robot, &plan).map_err(|error| error.to_string())?;
         let task = task(plan.header().task).map_err(|error| error.to_string())?;
         let reference = stored::reference(&plan, &task)?;

@@ -3,6 +3,7 @@
 use super::Body;
 use crate::FOOT_COUNT;
 use nalgebra::Vector3;
+use srb_opt::Foot;
 
 /// Numbers that several bounds need.
 pub(super) struct Facts {
@@ -90,22 +91,25 @@ fn height<const P: usize>(problem: &Body<P>, contacts: &[bool; FOOT_COUNT]) -> f
             .filter(|(_, on)| **on)
             .map(|(foot, _)| foot)
     };
-    let longest = standing().map(|foot| {
-        let corner = |bits: usize| {
-            Vector3::from_fn(|i, _| {
-                let bound = if (bits >> i) & 1 == 0 {
-                    problem.reach_lower[i]
-                } else {
-                    problem.reach_upper[i]
-                };
-                foot.nominal_b[i] + bound
-            })
-        };
-        (0..8).map(|bits| corner(bits).norm()).fold(0.0, f64::max)
-    });
+    let longest = standing().map(|foot| longest_leg(problem, foot));
     let longest = longest.fold(0.0, f64::max);
     let apart = standing()
         .flat_map(|a| standing().map(move |b| (a.pos_wf - b.pos_wf).norm()))
         .fold(0.0, f64::max);
     so3::math::sqrt((longest * longest - 0.25 * apart * apart).max(0.0))
+}
+
+/// Farthest that the centre of mass can be from a foot that stands, wherever the body is turned, m.
+pub(super) fn longest_leg<const P: usize>(problem: &Body<P>, foot: &Foot<f64>) -> f64 {
+    let corner = |bits: usize| {
+        Vector3::from_fn(|i, _| {
+            let bound = if (bits >> i) & 1 == 0 {
+                problem.reach_lower[i]
+            } else {
+                problem.reach_upper[i]
+            };
+            foot.nominal_b[i] + bound
+        })
+    };
+    (0..8).map(|bits| corner(bits).norm()).fold(0.0, f64::max)
 }

@@ -1,6 +1,6 @@
 //! What time, force and friction let a centre of mass do.
 
-use super::facts::Facts;
+use super::facts::{Facts, longest_leg};
 use super::{Body, Impossible, SLACK};
 
 pub(super) fn durations<const P: usize>(problem: &Body<P>, _: &Facts) -> Option<Impossible> {
@@ -61,6 +61,54 @@ pub(super) fn sideways<const P: usize>(problem: &Body<P>, facts: &Facts) -> Opti
             problem.friction, facts.total
         ),
         relaxation: format!("friction would have to be at least {:.3}", far / (push * coasting)),
+    })
+}
+
+/// Speed sideways is gained only where feet can stand.
+///
+/// While feet stand, the centre of mass is within the longest leg of each of them, so along an axis between l and h over all stances, and
+/// at most a = μ n F/m accelerates it. From the last moment at which it rested it moves one way only, so its speed v at the last foothold
+/// is at most √(2 a (h − l)), and after a flight of T it is at most v T farther than h. Reach holds at nodes: between two of them the
+/// centre of mass is at most a dt²/8 outside, and T and v count the last interval of the stance too.
+pub(super) fn run_up<const P: usize>(problem: &Body<P>, facts: &Facts) -> Option<Impossible> {
+    if facts.feet == 0.0 {
+        return None;
+    }
+    let push = problem.friction * facts.feet * problem.max_force / problem.mass;
+    let standing = problem.used_phases().iter();
+    let standing = standing.filter(|phase| phase.contacts.contains(&true));
+    let shortest: f64 = standing.clone().map(|phase| phase.min_duration).sum();
+    let flight = facts.flight[1].min(problem.max_total - shortest).max(0.0);
+    let way = problem.goal_w - problem.start_w;
+    let axis = usize::from(way.y.abs() > way.x.abs());
+    let sign = 1.0_f64.copysign(way[axis]);
+    let start = sign * problem.start_w[axis];
+    let (mut low, mut high) = (start, start);
+    for phase in standing {
+        let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (foot, _) in problem
+            .feet
+            .iter()
+            .zip(phase.contacts)
+            .filter(|(_, on)| *on)
+        {
+            let (at, leg) = (sign * foot.pos_wf[axis], longest_leg(problem, foot));
+            (near, far) = (near.max(at - leg), far.min(at + leg));
+        }
+        (low, high) = (low.min(near), high.max(far));
+    }
+    let dt = facts.interval;
+    let outside = 0.125 * push * dt * dt;
+    let speed = so3::math::sqrt(2.0 * push * (high - low + 2.0 * outside)) + push * dt;
+    let reached = high + outside + speed * (flight + dt) - start;
+    let far = way[axis].abs();
+    (far > reached + SLACK).then(|| Impossible {
+        bound: "run-up",
+        because: format!(
+            "as long as its feet stand the robot gets to at most {speed:.1} m/s sideways, and with a flight of at most {flight:.3} s \
+             to {reached:.3} m, the goal is {far:.3} m away"
+        ),
+        relaxation: format!("the goal would have to be at least {:.3} m nearer", far - reached),
     })
 }
 

@@ -1,9 +1,12 @@
 //! Where body and feet are at the start and at the goal.
 
 use super::facts::Facts;
-use super::{Body, Impossible, SLACK};
+use super::{Body, Impossible, SLACK, Task};
 use crate::FOOT_COUNT;
+use crate::robot::State;
+use crate::whole_body::GOAL_TOLERANCE;
 use nalgebra::{Matrix3, Vector3};
+use rbd_core::Transform;
 use srb_opt::Foot;
 
 pub(super) fn feet<const P: usize>(problem: &Body<P>, facts: &Facts) -> Option<Impossible> {
@@ -113,6 +116,37 @@ pub(super) fn goal<const P: usize>(problem: &Body<P>, _: &Facts) -> Option<Impos
         ),
         relaxation: format!(
             "the goal would have to be at least {below:.3} m higher, or the box that much lower"
+        ),
+    })
+}
+
+/// Feet that come down before the edge of a box, in the posture in which the legs land: beyond what the goal's tolerance forgives.
+pub(super) fn landing(task: &Task) -> Option<Impossible> {
+    let edge = task.problem.edge.filter(|edge| edge.drop != 0.0)?;
+    let robot = &task.robot;
+    let moved = task.problem.goal_w - task.problem.start_w;
+    let base = Transform::new(task.rot_goal, task.start.base.translation + moved);
+    let joints = robot.landing_joints(&task.start).ok()?;
+    let poses = robot.poses(&State { base, joints });
+    let short = robot.feet.iter().enumerate().map(|(i, frame)| {
+        let foot = poses.frame(frame).translation;
+        (edge.distance - edge.sign * foot[edge.axis], i)
+    });
+    let (short, foot) = short.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let forgiven = GOAL_TOLERANCE[0] + GOAL_TOLERANCE[3] * robot.leg_length;
+    (short > forgiven).then(|| Impossible {
+        bound: "landing",
+        because: format!(
+            "at the goal foot {} comes down {short:.3} m before the edge of the box, {}",
+            robot.place(foot),
+            if edge.drop > 0.0 {
+                "inside it"
+            } else {
+                "in the air"
+            }
+        ),
+        relaxation: format!(
+            "the goal would have to be {short:.3} m farther, or the edge that much nearer"
         ),
     })
 }

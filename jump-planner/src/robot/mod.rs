@@ -1,5 +1,6 @@
 //! The robot that is planned for: A1 with its rotors, or a quadruped from a URDF and what is written down beside it.
 
+mod error;
 mod hardware;
 mod posture;
 mod profile;
@@ -15,8 +16,8 @@ use rbd_core::{
     Motor, Posture, Shape, TableModel, Tree, crba,
 };
 
+pub use error::RobotError;
 pub use posture::State;
-pub use urdf::RobotError;
 
 /// Joints: four legs of three.
 pub const JOINTS: usize = 12;

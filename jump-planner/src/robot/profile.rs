@@ -17,6 +17,8 @@ const TORQUE: Range = Above(0.0, 1e4);
 const SPEED: Range = Above(0.0, 1e3);
 /// Lengths on a robot, m.
 const SIZE: Range = Above(0.0, 10.0);
+/// Half the thickness of a limb, as a share of the leg: a thicker one stands in the ground.
+const LIMB: f64 = 0.5;
 /// Inertias, kg m².
 const INERTIA: Range = Above(0.0, 1e4);
 /// Times, ms.
@@ -237,6 +239,10 @@ impl ProfileFile {
             for (limit, motor) in data.limits.iter_mut().zip(&motors) {
                 // A joint gives what its motor gives, whatever the URDF says.
                 limit.effort = motor.torque;
+                // Nor faster than its motor, where the URDF has a placeholder or no speed limit.
+                if !(limit.speed > 0.0 && limit.speed <= motor.no_load_speed) {
+                    limit.speed = motor.no_load_speed;
+                }
             }
             data.table = hardware::geared(&data.table, &motors)?;
             data.motors = Some(motors);
@@ -254,12 +260,13 @@ impl ProfileFile {
             let centre = Vector3::from(trunk.centre_m);
             data.corners = hardware::corners(&half).map(|corner| centre + corner);
         }
+        let thickest = Above(0.0, LIMB * data.leg_length);
         for (key, radius) in [
             ("limbs.shank_radius_m", self.limbs.shank_radius_m),
             ("limbs.thigh_radius_m", self.limbs.thigh_radius_m),
             ("limbs.hip_radius_m", self.limbs.hip_radius_m),
         ] {
-            radius.map_or(Ok(()), |radius| within(radius, SIZE, key))?;
+            radius.map_or(Ok(()), |radius| within(radius, thickest, key))?;
         }
         data.limbs = self.limbs;
         let strongest = data.limits.iter().map(|limit| limit.effort);
@@ -387,6 +394,11 @@ mod tests {
                 "radius_m = 0.02\n",
                 "radius_m = 0\n",
                 ["foot.radius_m", "above 0"],
+            ),
+            (
+                "hip_radius_m = 0.041",
+                "hip_radius_m = 0.21",
+                ["limbs.hip_radius_m", "up to 0.2"],
             ),
             (
                 "stop_ms = 10",

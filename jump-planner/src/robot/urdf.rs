@@ -6,128 +6,31 @@
 //! largest box in the `<collision>` of the base, else the box between the hips.
 
 use super::profile::{KnownBuild, LimbsTable, ProfileFile};
-use super::{Data, JOINTS, LEGS, OWNER_COUNT, PLACES, Quadruped, SHAPE_COUNT, State, hardware};
-use crate::range::{Range, Unusable};
-use model_import::{ImportError, InertiaPolicy, JointInfo, Options, Robot, parse_lock};
+use super::{
+    Data, JOINTS, LEGS, OWNER_COUNT, PLACES, Quadruped, RobotError, SHAPE_COUNT, State, hardware,
+};
+use crate::range::Range;
+use model_import::{ImportError, InertiaPolicy, Options, Robot, parse_lock};
 use nalgebra::Vector3;
 use rbd_core::{
-    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, Shape, TableError, TableModel,
-    Transform, forward_kinematics,
+    BaseKind, Frame, JointLimits, Kinematics, Link, Posture, Shape, TableModel, Transform,
+    forward_kinematics,
 };
 use roxmltree::{Document, Node};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
 const SEED_LEG: f64 = 0.65;
 /// Radius of a foot without a ball, m: simulators do not feel points.
 const POINT: f64 = 1e-3;
+/// Shank of a leg whose foot nothing in the file tells, as a share of the thigh: its only frame stands in the knee.
+const NO_SHANK: f64 = 0.1;
 /// Joint positions that are tried per joint.
 const SEED_STEPS: usize = 25;
 /// How far the sides of a trunk without a box are inside of the hips' joints, as a share of the leg: half a hip and half a thigh.
 const LEG_ROOM: f64 = 0.1;
 /// Half height of a trunk without a box, as a share of the leg.
 const TRUNK_HEIGHT: f64 = 0.14;
-
-/// Why a robot cannot be planned for.
-#[derive(Debug, thiserror::Error)]
-pub enum RobotError {
-    /// The file cannot be read.
-    #[error("{}", crate::file::told(.0))]
-    File(#[from] std::io::Error),
-    /// The URDF of a profile cannot be read.
-    #[error("urdf: {path}: {error}: the path is seen from the profile")]
-    Urdf {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: std::io::Error,
-    },
-    /// The profile is none.
-    #[error("{0}")]
-    Toml(#[from] Box<toml::de::Error>),
-    /// A value of the profile that no robot has.
-    #[error("{key}: {what}")]
-    Profile {
-        /// Its key in the file.
-        key: String,
-        /// What it must be.
-        what: String,
-    },
-    /// The URDF is not a robot.
-    #[error("{0}")]
-    Import(#[from] ImportError),
-    /// Its tables are no model.
-    #[error("{0}")]
-    Table(#[from] TableError),
-    /// The URDF is not XML.
-    #[error("{0}")]
-    Xml(#[from] roxmltree::Error),
-    /// Not twelve joints.
-    #[error(
-        "a quadruped has 12 movable joints, this robot has {count}: {names}; lock those that are no leg's with --lock JOINT=VALUE"
-    )]
-    Joints {
-        /// Movable joints.
-        count: usize,
-        /// Their names.
-        names: String,
-    },
-    /// The joints are not four legs of three.
-    #[error(
-        "joint {0} does not belong to a leg: four legs of three revolute joints must hang from the base"
-    )]
-    NotALeg(String),
-    /// Two legs in one quadrant.
-    #[error(
-        "no leg stands at {0}: legs must be in four quadrants around the base, x forwards and y to the left"
-    )]
-    Quadrant(&'static str),
-    /// A joint without a limit that a plan can keep to.
-    #[error(
-        "joint {joint}: its {what} limit is {value}: a quadruped's joints have finite limits above 0"
-    )]
-    Limit {
-        /// The joint.
-        joint: String,
-        /// Which limit.
-        what: &'static str,
-        /// What it is.
-        value: f64,
-    },
-    /// A joint that has no place to be.
-    #[error("joint {joint}: its range is {lower} to {upper}: the first must be below the second")]
-    Range {
-        /// The joint.
-        joint: String,
-        /// Its lower limit.
-        lower: f64,
-        /// Its upper limit.
-        upper: f64,
-    },
-    /// A collision shape that plans are made with, and that no body has.
-    #[error(
-        "link {link}: the {what} of its collision is `{value}`: must be finite numbers above 0, m"
-    )]
-    Shape {
-        /// The link.
-        link: String,
-        /// Which measure.
-        what: &'static str,
-        /// What it is.
-        value: String,
-    },
-    /// No size of a quadruped.
-    #[error("its {what}: {error}")]
-    Size {
-        /// What is measured.
-        what: &'static str,
-        /// What it must be, and what it is.
-        error: String,
-    },
-    /// No posture stands.
-    #[error("no standing posture: leg {0} cannot reach below its hip within its joint limits")]
-    Posture(&'static str),
-}
 
 impl Quadruped {
     /// The robot of a URDF, or of a profile (`.toml`) that names one, with joints locked as `JOINT=VALUE`. See the module for what a URDF
@@ -165,6 +68,11 @@ impl Quadruped {
                 options.inertia = InertiaPolicy::AsWritten;
                 Robot::from_urdf(&text, &options)?
             }
+            // Remedies of `saltus import` that a plan does not offer.
+            Err(ImportError::UnphysicalInertia { element, moments }) => {
+                return Err(RobotError::NegativeInertia { element, moments });
+            }
+            Err(ImportError::NotARobot { found }) => return Err(RobotError::NotAUrdf(found)),
             other => other?,
         };
         Self::of(&imported, &text, profile)
@@ -172,7 +80,6 @@ impl Quadruped {
 
     fn of(robot: &Robot, text: &str, profile: Option<&ProfileFile>) -> Result<Self, RobotError> {
         check_legs(robot)?;
-        robot.joints.iter().try_for_each(check_limits)?;
         size("mass, kg", Range::Above(0.01, 1e4), robot.mass())?;
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
@@ -218,18 +125,17 @@ impl Quadruped {
             seed: [0.0; JOINTS],
         };
         profile.map_or(Ok(()), |profile| profile.apply(&mut data))?;
+        // After the profile, whose motors stand in for what a URDF does not say.
+        let named = data.joint_names.iter().zip(&data.limits);
+        named
+            .into_iter()
+            .try_for_each(|(name, limits)| check_limits(name, limits))?;
         let ball = Range::Above(0.0, leg_length);
         size("foot's radius, m", ball, data.foot_radius)?;
         data.seed = seed(&data)?;
         data.shapes = hardware::shapes(&data);
         data.owners = hardware::owners(&Self::leak(data.clone()));
         Ok(Self::leak(data))
-    }
-}
-
-impl From<Unusable> for RobotError {
-    fn from((key, what): Unusable) -> Self {
-        Self::Profile { key, what }
     }
 }
 
@@ -277,18 +183,22 @@ fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f
             foot_radius = radius;
             foot.offset = tip.frame.placement().point(&centre).into();
         }
+        let thigh = Vector3::from(robot.bodies[3 * leg + 2].offset).norm();
+        if Vector3::from(foot.offset).norm() < NO_SHANK * thigh {
+            let name = &robot.joints[3 * leg + 2].name;
+            return Err(RobotError::NoFoot(name.clone()));
+        }
         foot.rotation = Frame::IDENTITY.rotation;
     }
     Ok((feet, foot_radius))
 }
 
 /// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.
-fn check_limits(joint: &JointInfo) -> Result<(), RobotError> {
-    let limits = &joint.limits;
+fn check_limits(joint: &str, limits: &JointLimits<f64>) -> Result<(), RobotError> {
     for (what, value) in [("effort", limits.effort), ("velocity", limits.speed)] {
         if !(value > 0.0 && value.is_finite()) {
             return Err(RobotError::Limit {
-                joint: joint.name.clone(),
+                joint: joint.to_owned(),
                 what,
                 value,
             });
@@ -299,7 +209,7 @@ fn check_limits(joint: &JointInfo) -> Result<(), RobotError> {
         return Ok(());
     }
     Err(RobotError::Range {
-        joint: joint.name.clone(),
+        joint: joint.to_owned(),
         lower,
         upper,
     })
@@ -319,7 +229,12 @@ fn quadrants(hips: &[Vector3<f64>; LEGS]) -> Result<[usize; LEGS], RobotError> {
         *slot = hips
             .iter()
             .position(stands)
-            .ok_or(RobotError::Quadrant(place))?;
+            .ok_or_else(|| RobotError::Quadrant {
+                place,
+                feet: hips
+                    .map(|hip| format!("({:.3}, {:.3})", hip.x, hip.y))
+                    .join(", "),
+            })?;
     }
     Ok(legs)
 }

@@ -1,6 +1,6 @@
 //! A task as it is written down: one TOML file. The nine tasks of the project are such files too, in `jump-planner/tasks`.
 
-use crate::robot::Quadruped;
+use crate::robot::{Quadruped, RobotError};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -252,7 +252,7 @@ pub enum TaskError {
         /// The robot.
         robot: String,
         /// Why.
-        error: Box<crate::robot::RobotError>,
+        error: Box<RobotError>,
     },
 }
 
@@ -298,6 +298,9 @@ impl TaskFile {
     pub fn own_robot(&self, task: &str, folder: &Path) -> Result<Quadruped, TaskError> {
         let robot = match self.robot.as_str() {
             "a1" => Quadruped::a1(),
+            name if Path::new(name).extension().is_none() && !folder.join(name).exists() => {
+                Err(RobotError::Unknown)
+            }
             path => Quadruped::load(&folder.join(path), &self.lock),
         };
         robot.map_err(|error| super::robot_error(task, Path::new(&self.robot), error))

@@ -324,8 +324,11 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
         (Some(beyond), None) => ("box.beyond_feet_m", beyond, nearest),
         (None, Some(distance)) => ("box.distance_m", distance, 0.0),
         _ => {
-            let what = "give either this or distance_m".to_owned();
-            return Err(("box.beyond_feet_m".to_owned(), what));
+            let what = match table.beyond_feet_m {
+                Some(_) => "give either this or distance_m, not both",
+                None => "missing: give either this or distance_m",
+            };
+            return Err(("box.beyond_feet_m".to_owned(), what.to_owned()));
         }
     };
     within(given, LENGTH, key)?;

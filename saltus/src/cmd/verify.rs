@@ -7,7 +7,7 @@ use super::folder::describe;
 use super::output::Output;
 use jump_planner::audit::{Audit, check_values};
 use jump_planner::robot::Quadruped;
-use jump_planner::stored::{Stored, agree, open};
+use jump_planner::stored::{Stored, agree, open_for};
 use jump_planner::task::Task;
 use serde_json::json;
 use std::path::PathBuf;
@@ -37,8 +37,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     }?;
     let bytes =
         jump_planner::file::read(&args.file).map_err(|error| describe(&args.file, &error))?;
-    let plan = open(&bytes, &robot).map_err(|error| format!("{}: {error}", args.file.display()))?;
     let show = |error| format!("{}: {error}", args.file.display());
+    let plan = open_for(&bytes, &robot).map_err(show)?;
     check_values(&robot, &plan).map_err(show)?;
     args.compare(&plan)?;
     let audit = Audit::of(&robot, &plan).map_err(show)?;

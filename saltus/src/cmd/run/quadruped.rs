@@ -13,10 +13,12 @@ use jump_lab::quadruped::judge::Judged;
 use jump_lab::quadruped::programs::Programs;
 use jump_lab::quadruped::{Planned, execute, log};
 use jump_planner::answer::Answer;
+use jump_planner::audit::Audit;
 use jump_planner::bounds::impossible;
 use jump_planner::planned::{Origin, Planner};
 use jump_planner::reference::Reference;
-use jump_planner::robot::Quadruped;
+use jump_planner::robot::{JOINTS, Quadruped};
+use jump_planner::stored::{joint_name, open_for};
 use jump_planner::task::{SrbPlan, Task};
 use serde_json::json;
 use std::path::Path;
@@ -28,6 +30,8 @@ struct Made {
     task: Task,
     srb: Option<SrbPlan>,
     reference: Reference,
+    /// What the audit has against a plan that is flown all the same: its links pass through the ground or one another.
+    complaint: Option<String>,
 }
 
 /// Runs the jump.
@@ -115,11 +119,23 @@ fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
         .planner
         .unwrap_or(Planner::WholeBody)
         .plan(&task, &srb)?;
+    let complaint = match reference.origin {
+        Origin::WholeBody(_) => refusal(&task.robot, &reference)?,
+        _ => None,
+    };
     Ok(Made {
         task,
         srb: Some(srb),
         reference,
+        complaint,
     })
+}
+
+/// Why `saltus plan` would refuse this plan, if it does.
+fn refusal(robot: &Quadruped, reference: &Reference) -> Result<Option<String>, String> {
+    let plan = open_for(&reference.bytes, robot)?;
+    let audit = Audit::of(robot, &plan)?;
+    Ok((!audit.passes()).then(|| audit.complaint()))
 }
 
 /// Reads a stored plan, and the task by which its run is judged.
@@ -144,6 +160,7 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
         task,
         srb: None,
         reference,
+        complaint: None,
     })
 }
 
@@ -172,6 +189,10 @@ fn table(
     let mut lines = vec![plain("task", made.task.name.clone())];
     lines.extend(verdict::lines(&judged.verdict));
     lines.extend(plan_lines(made));
+    if let Some(complaint) = &made.complaint {
+        let refused = format!("refuses the plan, which is flown all the same: {complaint}");
+        lines.push(("audit", refused, Some(false)));
+    }
     lines.extend([
         plain(
             "simulated",
@@ -207,7 +228,6 @@ fn table(
 /// What was planned, for people.
 fn plan_lines(made: &Made) -> [Line; 2] {
     let Made { srb, reference, .. } = made;
-    let limit = made.task.robot.drives()[0].torque;
     let body = srb.as_ref().map_or_else(
         || format!("stored, phases {:.3?} s", reference.durations),
         |plan| {
@@ -229,10 +249,30 @@ fn plan_lines(made: &Made) -> [Line; 2] {
         ),
         Origin::Stored => "stored".to_owned(),
     };
+    let (joint, torque, limit) = hardest(&made.task.robot, reference);
+    let most = made.task.limits.friction;
     let peaks = format!(
-        "{legs}; torque {:.1} of {limit:.1} N m, friction {:.2} of 0.60",
-        reference.peak_torque, reference.peak_friction
+        "{legs}; torque {torque:.1} of {limit:.1} N m ({}), friction {:.2} of {most:.2}",
+        joint_name(&made.task.robot, joint),
+        reference.peak_friction
     );
-    let good = reference.peak_torque <= limit && reference.peak_friction <= 0.60;
+    let good = torque <= limit && reference.peak_friction <= most;
     [("body plan", body, None), ("leg plan", peaks, Some(good))]
+}
+
+/// The joint that the push-off takes nearest to its limit of torque, with its largest torque and the limit, N m.
+fn hardest(robot: &Quadruped, reference: &Reference) -> (usize, f64, f64) {
+    let nodes = reference.nodes.iter();
+    let pushing = nodes.filter(|node| node.time < reference.takeoff);
+    let mut torques = [0.0; JOINTS];
+    for node in pushing {
+        for (most, torque) in torques.iter_mut().zip(node.torques) {
+            *most = f64::max(*most, torque.abs());
+        }
+    }
+    let joints = torques.into_iter().zip(robot.drives()).enumerate();
+    let joints = joints.map(|(i, (torque, drive))| (i, torque, drive.torque));
+    joints
+        .max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))
+        .unwrap_or_default()
 }
