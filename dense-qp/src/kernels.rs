@@ -122,35 +122,6 @@ pub(crate) const fn ceil4(i: usize, limit: usize) -> usize {
     if up < limit { up } else { limit }
 }
 
-/// [`sub_scaled`] on columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
-#[inline(never)]
-pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
-    y: &mut [T; N],
-    f: T,
-    x: &[T; N],
-    from: usize,
-    to: usize,
-) {
-    let (y4, y1) = y.as_chunks_mut::<4>();
-    let (x4, x1) = x.as_chunks::<4>();
-    let blocks = from / 4..to / 4;
-    if let (Some(y4), Some(x4)) = (y4.get_mut(blocks.clone()), x4.get(blocks)) {
-        for (y, x) in y4.iter_mut().zip(x4) {
-            *y = [
-                y[0] - f * x[0],
-                y[1] - f * x[1],
-                y[2] - f * x[2],
-                y[3] - f * x[3],
-            ];
-        }
-    }
-    if to == N {
-        for (y, x) in y1.iter_mut().zip(x1) {
-            *y -= f * *x;
-        }
-    }
-}
-
 /// `W` columns, those from `from`, of y − Σ fᵢ·aᵢ, y being `s`: they stay in registers while all rows pass.
 #[inline(always)]
 pub(crate) fn sub_block<T: Scalar, const N: usize, const W: usize>(

@@ -259,7 +259,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn enter(&mut self, id: usize, side: i8, lambda: T) {
         let w = &mut *self.w;
         let k = w.basis.len;
-        w.basis.append(&mut w.candidate, &w.step);
+        w.basis.append(&mut w.candidate, &w.step, &w.vec_b);
         put(&mut w.id, k, id);
         put(&mut w.side, k, side);
         put(&mut w.lambda, k, lambda);
