@@ -115,6 +115,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             first += 4;
         }
         self.square = T::ZERO;
+        let has_basic = elimination.has_basic();
+        if has_basic {
+            elimination.transpose(&mut self.inverse);
+        }
         for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
             let scale = math::sqrt(*w);
             for x in head_mut(column, c + 1) {
@@ -123,7 +127,8 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             if elimination.rank > 0 {
                 let free = *column;
                 self.square += dot(&free, &free);
-                elimination.expand(&free, c + 1, column);
+                let moves = has_basic.then_some(&self.inverse);
+                elimination.expand_by(moves, &free, c + 1, column);
             }
         }
     }

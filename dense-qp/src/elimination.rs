@@ -341,6 +341,36 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
+    /// Wᵀ into the first rows of `out`.
+    pub(crate) fn transpose(&self, out: &mut [[T; N]; N]) {
+        let end = ceil4(self.rank - self.fixed, N);
+        for (i, out) in out.iter_mut().enumerate().take(self.free()) {
+            span_mut(out, self.rank - self.fixed, end).fill(T::ZERO);
+            for (e, row) in out.iter_mut().zip(self.basic_rows()) {
+                *e = at(row, i);
+            }
+        }
+    }
+
+    /// [`Elimination::expand`] by Wᵀ as [`Elimination::transpose`] leaves it: for many y.
+    #[inline]
+    pub(crate) fn expand_by(&self, moves: Option<&[[T; N]; N]>, y: &[T; N], used: usize, z: &mut [T; N]) {
+        for (y, v) in y.iter().zip(self.free_variables()) {
+            put(z, *v, *y);
+        }
+        for v in span(&self.perm, N - self.fixed.min(N), N) {
+            put(z, *v, T::ZERO);
+        }
+        if let Some(moves) = moves {
+            let mut moved = [T::ZERO; N];
+            let end = ceil4(self.rank - self.fixed, N);
+            sub_rows(&mut moved, head(y, used), moves, 0, end);
+            for (d, v) in moved.iter().zip(self.basic_variables()) {
+                put(z, *v, *d);
+            }
+        }
+    }
+
     /// x_F ← y, x_B ← 0.
     pub(crate) fn scatter(&self, y: &[T; N], x: &mut [T; N]) {
         x.fill(T::ZERO);
