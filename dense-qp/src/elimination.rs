@@ -9,10 +9,11 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, copy, dots, floor4, head, max_abs, put, row, row_mut};
+use crate::kernels::{at, ceil4, copy, dots, floor4, head, head_mut, max_abs, put, row, row_mut};
 use crate::kernels::{span, span_mut, sub_rows, sub_scaled};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
+use crate::tiles::{load, store, sub_products};
 use so3::{Scalar, math};
 
 #[derive(Clone, Debug)]
@@ -97,10 +98,10 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         self.fixed = self.rank;
-        let mut scales = [T::ONE; N];
+        let mut scales = [T::ZERO; N];
         if has_rows {
-            for (scale, p) in scales.iter_mut().zip(&self.perm) {
-                *scale += at(row(problem.hessian, *p), *p);
+            for (scale, p) in scales.iter_mut().zip(self.free_variables()) {
+                *scale = T::ONE / (T::ONE + at(row(problem.hessian, *p), *p));
             }
         }
         let limits = problem.row_lower.iter().zip(problem.row_upper);
@@ -170,15 +171,15 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
         let (rank, free) = (self.rank, self.free());
         let rhs = self.eliminate(work, limit);
-        // The pivot is the entry that is largest for variables measured by their own curvature;
-        // w²/c is compared crosswise, without a division.
-        let (mut pivot, mut best, mut best_scale) = (0, T::ZERO, T::ONE);
-        for (j, (w, scale)) in head(work, free).iter().zip(&*scales).enumerate() {
-            let square = *w * *w;
-            if square * best_scale > best * *scale {
-                (pivot, best, best_scale) = (j, square, *scale);
-            }
+        // The pivot is the entry that is largest for variables measured by their own curvature; those that are taken have no scale.
+        let mut squares = [T::ZERO; N];
+        let mut best = T::ZERO;
+        for ((square, w), scale) in squares.iter_mut().zip(&*work).zip(&*scales) {
+            *square = *w * *w * *scale;
+            best = if *square > best { *square } else { best };
         }
+        let pivot = squares.iter().position(|square| *square == best);
+        let pivot = pivot.unwrap_or(0).min(free.saturating_sub(1));
         let size = max_abs(a);
         let least = row_tolerance::<T>() * size;
         let is_left = |w: T| w > least;
@@ -207,6 +208,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 r.swap(last, pivot);
             }
         }
+        put(scales, last, T::ZERO);
         self.rank += 1;
         Ok(())
     }
@@ -225,8 +227,11 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             };
             if k >= self.fixed && *at_pivot != T::ZERO {
                 *at_pivot *= at(&self.inverse, k);
-                let columns = open.iter_mut().zip(r).skip(swept);
-                columns.for_each(|(w, r)| *w -= *at_pivot * *r);
+                let columns = N - 1 - k;
+                let open = span_mut(open, swept, columns).iter_mut();
+                for (w, r) in open.zip(span(r, swept, columns)) {
+                    *w -= *at_pivot * *r;
+                }
                 *share = *at_pivot;
             }
             rhs -= *at_pivot * *c;
@@ -239,12 +244,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
     /// U₁₁⁻¹ on the part of the free columns and on the right-hand side.
     fn finish(&mut self, work: &mut [T; N]) {
         let (rank, free) = (self.rank, self.free());
+        let mut shares = [T::ZERO; N];
         for k in (self.fixed..rank).rev() {
             let Some((upper, lower)) = self.lu.split_at_mut_checked(k + 1) else {
                 break;
             };
             let Some(r) = upper.last_mut() else { break };
-            let mut shares = [T::ZERO; N];
             let (mut p, inverse) = (at(&self.rhs, k), at(&self.inverse, k));
             let of_row = span(r, free, N - 1 - k).iter().rev();
             for ((share, u), known) in
@@ -436,25 +441,30 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             sub_rows(c, &shares, self.basic_rows(), 0, end);
         }
         let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
-        let mut others = [T::ZERO; N];
-        for (i, ((o, v), m)) in out
-            .iter_mut()
-            .zip(self.free_variables())
-            .zip(magnitude)
-            .enumerate()
-        {
+        for (i, (o, v)) in out.iter_mut().zip(self.free_variables()).enumerate() {
             let hv = row(h, *v);
-            *m = at(hv, *v);
+            put(magnitude, i, at(hv, *v));
             for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
                 *o = at(hv, *f);
             }
-            for ((f, g), (w, c)) in shares.iter_mut().zip(&mut others).zip(w.iter().zip(c)) {
-                (*f, *g) = (at(w, i), at(c, i));
-                *m += math::abs(*f * *g);
+        }
+        for (w, c) in w.iter().zip(c) {
+            for ((m, w), c) in magnitude.iter_mut().zip(w).zip(c).take(free) {
+                *m += math::abs(*w * *c);
             }
-            sub_rows(o, &shares, c, floor4(i), end);
-            sub_rows(o, &others, w, floor4(i), end);
-            span_mut(o, free, end).fill(T::ZERO);
+        }
+        let out = head_mut(out, free);
+        for i in (0..free).step_by(4) {
+            let own = span_mut(out, i, free);
+            for j in (i..end).step_by(4) {
+                let mut tile = load(own, j);
+                sub_products(&mut tile, [w, c], [i, j], |_, w| w);
+                sub_products(&mut tile, [c, w], [i, j], |_, c| c);
+                store(own, j, &tile);
+            }
+            for o in own.iter_mut().take(4) {
+                span_mut(o, free, end).fill(T::ZERO);
+            }
         }
     }
 

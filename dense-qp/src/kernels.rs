@@ -189,6 +189,13 @@ pub(crate) fn sub_rows<T: Scalar, const N: usize>(
     to: usize,
 ) {
     let mut column = from;
+    if let (true, Some(s)) = (
+        to == from + 20,
+        y.get_mut(from..).and_then(|y| y.first_chunk_mut::<20>()),
+    ) {
+        *s = sub_block(*s, factors, rows, from);
+        return;
+    }
     // Chains of that many columns hide how long a product takes.
     while let (true, Some(s)) = (
         column + 16 <= to,

@@ -30,6 +30,9 @@ pub struct Problem<'a, T, const N: usize, const M: usize> {
     pub spans: Option<&'a [[usize; 2]; M]>,
 }
 
+/// Entries that cost less one after the other than a whole row.
+const FEW: usize = 12;
+
 impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
     /// A problem whose variables have no bounds.
     pub const fn new(
@@ -117,7 +120,11 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
             None => dot(a, x),
             Some(spans) => {
                 let [from, to] = at(spans, i);
-                dot_few(a, x, from, to)
+                if to - from == N {
+                    dot(a, x)
+                } else {
+                    dot_few(a, x, from, to)
+                }
             }
         }
     }
@@ -141,6 +148,42 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         } else if let Some(e) = y.get_mut(i - M) {
             *e += f;
         }
+    }
+
+    /// The same problem with spans that have been found.
+    pub(crate) fn narrowed<'s>(&self, spans: Option<&'s [[usize; 2]; M]>) -> Problem<'s, T, N, M>
+    where
+        'a: 's,
+    {
+        Problem {
+            spans: spans.or(self.spans),
+            ..*self
+        }
+    }
+
+    /// Of each row the columns outside of which it is zero, if that saves time: where rows are long, and some of them short.
+    pub(crate) fn find_spans(&self) -> Option<[[usize; 2]; M]> {
+        if N < 2 * FEW || self.spans.is_some() {
+            return None;
+        }
+        let (mut spans, mut any) = ([[0, N]; M], false);
+        let used = |a: &T| *a != T::ZERO;
+        for (known, a) in spans.iter_mut().zip(self.rows) {
+            let blocks = a.as_chunks::<4>().0;
+            let zeros = blocks.iter().position(|block| *block != [T::ZERO; 4]);
+            let first = 4 * zeros.unwrap_or(blocks.len());
+            let rest = span(a, first, N);
+            // Of a row without leading zeros its end says at once whether it is long.
+            if first == 0 && rest.last().is_some_and(used) {
+                continue;
+            }
+            let from = first + rest.iter().position(used).unwrap_or(0);
+            let to = rest.iter().rposition(used).map_or(from, |last| first + last + 1);
+            if to - from <= FEW {
+                (*known, any) = ([from, to], true);
+            }
+        }
+        any.then_some(spans)
     }
 
     /// Names the first number that no solver could use.

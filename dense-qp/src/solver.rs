@@ -45,7 +45,9 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    Search::new(problem, settings, workspace).conclude(Search::run)
+    let spans = problem.find_spans();
+    let problem = problem.narrowed(spans.as_ref());
+    Search::new(&problem, settings, workspace).conclude(Search::run)
 }
 
 /// Goes on where the workspace's last solve ended, for the same problem with other limits of inequalities: rows may have lost
@@ -61,7 +63,9 @@ pub fn resume<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    let search = Search::new(problem, settings, workspace);
+    let spans = problem.find_spans();
+    let problem = problem.narrowed(spans.as_ref());
+    let search = Search::new(&problem, settings, workspace);
     if search.w.is_factorised {
         search.conclude(Search::resume)
     } else {
