@@ -14,7 +14,7 @@
 use crate::elimination::Elimination;
 use crate::factor::Factor;
 use crate::kernels::{at, ceil4, copy, dot, dots, head, head_mut, put, rotate, span, span_mut};
-use crate::kernels::{sub_outer, sub_rows, sub_triangle};
+use crate::kernels::{sub_outer, sum_rows, sum_triangle};
 use crate::settings::dependence_tolerance;
 use crate::tiles::{Shares, load, store, sub_products};
 use so3::{Scalar, math};
@@ -166,12 +166,8 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// z = J₂d₂, or J d with `from` = 0.
     #[inline]
     pub(crate) fn direction(&self, from: usize, d: &[T; N], z: &mut [T; N]) {
-        z.fill(T::ZERO);
         let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
-        sub_rows(z, d, columns, 0, N);
-        for z in z {
-            *z = -*z;
-        }
+        sum_rows(z, d, columns, N);
     }
 
     /// Appends an independent candidate whose z and r are given.
@@ -246,14 +242,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// v ← R⁻¹v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        let len = self.len;
-        let mut shares = *v;
-        for f in head_mut(&mut shares, len) {
-            *f = -*f;
-        }
-        v.fill(T::ZERO);
-        let shares = head(&shares, len);
-        sub_triangle(v, shares, head(&self.inverse, len), ceil4(len, N));
+        let shares = *v;
+        let columns = head(&self.inverse, self.len);
+        sum_triangle(v, head(&shares, self.len), columns);
     }
 
     /// v ← R⁻ᵀv.

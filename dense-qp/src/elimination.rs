@@ -10,7 +10,7 @@
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
 use crate::kernels::{at, ceil4, copy, dots, floor4, head, head_mut, max_abs, put, row, row_mut};
-use crate::kernels::{span, span_mut, sub_rows, sub_scaled};
+use crate::kernels::{span, span_mut, sub_rows, sub_scaled, sum_rows};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use crate::tiles::{load, store, sub_products};
@@ -369,9 +369,9 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         if let Some(moves) = moves {
             let mut moved = [T::ZERO; N];
             let end = ceil4(self.rank - self.fixed, N);
-            sub_rows(&mut moved, head(y, used), moves, 0, end);
+            sum_rows(&mut moved, head(y, used), moves, end);
             for (d, v) in moved.iter().zip(self.basic_variables()) {
-                put(z, *v, *d);
+                put(z, *v, -*d);
             }
         }
     }

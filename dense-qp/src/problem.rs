@@ -120,7 +120,7 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
             None => dot(a, x),
             Some(spans) => {
                 let [from, to] = at(spans, i);
-                if to - from == N {
+                if [from, to] == [0, N] {
                     dot(a, x)
                 } else {
                     dot_few(a, x, from, to)
