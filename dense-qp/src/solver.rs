@@ -86,6 +86,8 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     worth: T,
     /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
     toll: T,
+    /// The largest |λₖeₖ|.
+    complementarity: T,
     /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
@@ -108,6 +110,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             most: settings.max_steps.min(Workspace::<T, N, M>::STEPS),
             worth: T::ZERO,
             toll: T::ZERO,
+            complementarity: T::ZERO,
             primal: T::ZERO,
         }
     }
