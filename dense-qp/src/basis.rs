@@ -92,8 +92,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
                 break;
             };
             let own = head_mut(open, 4.min(n - first));
-            for column in own.iter_mut() {
-                span_mut(column, first, N).fill(T::ZERO);
+            if elimination.rank == 0 {
+                for column in own.iter_mut() {
+                    span_mut(column, first, N).fill(T::ZERO);
+                }
             }
             let u = load(span(&factor.u, first, n), first);
             let [a, b, c, _] = u;
@@ -119,17 +121,22 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         if has_basic {
             elimination.transpose(&mut self.inverse);
         }
+        let (mut free, mut moved) = ([T::ZERO; N], [T::ZERO; N]);
         for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
             let scale = math::sqrt(*w);
-            for x in head_mut(column, c + 1) {
-                *x *= scale;
+            if elimination.rank == 0 {
+                for x in head_mut(column, c + 1) {
+                    *x *= scale;
+                }
+                continue;
             }
-            if elimination.rank > 0 {
-                let free = *column;
-                self.square += dot(&free, &free);
-                let moves = has_basic.then_some(&self.inverse);
-                elimination.expand_by(moves, &free, c + 1, column);
+            let known = head_mut(&mut free, c + 1);
+            for (y, x) in known.iter_mut().zip(&*column) {
+                *y = *x * scale;
             }
+            self.square += dot(known, known);
+            let moves = has_basic.then_some((&self.inverse, &mut moved));
+            elimination.expand_by(moves, known, column);
         }
     }
 
@@ -253,6 +260,11 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         let whole = *v;
         let mut known = [T::ZERO; N];
         copy(head_mut(&mut known, len), &whole);
-        dots(head_mut(v, len), head(&self.inverse, len), &known, [0, ceil4(len, N)]);
+        dots(
+            head_mut(v, len),
+            head(&self.inverse, len),
+            &known,
+            [0, ceil4(len, N)],
+        );
     }
 }

@@ -98,7 +98,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         self.fixed = self.rank;
-        let mut scales = [T::ZERO; N];
+        let (mut scales, mut shares) = ([T::ZERO; N], [T::ZERO; N]);
         if has_rows {
             for (scale, p) in scales.iter_mut().zip(self.free_variables()) {
                 *scale = T::ONE / (T::ONE + at(row(problem.hessian, *p), *p));
@@ -107,7 +107,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let limits = problem.row_lower.iter().zip(problem.row_upper);
         for (i, (l, u)) in limits.enumerate().take(if has_rows { M } else { 0 }) {
             if l == u && l.is_finite_number() {
-                self.insert(problem, i, *l, feasibility, (scratch, &mut scales))?;
+                let scratch = [&mut *scratch, &mut scales, &mut shares];
+                self.insert(problem, i, *l, feasibility, scratch)?;
             }
         }
         if self.rank > 0 {
@@ -163,22 +164,21 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         i: usize,
         limit: T,
         feasibility: T,
-        (work, scales): (&mut [T; N], &mut [T; N]),
+        [work, scales, shares]: [&mut [T; N]; 3],
     ) -> Result<(), Contradiction> {
         let a = row(problem.rows, i);
         for (w, p) in work.iter_mut().zip(&self.perm) {
             *w = at(a, *p);
         }
         let (rank, free) = (self.rank, self.free());
-        let rhs = self.eliminate(work, limit);
+        let rhs = self.eliminate(work, shares, limit);
         // The pivot is the entry that is largest for variables measured by their own curvature; those that are taken have no scale.
-        let mut squares = [T::ZERO; N];
-        let mut best = T::ZERO;
-        for ((square, w), scale) in squares.iter_mut().zip(&*work).zip(&*scales) {
-            *square = *w * *w * *scale;
-            best = if *square > best { *square } else { best };
-        }
-        let pivot = squares.iter().position(|square| *square == best);
+        let squares = || work.iter().zip(&*scales).map(|(w, scale)| *w * *w * *scale);
+        let best = squares().fold(
+            T::ZERO,
+            |best, square| if square > best { square } else { best },
+        );
+        let pivot = squares().position(|square| square == best);
         let pivot = pivot.unwrap_or(0).min(free.saturating_sub(1));
         let size = max_abs(a);
         let least = row_tolerance::<T>() * size;
@@ -215,13 +215,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
 
     /// Takes the earlier rows out of `work`, whose right-hand side is `limit`; returns what is left of that. Their shares stand in the
     /// columns of their pivots then.
-    fn eliminate(&self, work: &mut [T; N], limit: T) -> T {
+    fn eliminate(&self, work: &mut [T; N], shares: &mut [T; N], limit: T) -> T {
         let (mut rhs, free) = (limit, self.free());
-        let mut shares = [T::ZERO; N];
         // Columns that a sweep over whole blocks would have to share with pivots go with these.
         let swept = floor4(free);
         let rows = head(&self.lu, self.rank).iter().zip(&self.rhs);
-        for ((k, (r, c)), share) in rows.enumerate().zip(&mut shares) {
+        for ((k, (r, c)), share) in rows.enumerate().zip(&mut *shares) {
             let Some((open, [at_pivot, ..])) = work.split_at_mut_checked(N - 1 - k) else {
                 break;
             };
@@ -232,12 +231,12 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 for (w, r) in open.zip(span(r, swept, columns)) {
                     *w -= *at_pivot * *r;
                 }
-                *share = *at_pivot;
             }
+            *share = *at_pivot;
             rhs -= *at_pivot * *c;
         }
         let rows = span(&self.lu, self.fixed, self.rank);
-        sub_rows(work, span(&shares, self.fixed, self.rank), rows, 0, swept);
+        sub_rows(work, span(shares, self.fixed, self.rank), rows, 0, swept);
         rhs
     }
 
@@ -357,19 +356,29 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
-    /// [`Elimination::expand`] by Wᵀ as [`Elimination::transpose`] leaves it: for many y.
+    /// [`Elimination::expand`] of the first entries y by Wᵀ as [`Elimination::transpose`] leaves it, with room for what it moves: for many y.
     #[inline]
-    pub(crate) fn expand_by(&self, moves: Option<&[[T; N]; N]>, y: &[T; N], used: usize, z: &mut [T; N]) {
-        for (y, v) in y.iter().zip(self.free_variables()) {
+    pub(crate) fn expand_by(
+        &self,
+        moves: Option<(&[[T; N]; N], &mut [T; N])>,
+        y: &[T],
+        z: &mut [T; N],
+    ) {
+        let (moving, others) = self
+            .free_variables()
+            .split_at_checked(y.len())
+            .unwrap_or((&[], &[]));
+        for (y, v) in y.iter().zip(moving) {
             put(z, *v, *y);
         }
-        for v in span(&self.perm, N - self.fixed.min(N), N) {
+        for v in others
+            .iter()
+            .chain(span(&self.perm, N - self.fixed.min(N), N))
+        {
             put(z, *v, T::ZERO);
         }
-        if let Some(moves) = moves {
-            let mut moved = [T::ZERO; N];
-            let end = ceil4(self.rank - self.fixed, N);
-            sum_rows(&mut moved, head(y, used), moves, end);
+        if let Some((transposed, moved)) = moves {
+            sum_rows(moved, y, transposed, ceil4(self.rank - self.fixed, N));
             for (d, v) in moved.iter().zip(self.basic_variables()) {
                 put(z, *v, -*d);
             }

@@ -1,7 +1,7 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
-use crate::kernels::{at, ceil4, dot_in, floor4, head, head_mut, put, scale_from, span, span_mut};
 use crate::kernels::sub_block;
+use crate::kernels::{at, ceil4, dot_in, floor4, head, head_mut, put, scale_from, span, span_mut};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use crate::tiles::{Shares, less, load, store, sub_products};
 use core::slice::from_ref;
@@ -112,7 +112,11 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         let r2 = less(less(r2, of_third[0], r0), of_third[1], r1);
         let w2 = pivot(2, r2[2]);
         let of_fourth = [r0[3] * w0, r1[3] * w1, r2[3] * w2];
-        let r3 = less(less(less(r3, of_fourth[0], r0), of_fourth[1], r1), of_fourth[2], r2);
+        let r3 = less(
+            less(less(r3, of_fourth[0], r0), of_fourth[1], r1),
+            of_fourth[2],
+            r2,
+        );
         pivot(3, r3[3]);
         tile = [r0, r1, r2, r3];
         if let Some(own) = self.u.get_mut(first..n) {
@@ -125,8 +129,8 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     #[inline(always)]
     fn pivot(&mut self, k: usize, d: T, scale: T) -> (T, bool) {
         let diagonal = at(&self.weight, k);
-        let is_sound = d > pivot_tolerance::<T>() * diagonal
-            && diagonal > T::EPSILON * T::EPSILON * scale;
+        let is_sound =
+            d > pivot_tolerance::<T>() * diagonal && diagonal > T::EPSILON * T::EPSILON * scale;
         let (d, is_below) = if is_sound {
             (d, false)
         } else {
