@@ -9,12 +9,13 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, copy, dots, floor4, head, head_mut, max_abs, put, row, row_mut};
+use crate::kernels::{at, ceil4, copy, dots, floor4, head, max_abs, put, row, row_mut};
 use crate::kernels::{span, span_mut, sub_rows, sub_scaled, sum_rows};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
-use crate::tiles::{load, store, sub_products};
 use so3::{Scalar, math};
+
+mod hessian;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T, const N: usize> {
@@ -418,62 +419,6 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let known = span(&self.rhs, self.fixed, self.rank);
         for ((d, p), v) in moved.iter().zip(known).zip(self.basic_variables()) {
             put(x, *v, *p - *d);
-        }
-    }
-
-    /// Upper triangle of ZᵀHZ into `out` and the size of the terms of its diagonal into `magnitude`. `c` is scratch.
-    pub(crate) fn reduce_hessian(
-        &self,
-        h: &[[T; N]; N],
-        out: &mut [[T; N]; N],
-        magnitude: &mut [T; N],
-        c: &mut [[T; N]; N],
-    ) {
-        if self.rank == 0 {
-            for (i, ((o, h), m)) in out.iter_mut().zip(h).zip(magnitude).enumerate() {
-                copy(span_mut(o, i, N), span(h, i, N));
-                *m = at(h, i);
-            }
-            return;
-        }
-        let (free, end) = (self.free(), ceil4(self.free(), N));
-        // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W.
-        let mut shares = [T::ZERO; N];
-        for (c, v) in c.iter_mut().zip(self.basic_variables()) {
-            let hv = row(h, *v);
-            for (c, f) in c.iter_mut().zip(self.free_variables()) {
-                *c = at(hv, *f);
-            }
-            for (f, other) in shares.iter_mut().zip(self.basic_variables()) {
-                *f = at(hv, *other) * T::HALF;
-            }
-            sub_rows(c, &shares, self.basic_rows(), 0, end);
-        }
-        let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
-        for (i, (o, v)) in out.iter_mut().zip(self.free_variables()).enumerate() {
-            let hv = row(h, *v);
-            put(magnitude, i, at(hv, *v));
-            for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
-                *o = at(hv, *f);
-            }
-        }
-        for (w, c) in w.iter().zip(c) {
-            for ((m, w), c) in magnitude.iter_mut().zip(w).zip(c).take(free) {
-                *m += math::abs(*w * *c);
-            }
-        }
-        let out = head_mut(out, free);
-        for i in (0..free).step_by(4) {
-            let own = span_mut(out, i, free);
-            for j in (i..end).step_by(4) {
-                let mut tile = load(own, j);
-                sub_products(&mut tile, [w, c], [i, j], |_, w| w);
-                sub_products(&mut tile, [c, w], [i, j], |_, c| c);
-                store(own, j, &tile);
-            }
-            for o in own.iter_mut().take(4) {
-                span_mut(o, free, end).fill(T::ZERO);
-            }
         }
     }
 
