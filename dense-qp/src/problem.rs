@@ -161,9 +161,10 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         }
     }
 
-    /// Of each row the columns outside of which it is zero, if that saves time: where rows are long, and some of them short.
+    /// Of each row the columns outside of which it is zero, if that saves time: where rows are long and many, and some of them short. To find
+    /// them costs about as much as a look at all rows saves.
     pub(crate) fn find_spans(&self) -> Option<[[usize; 2]; M]> {
-        if N < 2 * FEW || self.spans.is_some() {
+        if N < 2 * FEW || M < 2 * N || self.spans.is_some() {
             return None;
         }
         let (mut spans, mut any) = ([[0, N]; M], false);
