@@ -213,8 +213,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         // R⁻¹ without row k is the new inverse once its columns are turned so that all of that row is in the last one, which falls away.
         let mut running = T::ZERO;
         for (i, column) in self.inverse.iter_mut().enumerate().take(last + 1).skip(k) {
-            if let Some(moved) = column.get_mut(k..=i) {
-                moved.rotate_left(1);
+            // A rotation by one, by hand: that of a slice has a panic, which nothing proves away for some sizes.
+            let mut carried = at(column.as_slice(), k);
+            for entry in span_mut(column, k, i + 1).iter_mut().rev() {
+                core::mem::swap(entry, &mut carried);
             }
         }
         for i in k..last {
