@@ -69,7 +69,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
                 let mut tile = load(own, column);
                 let weights = &self.weight;
                 // The rows above are unscaled as yet.
-                let weigh = |k, row: [T; 4]| row.map(|u| u * at(weights, k));
+                let weigh = |k, u| u * at(weights, k);
                 sub_products(&mut tile, [above, above], [first, column], weigh);
                 shares.take(&mut tile);
                 store(own, column, &tile);
@@ -91,7 +91,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         let mut tile = load(span(&self.u, first, n), first);
         let above = head(&self.u, first);
         let weights = &self.weight;
-        let weigh = |k, row: [T; 4]| row.map(|u| u * at(weights, k));
+        let weigh = |k, u| u * at(weights, k);
         sub_products(&mut tile, [above, above], [first, first], weigh);
         let mut pivot = |k: usize, d: T| {
             if first + k >= n {

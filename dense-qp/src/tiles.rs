@@ -1,12 +1,16 @@
 //! Products of matrices in tiles of four rows by four columns, which stay in registers while the sums run.
 //!
-//! A tile that sticks out of a matrix is zero there. As in [`crate::kernels`], nothing panics.
+//! Each entry's sum runs over the rows in their order, so how many entries are summed side by side changes no bit. A tile that sticks out
+//! of a matrix is zero there. As in [`crate::kernels`], nothing panics.
 
-use crate::kernels::copy;
 use so3::Scalar;
 
 /// Four rows of four columns.
 pub(crate) type Tile<T> = [[T; 4]; 4];
+
+/// Whether two rows of a tile are summed at a time: four rows of four numbers and what they are multiplied with take more
+/// than the sixteen registers that 32-bit Arm has for `f64`.
+const IS_NARROW: bool = cfg!(target_arch = "arm");
 
 /// The tile at column `from` of the first four of `rows`.
 #[inline(always)]
@@ -16,8 +20,12 @@ pub(crate) fn load<T: Scalar, const N: usize>(rows: &[[T; N]], from: usize) -> T
         let open = row.get(from..).unwrap_or(&[]);
         if let Some(block) = open.first_chunk() {
             *entries = *block;
-        } else {
-            copy(entries, open);
+            continue;
+        }
+        match const { N % 4 } {
+            1 => copy::<T, 1>(entries, open),
+            2 => copy::<T, 2>(entries, open),
+            _ => copy::<T, 3>(entries, open),
         }
     }
     tile
@@ -30,56 +38,109 @@ pub(crate) fn store<T: Scalar, const N: usize>(rows: &mut [[T; N]], from: usize,
         let open = row.get_mut(from..).unwrap_or(&mut []);
         if let Some(block) = open.first_chunk_mut() {
             *block = *entries;
-        } else {
-            copy(open, entries);
+            continue;
+        }
+        match const { N % 4 } {
+            1 => copy::<T, 1>(open, entries),
+            2 => copy::<T, 2>(open, entries),
+            _ => copy::<T, 3>(open, entries),
         }
     }
 }
 
-/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`; `weigh` changes those of pᵢ,
-/// row by row.
+/// The first `W` entries of a ← those of b: as many as the compiler knows, so that it calls nothing.
+#[inline(always)]
+fn copy<T: Scalar, const W: usize>(a: &mut [T], b: &[T]) {
+    if let (Some(a), Some(b)) = (a.first_chunk_mut::<W>(), b.first_chunk::<W>()) {
+        *a = *b;
+    }
+}
+
+/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`; `weigh` changes an entry of pᵢ.
 #[inline(always)]
 pub(crate) fn sub_products<T: Scalar, const N: usize>(
     tile: &mut Tile<T>,
-    [p, q]: [&[[T; N]]; 2],
-    [i, j]: [usize; 2],
-    weigh: impl Fn(usize, [T; 4]) -> [T; 4],
+    rows: [&[[T; N]]; 2],
+    from: [usize; 2],
+    weigh: impl Fn(usize, T) -> T,
 ) {
-    if i.max(j) + 4 > N {
-        return sub_open_products(tile, [p, q], [i, j], weigh);
+    if from.iter().all(|from| from + 4 <= N) {
+        return sub_block::<T, N, 4, 4>(tile, rows, from, weigh);
     }
-    let mut sums = *tile;
-    for (k, (p, q)) in p.iter().zip(q).enumerate() {
-        let p = p.get(i..).and_then(|p| p.first_chunk::<4>());
-        let q = q.get(j..).and_then(|q| q.first_chunk::<4>());
-        let (Some(p), Some(q)) = (p, q) else { break };
-        sub_product(&mut sums, weigh(k, *p), *q);
+    match const { N % 4 } {
+        1 => sub_edge::<T, N, 1>(tile, rows, from, weigh),
+        2 => sub_edge::<T, N, 2>(tile, rows, from, weigh),
+        _ => sub_edge::<T, N, 3>(tile, rows, from, weigh),
     }
-    *tile = sums;
 }
 
-/// [`sub_products`] of a tile that sticks out.
-#[cold]
+/// [`sub_products`] of a tile that sticks out, `W` of whose rows or columns are inside.
 #[inline(never)]
-fn sub_open_products<T: Scalar, const N: usize>(
+fn sub_edge<T: Scalar, const N: usize, const W: usize>(
     tile: &mut Tile<T>,
-    [p, q]: [&[[T; N]]; 2],
-    [i, j]: [usize; 2],
-    weigh: impl Fn(usize, [T; 4]) -> [T; 4],
+    rows: [&[[T; N]]; 2],
+    from: [usize; 2],
+    weigh: impl Fn(usize, T) -> T,
 ) {
-    for (k, (p, q)) in p.iter().zip(q).enumerate() {
-        let [mut own, mut other] = [[T::ZERO; 4]; 2];
-        copy(&mut own, p.get(i..).unwrap_or(&[]));
-        copy(&mut other, q.get(j..).unwrap_or(&[]));
-        sub_product(tile, weigh(k, own), other);
+    match from.map(|from| from + 4 <= N) {
+        [true, _] => sub_block::<T, N, 4, W>(tile, rows, from, weigh),
+        [_, true] => sub_block::<T, N, W, 4>(tile, rows, from, weigh),
+        _ => sub_block::<T, N, W, W>(tile, rows, from, weigh),
     }
 }
 
-/// tile − p qᵀ.
+/// [`sub_products`] of the first `R` rows and `C` columns.
 #[inline(always)]
-fn sub_product<T: Scalar>(tile: &mut Tile<T>, p: [T; 4], q: [T; 4]) {
-    for (row, p) in tile.iter_mut().zip(p) {
-        *row = less(*row, p, q);
+fn sub_block<T: Scalar, const N: usize, const R: usize, const C: usize>(
+    tile: &mut Tile<T>,
+    rows: [&[[T; N]]; 2],
+    [i, j]: [usize; 2],
+    weigh: impl Fn(usize, T) -> T,
+) {
+    if !IS_NARROW {
+        return sub_pass::<T, N, R, C>(tile, rows, [i, j], weigh);
+    }
+    let (upper, lower) = tile.split_at_mut(2);
+    match R {
+        1 => sub_pass::<T, N, 1, C>(upper, rows, [i, j], weigh),
+        2 => sub_pass::<T, N, 2, C>(upper, rows, [i, j], weigh),
+        3 => {
+            sub_pass::<T, N, 2, C>(upper, rows, [i, j], &weigh);
+            sub_pass::<T, N, 1, C>(lower, rows, [i + 2, j], weigh);
+        }
+        _ => {
+            sub_pass::<T, N, 2, C>(upper, rows, [i, j], &weigh);
+            sub_pass::<T, N, 2, C>(lower, rows, [i + 2, j], weigh);
+        }
+    }
+}
+
+/// [`sub_block`] of rows that are summed side by side.
+#[inline(always)]
+fn sub_pass<T: Scalar, const N: usize, const R: usize, const C: usize>(
+    tile: &mut [[T; 4]],
+    [p, q]: [&[[T; N]]; 2],
+    [i, j]: [usize; 2],
+    weigh: impl Fn(usize, T) -> T,
+) {
+    let mut sums = [[T::ZERO; C]; R];
+    for (sums, row) in sums.iter_mut().zip(&*tile) {
+        copy::<T, C>(sums, row);
+    }
+    for (k, (p, q)) in p.iter().zip(q).enumerate() {
+        let p = p.get(i..).and_then(|p| p.first_chunk::<R>());
+        let q = q.get(j..).and_then(|q| q.first_chunk::<C>());
+        let (Some(p), Some(q)) = (p, q) else { break };
+        let q = *q;
+        for (sums, p) in sums.iter_mut().zip(p) {
+            let f = weigh(k, *p);
+            for (sum, q) in sums.iter_mut().zip(q) {
+                *sum -= f * q;
+            }
+        }
+    }
+    for (row, sums) in tile.iter_mut().zip(&sums) {
+        copy::<T, C>(row, sums);
     }
 }
 
