@@ -108,8 +108,8 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
                         put(row, k, T::ONE);
                     }
                 }
-                let rows = [span(&factor.u, at_row, first), span(before, at_row, first)];
-                sub_products(&mut tile, rows, [first, at_row], |_, u| u);
+                let shared = (span(&factor.u, at_row, first), first);
+                sub_products(&mut tile, shared, (span(before, at_row, first), at_row));
                 shares.take(&mut tile);
                 store(own, at_row, &tile);
                 at_row += 4;

@@ -3,7 +3,7 @@
 use crate::kernels::sub_block;
 use crate::kernels::{at, ceil4, dot_in, floor4, head, head_mut, put, scale_from, span, span_mut};
 use crate::settings::{pivot_tolerance, proximal_weight};
-use crate::tiles::{Shares, less, load, store, sub_products};
+use crate::tiles::{Shares, block, less, load, store, sub_products};
 use core::slice::from_ref;
 use so3::Scalar;
 
@@ -56,10 +56,17 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         self.proximal = false;
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let mut below = None;
+        let mut panel = [[T::ZERO; 4]; N];
         // Four rows at a time: the tile on the diagonal has their pivots and what each takes from those after it.
         let mut first = 0;
         while first < n {
-            let shares = self.factorise_tile(first, scale, &mut below);
+            // What the rows above share with these four; those are unscaled as yet.
+            let above = head(&self.u, first).iter().zip(&self.weight);
+            for (shares, (row, w)) in panel.iter_mut().zip(above) {
+                *shares = block(row, first).map(|u| u * *w);
+            }
+            let panel = head(&panel, first);
+            let shares = self.factorise_tile(first, panel, scale, &mut below);
             let mut column = first + 4;
             while column < end {
                 let Some((above, own)) = self.u.split_at_mut_checked(first) else {
@@ -67,10 +74,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
                 };
                 let own = head_mut(own, n - first);
                 let mut tile = load(own, column);
-                let weights = &self.weight;
-                // The rows above are unscaled as yet.
-                let weigh = |k, u| u * at(weights, k);
-                sub_products(&mut tile, [above, above], [first, column], weigh);
+                sub_products(&mut tile, (panel, 0), (above, column));
                 shares.take(&mut tile);
                 store(own, column, &tile);
                 column += 4;
@@ -86,13 +90,16 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
 
     /// The tile on the diagonal in the rows from `first`: their pivots, and what each row takes from those of the tile before it.
     #[inline(always)]
-    fn factorise_tile(&mut self, first: usize, scale: T, below: &mut Option<usize>) -> Shares<T> {
+    fn factorise_tile(
+        &mut self,
+        first: usize,
+        panel: &[[T; 4]],
+        scale: T,
+        below: &mut Option<usize>,
+    ) -> Shares<T> {
         let n = self.dim;
         let mut tile = load(span(&self.u, first, n), first);
-        let above = head(&self.u, first);
-        let weights = &self.weight;
-        let weigh = |k, u| u * at(weights, k);
-        sub_products(&mut tile, [above, above], [first, first], weigh);
+        sub_products(&mut tile, (panel, 0), (head(&self.u, first), first));
         let mut pivot = |k: usize, d: T| {
             if first + k >= n {
                 return T::ZERO;

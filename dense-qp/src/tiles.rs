@@ -12,21 +12,28 @@ pub(crate) type Tile<T> = [[T; 4]; 4];
 /// than the sixteen registers that 32-bit Arm has for `f64`.
 const IS_NARROW: bool = cfg!(target_arch = "arm");
 
+/// Four entries of a row, from column `from`.
+#[inline(always)]
+pub(crate) fn block<T: Scalar, const N: usize>(row: &[T; N], from: usize) -> [T; 4] {
+    let open = row.get(from..).unwrap_or(&[]);
+    if let Some(block) = open.first_chunk() {
+        return *block;
+    }
+    let mut entries = [T::ZERO; 4];
+    match const { N % 4 } {
+        1 => copy::<T, 1>(&mut entries, open),
+        2 => copy::<T, 2>(&mut entries, open),
+        _ => copy::<T, 3>(&mut entries, open),
+    }
+    entries
+}
+
 /// The tile at column `from` of the first four of `rows`.
 #[inline(always)]
 pub(crate) fn load<T: Scalar, const N: usize>(rows: &[[T; N]], from: usize) -> Tile<T> {
     let mut tile = [[T::ZERO; 4]; 4];
     for (entries, row) in tile.iter_mut().zip(rows) {
-        let open = row.get(from..).unwrap_or(&[]);
-        if let Some(block) = open.first_chunk() {
-            *entries = *block;
-            continue;
-        }
-        match const { N % 4 } {
-            1 => copy::<T, 1>(entries, open),
-            2 => copy::<T, 2>(entries, open),
-            _ => copy::<T, 3>(entries, open),
-        }
+        *entries = block(row, from);
     }
     tile
 }
@@ -56,86 +63,81 @@ fn copy<T: Scalar, const W: usize>(a: &mut [T], b: &[T]) {
     }
 }
 
-/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`; `weigh` changes an entry of pᵢ.
+/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`.
 #[inline(always)]
-pub(crate) fn sub_products<T: Scalar, const N: usize>(
+pub(crate) fn sub_products<T: Scalar, const N: usize, const P: usize>(
     tile: &mut Tile<T>,
-    rows: [&[[T; N]]; 2],
-    from: [usize; 2],
-    weigh: impl Fn(usize, T) -> T,
+    (p, i): (&[[T; P]], usize),
+    (q, j): (&[[T; N]], usize),
 ) {
-    if from.iter().all(|from| from + 4 <= N) {
-        return sub_block::<T, N, 4, 4>(tile, rows, from, weigh);
+    if i + 4 <= P && j + 4 <= N {
+        return sub_block::<T, N, P, 4, 4>(tile, (p, i), (q, j));
     }
     match const { N % 4 } {
-        1 => sub_edge::<T, N, 1>(tile, rows, from, weigh),
-        2 => sub_edge::<T, N, 2>(tile, rows, from, weigh),
-        _ => sub_edge::<T, N, 3>(tile, rows, from, weigh),
+        1 => sub_edge::<T, N, P, 1>(tile, (p, i), (q, j)),
+        2 => sub_edge::<T, N, P, 2>(tile, (p, i), (q, j)),
+        _ => sub_edge::<T, N, P, 3>(tile, (p, i), (q, j)),
     }
 }
 
 /// [`sub_products`] of a tile that sticks out, `W` of whose rows or columns are inside.
 #[inline(never)]
-fn sub_edge<T: Scalar, const N: usize, const W: usize>(
+fn sub_edge<T: Scalar, const N: usize, const P: usize, const W: usize>(
     tile: &mut Tile<T>,
-    rows: [&[[T; N]]; 2],
-    from: [usize; 2],
-    weigh: impl Fn(usize, T) -> T,
+    (p, i): (&[[T; P]], usize),
+    (q, j): (&[[T; N]], usize),
 ) {
-    match from.map(|from| from + 4 <= N) {
-        [true, _] => sub_block::<T, N, 4, W>(tile, rows, from, weigh),
-        [_, true] => sub_block::<T, N, W, 4>(tile, rows, from, weigh),
-        _ => sub_block::<T, N, W, W>(tile, rows, from, weigh),
+    match (i + 4 <= P, j + 4 <= N) {
+        (true, _) => sub_block::<T, N, P, 4, W>(tile, (p, i), (q, j)),
+        (_, true) => sub_block::<T, N, P, W, 4>(tile, (p, i), (q, j)),
+        _ => sub_block::<T, N, P, W, W>(tile, (p, i), (q, j)),
     }
 }
 
 /// [`sub_products`] of the first `R` rows and `C` columns.
 #[inline(always)]
-fn sub_block<T: Scalar, const N: usize, const R: usize, const C: usize>(
+fn sub_block<T: Scalar, const N: usize, const P: usize, const R: usize, const C: usize>(
     tile: &mut Tile<T>,
-    rows: [&[[T; N]]; 2],
-    [i, j]: [usize; 2],
-    weigh: impl Fn(usize, T) -> T,
+    (p, i): (&[[T; P]], usize),
+    q: (&[[T; N]], usize),
 ) {
     if !IS_NARROW {
-        return sub_pass::<T, N, R, C>(tile, rows, [i, j], weigh);
+        return sub_pass::<T, N, P, R, C>(tile, (p, i), q);
     }
     let (upper, lower) = tile.split_at_mut(2);
     match R {
-        1 => sub_pass::<T, N, 1, C>(upper, rows, [i, j], weigh),
-        2 => sub_pass::<T, N, 2, C>(upper, rows, [i, j], weigh),
+        1 => sub_pass::<T, N, P, 1, C>(upper, (p, i), q),
+        2 => sub_pass::<T, N, P, 2, C>(upper, (p, i), q),
         3 => {
-            sub_pass::<T, N, 2, C>(upper, rows, [i, j], &weigh);
-            sub_pass::<T, N, 1, C>(lower, rows, [i + 2, j], weigh);
+            sub_pass::<T, N, P, 2, C>(upper, (p, i), q);
+            sub_pass::<T, N, P, 1, C>(lower, (p, i + 2), q);
         }
         _ => {
-            sub_pass::<T, N, 2, C>(upper, rows, [i, j], &weigh);
-            sub_pass::<T, N, 2, C>(lower, rows, [i + 2, j], weigh);
+            sub_pass::<T, N, P, 2, C>(upper, (p, i), q);
+            sub_pass::<T, N, P, 2, C>(lower, (p, i + 2), q);
         }
     }
 }
 
 /// [`sub_block`] of rows that are summed side by side.
 #[inline(always)]
-fn sub_pass<T: Scalar, const N: usize, const R: usize, const C: usize>(
+fn sub_pass<T: Scalar, const N: usize, const P: usize, const R: usize, const C: usize>(
     tile: &mut [[T; 4]],
-    [p, q]: [&[[T; N]]; 2],
-    [i, j]: [usize; 2],
-    weigh: impl Fn(usize, T) -> T,
+    (p, i): (&[[T; P]], usize),
+    (q, j): (&[[T; N]], usize),
 ) {
     let mut sums = [[T::ZERO; C]; R];
     for (sums, row) in sums.iter_mut().zip(&*tile) {
         copy::<T, C>(sums, row);
     }
-    for (k, (p, q)) in p.iter().zip(q).enumerate() {
+    for (p, q) in p.iter().zip(q) {
         let p = p.get(i..).and_then(|p| p.first_chunk::<R>());
         let q = q.get(j..).and_then(|q| q.first_chunk::<C>());
         let (Some(p), Some(q)) = (p, q) else { break };
         let q = *q;
-        for (sums, p) in sums.iter_mut().zip(p) {
-            let f = weigh(k, *p);
+        for (sums, f) in sums.iter_mut().zip(p) {
             for (sum, q) in sums.iter_mut().zip(q) {
-                *sum -= f * q;
+                *sum -= *f * q;
             }
         }
     }

@@ -52,8 +52,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             let own = span_mut(out, i, free);
             for j in (i..end).step_by(4) {
                 let mut tile = load(own, j);
-                sub_products(&mut tile, [w, c], [i, j], |_, w| w);
-                sub_products(&mut tile, [c, w], [i, j], |_, c| c);
+                sub_products(&mut tile, (w, i), (c, j));
+                sub_products(&mut tile, (c, i), (w, j));
                 store(own, j, &tile);
             }
             for o in own.iter_mut().take(4) {
