@@ -30,9 +30,6 @@ pub struct Problem<'a, T, const N: usize, const M: usize> {
     pub spans: Option<&'a [[usize; 2]; M]>,
 }
 
-/// Entries that cost less one after the other than a whole row.
-const FEW: usize = 12;
-
 impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
     /// A problem whose variables have no bounds.
     pub const fn new(
@@ -120,11 +117,7 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
             None => dot(a, x),
             Some(spans) => {
                 let [from, to] = at(spans, i);
-                if [from, to] == [0, N] {
-                    dot(a, x)
-                } else {
-                    dot_few(a, x, from, to)
-                }
+                dot_few(a, x, from, to)
             }
         }
     }
@@ -148,39 +141,6 @@ impl<'a, T: Scalar, const N: usize, const M: usize> Problem<'a, T, N, M> {
         } else if let Some(e) = y.get_mut(i - M) {
             *e += f;
         }
-    }
-
-    /// The same problem with spans that have been found.
-    pub(crate) fn narrowed<'s>(&self, spans: Option<&'s [[usize; 2]; M]>) -> Problem<'s, T, N, M>
-    where
-        'a: 's,
-    {
-        Problem {
-            spans: spans.or(self.spans),
-            ..*self
-        }
-    }
-
-    /// Of each row the columns outside of which it is zero, if that saves time: where rows are long and many, and some of them short. To find
-    /// them costs about as much as a look at all rows saves.
-    pub(crate) fn find_spans(&self) -> Option<[[usize; 2]; M]> {
-        if N < 2 * FEW || M < 2 * N || self.spans.is_some() {
-            return None;
-        }
-        let (mut spans, mut any) = ([[0, N]; M], false);
-        let used = |a: &T| *a != T::ZERO;
-        for (known, a) in spans.iter_mut().zip(self.rows) {
-            // Long rows show by their middle, nearly all of them.
-            if used(&at(a, N / 2 - FEW / 2)) && used(&at(a, N / 2 + FEW / 2)) {
-                continue;
-            }
-            let from = a.iter().position(used).unwrap_or(0);
-            let to = a.iter().rposition(used).map_or(from, |last| last + 1);
-            if to - from <= FEW {
-                (*known, any) = ([from, to], true);
-            }
-        }
-        any.then_some(spans)
     }
 
     /// Names the first number that no solver could use.

@@ -45,10 +45,7 @@ pub fn solve_warm<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    let spans = problem.find_spans();
-    let whole = problem.spans.is_none();
-    let problem = problem.narrowed(spans.as_ref());
-    Search::new(&problem, settings, whole, workspace).conclude(Search::run)
+    Search::new(problem, settings, workspace).conclude(Search::run)
 }
 
 /// Goes on where the workspace's last solve ended, for the same problem with other limits of inequalities: rows may have lost
@@ -64,10 +61,7 @@ pub fn resume<'w, T: Scalar, const N: usize, const M: usize>(
     settings: &Settings<T>,
     workspace: &'w mut Workspace<T, N, M>,
 ) -> Result<Solution<'w, T, N, M>, Error> {
-    let spans = problem.find_spans();
-    let whole = problem.spans.is_none();
-    let problem = problem.narrowed(spans.as_ref());
-    let search = Search::new(&problem, settings, whole, workspace);
+    let search = Search::new(problem, settings, workspace);
     if search.w.is_factorised {
         search.conclude(Search::resume)
     } else {
@@ -78,8 +72,6 @@ pub fn resume<'w, T: Scalar, const N: usize, const M: usize>(
 struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     p: &'a Problem<'p, T, N, M>,
     s: &'a Settings<T>,
-    /// Whether rows may be read outside of their spans: there are none, or they were found.
-    whole: bool,
     w: &'w mut Workspace<T, N, M>,
     iterations: u32,
     /// Iterations, and remembered rows that entered or left.
@@ -103,12 +95,10 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
     fn new(
         problem: &'a Problem<'p, T, N, M>,
         settings: &'a Settings<T>,
-        whole: bool,
         workspace: &'w mut Workspace<T, N, M>,
     ) -> Self {
         Self {
             p: problem,
-            whole,
             s: settings,
             w: workspace,
             iterations: 0,

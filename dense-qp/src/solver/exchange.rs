@@ -189,7 +189,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         w.basis.prepare(&w.factor, &w.elimination);
         let (basis, d) = (&w.basis, &mut w.candidate.d);
         match self.p.rows.get(id) {
-            Some(row) if self.whole => basis.coordinates(row, d),
+            Some(row) if self.p.spans.is_none() => basis.coordinates(row, d),
             // Outside of its span nothing of a row is read.
             Some(_) => {
                 w.vec_a.fill(T::ZERO);
