@@ -246,7 +246,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             }
             if self.w.factor.proximal {
                 match self.ray_step() {
-                    Ray::Endless => return Ok(Status::Unbounded),
+                    Ray::Endless => return Ok(self.come_back()),
                     Ray::Moved => {
                         self.w.previous = self.w.x;
                         continue;
