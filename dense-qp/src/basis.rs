@@ -15,7 +15,7 @@ use crate::elimination::Elimination;
 use crate::factor::Factor;
 use crate::kernels::{at, ceil4, copy, dot, dots, head, head_mut, put, rotate, span, span_mut};
 use crate::kernels::{sub_outer, sum_rows, sum_triangle};
-use crate::settings::dependence_tolerance;
+use crate::settings::{cancellation_tolerance, dependence_tolerance};
 use crate::tiles::{Shares, load, store, sub_products};
 use so3::{Scalar, math};
 
@@ -25,6 +25,8 @@ pub(crate) struct Candidate<T, const N: usize> {
     pub(crate) d: [T; N],
     /// |d₂|², 0 for a row that depends on the active ones.
     pub(crate) free: T,
+    /// |d|².
+    whole: T,
 }
 
 #[derive(Clone, Debug)]
@@ -35,6 +37,8 @@ pub(crate) struct Basis<T, const N: usize> {
     square: T,
     /// R⁻¹ by columns, zeros below its diagonal.
     inverse: [[T; N]; N],
+    /// |d|² of each active row, when it entered: turns leave it as it is.
+    lengths: [T; N],
     pub(crate) len: usize,
     /// Number of free variables; 0 until J is there.
     dim: usize,
@@ -45,6 +49,7 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
         Self {
             d: [T::ZERO; N],
             free: T::ZERO,
+            whole: T::ZERO,
         }
     }
 
@@ -57,6 +62,7 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
         if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
             self.free = T::ZERO;
         }
+        self.whole = whole;
         whole
     }
 }
@@ -67,6 +73,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             j: [[T::ZERO; N]; N],
             square: T::ZERO,
             inverse: [[T::ZERO; N]; N],
+            lengths: [T::ZERO; N],
             len: 0,
             dim: 0,
         }
@@ -165,6 +172,16 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.measure(self.len, self.dim)
     }
 
+    /// A candidate that is Σ rₖaₖ of active rows up to the round-off of these terms depends on them: where they cancel, what |d₂| has left of them
+    /// is no measure of itself.
+    pub(crate) fn doubt(&self, c: &mut Candidate<T, N>, r: &[T; N]) {
+        let shares = r.iter().zip(&self.lengths).take(self.len);
+        let terms = shares.fold(T::ZERO, |sum, (r, length)| sum + *r * *r * *length);
+        if c.free <= cancellation_tolerance::<T>() * terms {
+            c.free = T::ZERO;
+        }
+    }
+
     /// Most that |d|² can be of a row whose entries over the free variables are at most 1, once the equalities are taken out of it.
     pub(crate) fn most(&self) -> T {
         self.square * T::of(self.dim as f64)
@@ -200,6 +217,7 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
                 *e = *r * inverse;
             }
             put(column, k, -inverse);
+            put(&mut self.lengths, k, c.whole);
             self.len += 1;
         }
     }
@@ -210,6 +228,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             return;
         }
         let last = self.len - 1;
+        for i in k..last {
+            let next = at(&self.lengths, i + 1);
+            put(&mut self.lengths, i, next);
+        }
         // R⁻¹ without row k is the new inverse once its columns are turned so that all of that row is in the last one, which falls away.
         let mut running = T::ZERO;
         for (i, column) in self.inverse.iter_mut().enumerate().take(last + 1).skip(k) {

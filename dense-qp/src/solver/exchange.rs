@@ -118,6 +118,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.iterations += 1;
             self.steps += 1;
             self.answer();
+            let w = &mut *self.w;
+            w.basis.doubt(&mut w.candidate, &w.vec_b);
             self.turn();
             let d = self.w.candidate.free;
             let full = if d > T::ZERO { excess / d } else { T::INFINITY };
