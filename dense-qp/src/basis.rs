@@ -172,14 +172,11 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.measure(self.len, self.dim)
     }
 
-    /// A candidate that is Σ rₖaₖ of active rows up to the round-off of these terms depends on them: where they cancel, what |d₂| has left of them
-    /// is no measure of itself.
-    pub(crate) fn doubt(&self, c: &mut Candidate<T, N>, r: &[T; N]) {
+    /// Whether a candidate may be Σ rₖaₖ of active rows but for the round-off of these terms: where they cancel, |d₂| is no measure of itself.
+    pub(crate) fn is_in_doubt(&self, c: &Candidate<T, N>, r: &[T; N]) -> bool {
         let shares = r.iter().zip(&self.lengths).take(self.len);
         let terms = shares.fold(T::ZERO, |sum, (r, length)| sum + *r * *r * *length);
-        if c.free <= cancellation_tolerance::<T>() * terms {
-            c.free = T::ZERO;
-        }
+        c.free <= cancellation_tolerance::<T>() * terms
     }
 
     /// Most that |d|² can be of a row whose entries over the free variables are at most 1, once the equalities are taken out of it.

@@ -78,6 +78,8 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     steps: u32,
     /// Most of them.
     most: u32,
+    /// Rows of which it was in doubt whether they depend on the active ones, with none to leave for them.
+    doubts: u32,
     /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
     worth: T,
     /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
@@ -103,6 +105,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             w: workspace,
             iterations: 0,
             steps: 0,
+            doubts: 0,
             most: settings.max_steps.min(Workspace::<T, N, M>::STEPS),
             worth: T::ZERO,
             toll: T::ZERO,

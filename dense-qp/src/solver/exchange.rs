@@ -118,8 +118,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.iterations += 1;
             self.steps += 1;
             self.answer();
-            let w = &mut *self.w;
-            w.basis.doubt(&mut w.candidate, &w.vec_b);
+            if self.is_dependent_after_all() {
+                self.w.candidate.free = T::ZERO;
+            }
             self.turn();
             let d = self.w.candidate.free;
             let full = if d > T::ZERO { excess / d } else { T::INFINITY };
@@ -140,6 +141,20 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.leave(k);
             excess = self.excess(id, side);
         }
+    }
+
+    /// Whether a candidate in doubt is taken for one that depends on the active rows. Where none of those can leave for it, that says that
+    /// they contradict it: if no proof confirms so, a correction of the point may show that it was never violated. Twice; then it enters.
+    fn is_dependent_after_all(&mut self) -> bool {
+        let w = &*self.w;
+        if w.candidate.free <= T::ZERO || !w.basis.is_in_doubt(&w.candidate, &w.vec_b) {
+            return false;
+        }
+        if self.first_zero(T::INFINITY).1.is_some() {
+            return true;
+        }
+        self.doubts += 1;
+        self.doubts <= 2
     }
 
     /// How far the entering multiplier may grow until the first of the others reaches zero, and which, if that is below `full`; from r
