@@ -172,8 +172,12 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.measure(self.len, self.dim)
     }
 
-    /// Whether a candidate may be Σ rₖaₖ of active rows but for the round-off of these terms: where they cancel, |d₂| is no measure of itself.
+    /// Whether a candidate may be Σ rₖaₖ of active rows but for the round-off of these terms: where they cancel, |d₂| is no measure of itself. A
+    /// row that keeps √ε of its length is in no doubt.
     pub(crate) fn is_in_doubt(&self, c: &Candidate<T, N>, r: &[T; N]) -> bool {
+        if c.free > T::EPSILON * c.whole {
+            return false;
+        }
         let shares = r.iter().zip(&self.lengths).take(self.len);
         let terms = shares.fold(T::ZERO, |sum, (r, length)| sum + *r * *r * *length);
         c.free <= cancellation_tolerance::<T>() * terms
