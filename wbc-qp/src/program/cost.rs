@@ -12,13 +12,11 @@ const WIDTH: usize = 4;
 type Cost<'r, T, const V: usize> = (&'r [T; V], T, T);
 
 /// Adds ½ Σ w (aᵀz − b)² to g and the upper triangle of H. What is below the diagonal afterwards means nothing.
-pub(super) fn add<'r, T: Scalar, const V: usize>(
+pub(super) fn add<'r, T: Scalar + 'r, const V: usize>(
     hessian: &mut [[T; V]; V],
     gradient: &mut [T; V],
     mut costs: impl Iterator<Item = Cost<'r, T, V>>,
-) where
-    T: 'r,
-{
+) {
     while let Some(first) = costs.next() {
         let mut group = [first; GROUP];
         let mut used = 1;
