@@ -8,13 +8,15 @@
 //! - z = J₂d₂ is the step that it causes, and aᵀz = |d₂|² (zero for a row that depends on the active ones)
 //!
 //! (Goldfarb and Idnani 1983). Rows enter by a Householder reflection of J₂ and leave by plane rotations. Neither loses
-//! digits, however different the curvatures of H are.
+//! digits, however different the curvatures of H are. Kept of R is its inverse: −r and the new multiplier's own answer are its next
+//! column, r is a product then, in which no entry waits for another, and what a leaving row has in it says how to turn.
 
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, copy, dot, dot_in, dots, head, head_mut, put, rotate, span};
-use crate::kernels::{sub_outer, sub_rows, sub_scaled_in, sub_triangle};
-use crate::settings::dependence_tolerance;
+use crate::kernels::{at, ceil4, copy, dot, dots, head, head_mut, put, rotate, span, span_mut};
+use crate::kernels::{sub_outer, sum_rows, sum_triangle};
+use crate::settings::{cancellation_tolerance, dependence_tolerance};
+use crate::tiles::{Shares, load, store, sub_products};
 use so3::{Scalar, math};
 
 /// A row in the coordinates of the basis.
@@ -23,6 +25,8 @@ pub(crate) struct Candidate<T, const N: usize> {
     pub(crate) d: [T; N],
     /// |d₂|², 0 for a row that depends on the active ones.
     pub(crate) free: T,
+    /// |d|².
+    whole: T,
 }
 
 #[derive(Clone, Debug)]
@@ -31,18 +35,13 @@ pub(crate) struct Basis<T, const N: usize> {
     pub(crate) j: [[T; N]; N],
     /// Sum of the squares of the entries of J over the free variables, if there are equalities.
     square: T,
-    /// R by columns, zeros on its diagonal and below.
-    r: [[T; N]; N],
-    /// R_kk.
-    diagonal: [T; N],
-    /// 1 / R_kk.
-    r_inverse: [T; N],
+    /// R⁻¹ by columns, zeros below its diagonal.
+    inverse: [[T; N]; N],
+    /// |d|² of each active row, when it entered: turns leave it as it is.
+    lengths: [T; N],
     pub(crate) len: usize,
     /// Number of free variables; 0 until J is there.
     dim: usize,
-    // Rotations of a removal.
-    cos: [T; N],
-    sin: [T; N],
 }
 
 impl<T: Scalar, const N: usize> Candidate<T, N> {
@@ -50,6 +49,7 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
         Self {
             d: [T::ZERO; N],
             free: T::ZERO,
+            whole: T::ZERO,
         }
     }
 
@@ -62,6 +62,7 @@ impl<T: Scalar, const N: usize> Candidate<T, N> {
         if len >= dim || self.free <= dependence_tolerance::<T>() * whole {
             self.free = T::ZERO;
         }
+        self.whole = whole;
         whole
     }
 }
@@ -71,13 +72,10 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         Self {
             j: [[T::ZERO; N]; N],
             square: T::ZERO,
-            r: [[T::ZERO; N]; N],
-            diagonal: [T::ZERO; N],
-            r_inverse: [T::ZERO; N],
+            inverse: [[T::ZERO; N]; N],
+            lengths: [T::ZERO; N],
             len: 0,
             dim: 0,
-            cos: [T::ZERO; N],
-            sin: [T::ZERO; N],
         }
     }
 
@@ -94,31 +92,58 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         }
         let n = factor.dim;
         self.dim = n;
-        let end = ceil4(n, N);
-        // Column c of U⁻¹ is unit vector c less the columns before it, each times what U has in its row.
-        let mut shares = [T::ZERO; N];
-        for c in 0..n {
-            let Some((before, [column, ..])) = self.j.split_at_mut_checked(c) else {
+        // Column c of U⁻¹ is unit vector c less the columns before it, each times what U has in its row; four columns at a time.
+        let mut first = 0;
+        while first < n {
+            let Some((before, open)) = self.j.split_at_mut_checked(first) else {
                 break;
             };
-            for (f, u) in shares.iter_mut().zip(&factor.u).take(c) {
-                *f = at(u, c);
+            let own = head_mut(open, 4.min(n - first));
+            if elimination.rank == 0 {
+                for column in own.iter_mut() {
+                    span_mut(column, first, N).fill(T::ZERO);
+                }
             }
-            column.fill(T::ZERO);
-            sub_triangle(column, &shares, before, end);
-            put(column, c, T::ONE);
+            let u = load(span(&factor.u, first, n), first);
+            let [a, b, c, _] = u;
+            let shares = Shares([a[1]], [a[2], b[2]], [a[3], b[3], c[3]]);
+            let mut at_row = 0;
+            while at_row <= first {
+                let mut tile = [[T::ZERO; 4]; 4];
+                if at_row == first {
+                    for (k, row) in tile.iter_mut().enumerate() {
+                        put(row, k, T::ONE);
+                    }
+                }
+                let shared = (span(&factor.u, at_row, first), first);
+                sub_products(&mut tile, shared, (span(before, at_row, first), at_row));
+                shares.take(&mut tile);
+                store(own, at_row, &tile);
+                at_row += 4;
+            }
+            first += 4;
         }
         self.square = T::ZERO;
+        let has_basic = elimination.has_basic();
+        if has_basic {
+            elimination.transpose(&mut self.inverse);
+        }
+        let (mut free, mut moved) = ([T::ZERO; N], [T::ZERO; N]);
         for (c, (column, w)) in self.j.iter_mut().zip(&factor.weight).take(n).enumerate() {
             let scale = math::sqrt(*w);
-            for x in head_mut(column, c + 1) {
-                *x *= scale;
+            if elimination.rank == 0 {
+                for x in head_mut(column, c + 1) {
+                    *x *= scale;
+                }
+                continue;
             }
-            if elimination.rank > 0 {
-                let free = *column;
-                self.square += dot(&free, &free);
-                elimination.expand(&free, c + 1, column);
+            let known = head_mut(&mut free, c + 1);
+            for (y, x) in known.iter_mut().zip(&*column) {
+                *y = *x * scale;
             }
+            self.square += dot(known, known);
+            let moves = has_basic.then_some((&self.inverse, &mut moved));
+            elimination.expand_by(moves, known, column);
         }
     }
 
@@ -147,6 +172,17 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.measure(self.len, self.dim)
     }
 
+    /// Whether a candidate may be Σ rₖaₖ of active rows but for the round-off of these terms: where they cancel, |d₂| is no measure of itself. A
+    /// row that keeps √ε of its length is in no doubt.
+    pub(crate) fn is_in_doubt(&self, c: &Candidate<T, N>, r: &[T; N]) -> bool {
+        if c.free > T::EPSILON * c.whole {
+            return false;
+        }
+        let shares = r.iter().zip(&self.lengths).take(self.len);
+        let terms = shares.fold(T::ZERO, |sum, (r, length)| sum + *r * *r * *length);
+        c.free <= cancellation_tolerance::<T>() * terms
+    }
+
     /// Most that |d|² can be of a row whose entries over the free variables are at most 1, once the equalities are taken out of it.
     pub(crate) fn most(&self) -> T {
         self.square * T::of(self.dim as f64)
@@ -155,35 +191,34 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// z = J₂d₂, or J d with `from` = 0.
     #[inline]
     pub(crate) fn direction(&self, from: usize, d: &[T; N], z: &mut [T; N]) {
-        z.fill(T::ZERO);
         let (d, columns) = (span(d, from, self.dim), span(&self.j, from, self.dim));
-        sub_rows(z, d, columns, 0, N);
-        for z in z {
-            *z = -*z;
-        }
+        sum_rows(z, d, columns, N);
     }
 
-    /// Appends an independent candidate whose z is given.
-    pub(crate) fn append(&mut self, c: &mut Candidate<T, N>, z: &[T; N]) {
-        let (k, n) = (self.len, self.dim);
+    /// Appends an independent candidate whose z and r are given.
+    pub(crate) fn append(&mut self, c: &mut Candidate<T, N>, z: &[T; N], r: &[T; N]) {
+        let k = self.len;
         let first = at(&c.d, k);
         let length = math::sqrt(c.free);
         let signed = if first < T::ZERO { -length } else { length };
         // u = d₂ + signed·e, and I − u uᵀ/(uᵀd₂) turns d₂ into −signed·e.
-        put(&mut c.d, k, first + signed);
         let share = T::ONE / (c.free + math::abs(first) * length);
-        let columns = self.j.get_mut(k..n).unwrap_or(&mut []);
+        put(&mut c.d, k, first + signed);
+        let columns = self.j.get_mut(k..self.dim).unwrap_or(&mut []);
         let Some(first) = columns.first() else { return };
         let mut shares = *first;
         for (f, z) in shares.iter_mut().zip(z) {
             *f = (*z + signed * *f) * share;
         }
-        sub_outer(columns, span(&c.d, k, n), &shares, 0, N);
-        if let Some(column) = self.r.get_mut(k) {
+        sub_outer(columns, span(&c.d, k, self.dim), &shares, 0, N);
+        if let Some(column) = self.inverse.get_mut(k) {
             column.fill(T::ZERO);
-            copy(head_mut(column, k), &c.d);
-            put(&mut self.diagonal, k, -signed);
-            put(&mut self.r_inverse, k, -T::ONE / signed);
+            let inverse = T::ONE / signed;
+            for (e, r) in head_mut(column, k).iter_mut().zip(r) {
+                *e = *r * inverse;
+            }
+            put(column, k, -inverse);
+            put(&mut self.lengths, k, c.whole);
             self.len += 1;
         }
     }
@@ -194,37 +229,41 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
             return;
         }
         let last = self.len - 1;
-        if let Some(columns) = self.r.get_mut(k..=last) {
-            columns.rotate_left(1);
+        for i in k..last {
+            let next = at(&self.lengths, i + 1);
+            put(&mut self.lengths, i, next);
+        }
+        // R⁻¹ without row k is the new inverse once its columns are turned so that all of that row is in the last one, which falls away.
+        let mut running = T::ZERO;
+        for (i, column) in self.inverse.iter_mut().enumerate().take(last + 1).skip(k) {
+            // A rotation by one, by hand: that of a slice has a panic, which nothing proves away for some sizes.
+            let mut carried = at(column.as_slice(), k);
+            for entry in span_mut(column, k, i + 1).iter_mut().rev() {
+                core::mem::swap(entry, &mut carried);
+            }
         }
         for i in k..last {
-            let Some([column, later @ ..]) = self.r.get_mut(i..last) else {
+            let Some([first, second]) = self.inverse.get_mut(i..).and_then(|t| t.first_chunk_mut())
+            else {
                 break;
             };
-            // What the next row has in this column, once its own diagonal, is turned away.
-            let (x, y) = (at(column.as_slice(), i), at(&self.diagonal, i + 1));
-            let length = math::sqrt(x * x + y * y);
-            let inverse = T::ONE / length;
-            let (cos, sin) = (x * inverse, y * inverse);
-            put(column, i, T::ZERO);
-            for column in later {
-                if let Some([x, y]) = column.get_mut(i..).and_then(|c| c.first_chunk_mut()) {
-                    (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
-                }
+            if i == k {
+                running = at(first.as_slice(), i);
+                put(first, i, T::ZERO);
             }
-            put(&mut self.diagonal, i, length);
-            put(&mut self.r_inverse, i, inverse);
-            put(&mut self.cos, i, cos);
-            put(&mut self.sin, i, sin);
-        }
-        for i in k..last {
-            let (cos, sin) = (at(&self.cos, i), at(&self.sin, i));
+            let own = at(second.as_slice(), i + 1);
+            put(second, i + 1, T::ZERO);
+            let length = math::sqrt(running * running + own * own);
+            let inverse = T::ONE / length;
+            let turn = [own * inverse, -running * inverse];
+            rotate(first, second, turn, [0, ceil4(i + 1, N)]);
+            running = length;
             let Some([first, second]) = self.j.get_mut(i..).and_then(|j| j.first_chunk_mut())
             else {
                 break;
             };
-            rotate(first, second, [cos, sin], [0, N]);
-            let (x, y) = (at(&c.d, i), at(&c.d, i + 1));
+            rotate(first, second, turn, [0, N]);
+            let ([cos, sin], x, y) = (turn, at(&c.d, i), at(&c.d, i + 1));
             put(&mut c.d, i, cos * x + sin * y);
             put(&mut c.d, i + 1, cos * y - sin * x);
         }
@@ -235,25 +274,22 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
     /// v ← R⁻¹v.
     #[inline]
     pub(crate) fn solve(&self, v: &mut [T; N]) {
-        // What is found is written elsewhere: one entry could not be read back as part of four without waiting.
-        let mut rest = *v;
-        // By index: over an iterator of the columns, reversed, the same loop takes more instructions.
-        for k in (0..self.len.min(N)).rev() {
-            let Some(column) = self.r.get(k) else { break };
-            let e = at(rest.as_slice(), k) * at(&self.r_inverse, k);
-            put(v, k, e);
-            sub_scaled_in(&mut rest, e, column, 0, ceil4(k, N));
-        }
+        let shares = *v;
+        let columns = head(&self.inverse, self.len);
+        sum_triangle(v, head(&shares, self.len), columns);
     }
 
     /// v ← R⁻ᵀv.
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
-        let columns = self.r.iter().zip(&self.r_inverse).enumerate();
-        for (k, (column, inverse)) in columns.take(self.len) {
-            let s = dot_in(column, v, 0, ceil4(k, N));
-            if let Some(e) = v.get_mut(k) {
-                *e = (*e - s) * *inverse;
-            }
-        }
+        let len = self.len;
+        let whole = *v;
+        let mut known = [T::ZERO; N];
+        copy(head_mut(&mut known, len), &whole);
+        dots(
+            head_mut(v, len),
+            head(&self.inverse, len),
+            &known,
+            [0, ceil4(len, N)],
+        );
     }
 }

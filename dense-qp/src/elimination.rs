@@ -10,10 +10,12 @@
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
 use crate::kernels::{at, ceil4, copy, dots, floor4, head, max_abs, put, row, row_mut};
-use crate::kernels::{span, span_mut, sub_rows, sub_scaled};
+use crate::kernels::{span, span_mut, sub_rows, sub_scaled, sum_rows};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
+
+mod hessian;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Elimination<T, const N: usize> {
@@ -97,16 +99,17 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             }
         }
         self.fixed = self.rank;
-        let mut scales = [T::ONE; N];
+        let (mut scales, mut shares) = ([T::ZERO; N], [T::ZERO; N]);
         if has_rows {
-            for (scale, p) in scales.iter_mut().zip(&self.perm) {
-                *scale += at(row(problem.hessian, *p), *p);
+            for (scale, p) in scales.iter_mut().zip(self.free_variables()) {
+                *scale = T::ONE / (T::ONE + at(row(problem.hessian, *p), *p));
             }
         }
         let limits = problem.row_lower.iter().zip(problem.row_upper);
         for (i, (l, u)) in limits.enumerate().take(if has_rows { M } else { 0 }) {
             if l == u && l.is_finite_number() {
-                self.insert(problem, i, *l, feasibility, (scratch, &mut scales))?;
+                let scratch = [&mut *scratch, &mut scales, &mut shares];
+                self.insert(problem, i, *l, feasibility, scratch)?;
             }
         }
         if self.rank > 0 {
@@ -162,23 +165,22 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         i: usize,
         limit: T,
         feasibility: T,
-        (work, scales): (&mut [T; N], &mut [T; N]),
+        [work, scales, shares]: [&mut [T; N]; 3],
     ) -> Result<(), Contradiction> {
         let a = row(problem.rows, i);
         for (w, p) in work.iter_mut().zip(&self.perm) {
             *w = at(a, *p);
         }
         let (rank, free) = (self.rank, self.free());
-        let rhs = self.eliminate(work, limit);
-        // The pivot is the entry that is largest for variables measured by their own curvature;
-        // w²/c is compared crosswise, without a division.
-        let (mut pivot, mut best, mut best_scale) = (0, T::ZERO, T::ONE);
-        for (j, (w, scale)) in head(work, free).iter().zip(&*scales).enumerate() {
-            let square = *w * *w;
-            if square * best_scale > best * *scale {
-                (pivot, best, best_scale) = (j, square, *scale);
-            }
-        }
+        let rhs = self.eliminate(work, shares, limit);
+        // The pivot is the entry that is largest for variables measured by their own curvature; those that are taken have no scale.
+        let squares = || work.iter().zip(&*scales).map(|(w, scale)| *w * *w * *scale);
+        let best = squares().fold(
+            T::ZERO,
+            |best, square| if square > best { square } else { best },
+        );
+        let pivot = squares().position(|square| square == best);
+        let pivot = pivot.unwrap_or(0).min(free.saturating_sub(1));
         let size = max_abs(a);
         let least = row_tolerance::<T>() * size;
         let is_left = |w: T| w > least;
@@ -207,44 +209,47 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
                 r.swap(last, pivot);
             }
         }
+        put(scales, last, T::ZERO);
         self.rank += 1;
         Ok(())
     }
 
     /// Takes the earlier rows out of `work`, whose right-hand side is `limit`; returns what is left of that. Their shares stand in the
     /// columns of their pivots then.
-    fn eliminate(&self, work: &mut [T; N], limit: T) -> T {
+    fn eliminate(&self, work: &mut [T; N], shares: &mut [T; N], limit: T) -> T {
         let (mut rhs, free) = (limit, self.free());
-        let mut shares = [T::ZERO; N];
         // Columns that a sweep over whole blocks would have to share with pivots go with these.
         let swept = floor4(free);
         let rows = head(&self.lu, self.rank).iter().zip(&self.rhs);
-        for ((k, (r, c)), share) in rows.enumerate().zip(&mut shares) {
+        for ((k, (r, c)), share) in rows.enumerate().zip(&mut *shares) {
             let Some((open, [at_pivot, ..])) = work.split_at_mut_checked(N - 1 - k) else {
                 break;
             };
             if k >= self.fixed && *at_pivot != T::ZERO {
                 *at_pivot *= at(&self.inverse, k);
-                let columns = open.iter_mut().zip(r).skip(swept);
-                columns.for_each(|(w, r)| *w -= *at_pivot * *r);
-                *share = *at_pivot;
+                let columns = N - 1 - k;
+                let open = span_mut(open, swept, columns).iter_mut();
+                for (w, r) in open.zip(span(r, swept, columns)) {
+                    *w -= *at_pivot * *r;
+                }
             }
+            *share = *at_pivot;
             rhs -= *at_pivot * *c;
         }
         let rows = span(&self.lu, self.fixed, self.rank);
-        sub_rows(work, span(&shares, self.fixed, self.rank), rows, 0, swept);
+        sub_rows(work, span(shares, self.fixed, self.rank), rows, 0, swept);
         rhs
     }
 
     /// U₁₁⁻¹ on the part of the free columns and on the right-hand side.
     fn finish(&mut self, work: &mut [T; N]) {
         let (rank, free) = (self.rank, self.free());
+        let mut shares = [T::ZERO; N];
         for k in (self.fixed..rank).rev() {
             let Some((upper, lower)) = self.lu.split_at_mut_checked(k + 1) else {
                 break;
             };
             let Some(r) = upper.last_mut() else { break };
-            let mut shares = [T::ZERO; N];
             let (mut p, inverse) = (at(&self.rhs, k), at(&self.inverse, k));
             let of_row = span(r, free, N - 1 - k).iter().rev();
             for ((share, u), known) in
@@ -341,6 +346,46 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         }
     }
 
+    /// Wᵀ into the first rows of `out`.
+    pub(crate) fn transpose(&self, out: &mut [[T; N]; N]) {
+        let end = ceil4(self.rank - self.fixed, N);
+        for (i, out) in out.iter_mut().enumerate().take(self.free()) {
+            span_mut(out, self.rank - self.fixed, end).fill(T::ZERO);
+            for (e, row) in out.iter_mut().zip(self.basic_rows()) {
+                *e = at(row, i);
+            }
+        }
+    }
+
+    /// [`Elimination::expand`] of the first entries y by Wᵀ as [`Elimination::transpose`] leaves it, with room for what it moves: for many y.
+    #[inline]
+    pub(crate) fn expand_by(
+        &self,
+        moves: Option<(&[[T; N]; N], &mut [T; N])>,
+        y: &[T],
+        z: &mut [T; N],
+    ) {
+        let (moving, others) = self
+            .free_variables()
+            .split_at_checked(y.len())
+            .unwrap_or((&[], &[]));
+        for (y, v) in y.iter().zip(moving) {
+            put(z, *v, *y);
+        }
+        for v in others
+            .iter()
+            .chain(span(&self.perm, N - self.fixed.min(N), N))
+        {
+            put(z, *v, T::ZERO);
+        }
+        if let Some((transposed, moved)) = moves {
+            sum_rows(moved, y, transposed, ceil4(self.rank - self.fixed, N));
+            for (d, v) in moved.iter().zip(self.basic_variables()) {
+                put(z, *v, -*d);
+            }
+        }
+    }
+
     /// x_F ← y, x_B ← 0.
     pub(crate) fn scatter(&self, y: &[T; N], x: &mut [T; N]) {
         x.fill(T::ZERO);
@@ -374,57 +419,6 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let known = span(&self.rhs, self.fixed, self.rank);
         for ((d, p), v) in moved.iter().zip(known).zip(self.basic_variables()) {
             put(x, *v, *p - *d);
-        }
-    }
-
-    /// Upper triangle of ZᵀHZ into `out` and the size of the terms of its diagonal into `magnitude`. `c` is scratch.
-    pub(crate) fn reduce_hessian(
-        &self,
-        h: &[[T; N]; N],
-        out: &mut [[T; N]; N],
-        magnitude: &mut [T; N],
-        c: &mut [[T; N]; N],
-    ) {
-        if self.rank == 0 {
-            for (i, ((o, h), m)) in out.iter_mut().zip(h).zip(magnitude).enumerate() {
-                copy(span_mut(o, i, N), span(h, i, N));
-                *m = at(h, i);
-            }
-            return;
-        }
-        let (free, end) = (self.free(), ceil4(self.free(), N));
-        // ZᵀHZ = H_FF − WᵀC − CᵀW with C = H_BF − ½ H_BB W.
-        let mut shares = [T::ZERO; N];
-        for (c, v) in c.iter_mut().zip(self.basic_variables()) {
-            let hv = row(h, *v);
-            for (c, f) in c.iter_mut().zip(self.free_variables()) {
-                *c = at(hv, *f);
-            }
-            for (f, other) in shares.iter_mut().zip(self.basic_variables()) {
-                *f = at(hv, *other) * T::HALF;
-            }
-            sub_rows(c, &shares, self.basic_rows(), 0, end);
-        }
-        let (w, c) = (self.basic_rows(), head(c, self.rank - self.fixed));
-        let mut others = [T::ZERO; N];
-        for (i, ((o, v), m)) in out
-            .iter_mut()
-            .zip(self.free_variables())
-            .zip(magnitude)
-            .enumerate()
-        {
-            let hv = row(h, *v);
-            *m = at(hv, *v);
-            for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
-                *o = at(hv, *f);
-            }
-            for ((f, g), (w, c)) in shares.iter_mut().zip(&mut others).zip(w.iter().zip(c)) {
-                (*f, *g) = (at(w, i), at(c, i));
-                *m += math::abs(*f * *g);
-            }
-            sub_rows(o, &shares, c, floor4(i), end);
-            sub_rows(o, &others, w, floor4(i), end);
-            span_mut(o, free, end).fill(T::ZERO);
         }
     }
 

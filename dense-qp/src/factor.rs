@@ -1,8 +1,9 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
-use crate::kernels::{at, ceil4, dot_in, floor4, head, put, scale_from, span, span_mut};
-use crate::kernels::{sub_block, sub_rows};
+use crate::kernels::sub_block;
+use crate::kernels::{at, ceil4, dot_in, floor4, head, head_mut, put, scale_from, span, span_mut};
 use crate::settings::{pivot_tolerance, proximal_weight};
+use crate::tiles::{Shares, block, less, load, store, sub_products};
 use core::slice::from_ref;
 use so3::Scalar;
 
@@ -54,41 +55,98 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         };
         self.proximal = false;
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
-        let tolerance = pivot_tolerance::<T>();
         let mut below = None;
-        let mut shares = [T::ZERO; N];
-        for k in 0..n {
-            let Some((above, [row, ..])) = self.u.split_at_mut_checked(k) else {
-                break;
-            };
-            // Of the pivot rows above, unscaled as they still are.
-            for ((f, a), w) in shares.iter_mut().zip(&*above).zip(&self.weight) {
-                *f = at(a, k) * *w;
+        let mut panel = [[T::ZERO; 4]; N];
+        // Four rows at a time: the tile on the diagonal has their pivots and what each takes from those after it.
+        let mut first = 0;
+        while first < n {
+            // What the rows above share with these four; those are unscaled as yet.
+            let above = head(&self.u, first).iter().zip(&self.weight);
+            for (shares, (row, w)) in panel.iter_mut().zip(above) {
+                *shares = block(row, first).map(|u| u * *w);
             }
-            sub_rows(row, &shares, above, floor4(k), end);
-            let mut d = at(row.as_slice(), k);
-            let diagonal = at(&self.weight, k);
-            if !(d > tolerance * diagonal && diagonal > T::EPSILON * T::EPSILON * scale) {
-                if d < -(T::of(4.0) * tolerance * (diagonal + T::EPSILON * scale)) {
-                    below = below.or(Some(k));
-                }
-                let own = if diagonal > T::EPSILON * T::EPSILON * scale {
-                    diagonal
-                } else {
-                    scale
+            let panel = head(&panel, first);
+            let shares = self.factorise_tile(first, panel, scale, &mut below);
+            let mut column = first + 4;
+            while column < end {
+                let Some((above, own)) = self.u.split_at_mut_checked(first) else {
+                    break;
                 };
-                // Below zero it shows how large round-off is in its row, which the weight must outdo.
-                let weight = so3::math::max(proximal_weight::<T>() * own, -(T::of(8.0) * d));
-                d = so3::math::max(d, T::ZERO) + weight;
-                self.proximal = true;
+                let own = head_mut(own, n - first);
+                let mut tile = load(own, column);
+                sub_products(&mut tile, (panel, 0), (above, column));
+                shares.take(&mut tile);
+                store(own, column, &tile);
+                column += 4;
             }
-            put(&mut self.weight, k, T::ONE / d);
+            first += 4;
         }
         for k in 0..n {
             let Some(row) = self.u.get_mut(k) else { break };
             scale_from(row, at(&self.weight, k), k + 1, end);
         }
         below
+    }
+
+    /// The tile on the diagonal in the rows from `first`: their pivots, and what each row takes from those of the tile before it.
+    #[inline(always)]
+    fn factorise_tile(
+        &mut self,
+        first: usize,
+        panel: &[[T; 4]],
+        scale: T,
+        below: &mut Option<usize>,
+    ) -> Shares<T> {
+        let n = self.dim;
+        let mut tile = load(span(&self.u, first, n), first);
+        sub_products(&mut tile, (panel, 0), (head(&self.u, first), first));
+        let mut pivot = |k: usize, d: T| {
+            if first + k >= n {
+                return T::ZERO;
+            }
+            let (weight, is_below) = self.pivot(first + k, d, scale);
+            if is_below {
+                *below = below.or(Some(first + k));
+            }
+            weight
+        };
+        let [r0, r1, r2, r3] = tile;
+        let w0 = pivot(0, r0[0]);
+        let of_second = [r0[1] * w0];
+        let r1 = less(r1, of_second[0], r0);
+        let w1 = pivot(1, r1[1]);
+        let of_third = [r0[2] * w0, r1[2] * w1];
+        let r2 = less(less(r2, of_third[0], r0), of_third[1], r1);
+        let w2 = pivot(2, r2[2]);
+        let of_fourth = [r0[3] * w0, r1[3] * w1, r2[3] * w2];
+        let r3 = less(
+            less(less(r3, of_fourth[0], r0), of_fourth[1], r1),
+            of_fourth[2],
+            r2,
+        );
+        pivot(3, r3[3]);
+        tile = [r0, r1, r2, r3];
+        if let Some(own) = self.u.get_mut(first..n) {
+            store(own, first, &tile);
+        }
+        Shares(of_second, of_third, of_fourth)
+    }
+
+    /// The weight of pivot `k`, which is `d`, and whether it is below zero by more than it should be.
+    #[inline(always)]
+    fn pivot(&mut self, k: usize, d: T, scale: T) -> (T, bool) {
+        let diagonal = at(&self.weight, k);
+        let is_sound =
+            d > pivot_tolerance::<T>() * diagonal && diagonal > T::EPSILON * T::EPSILON * scale;
+        let (d, is_below) = if is_sound {
+            (d, false)
+        } else {
+            self.proximal = true;
+            with_proximal_weight(d, diagonal, scale)
+        };
+        let weight = T::ONE / d;
+        put(&mut self.weight, k, weight);
+        (weight, is_below)
     }
 
     /// v ← U⁻¹eₖ, along which the curvature is the pivot `k` before its proximal weight, less what earlier ones got.
@@ -147,4 +205,18 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             *v *= *w;
         }
     }
+}
+
+/// A pivot `d` without curvature with its proximal weight, and whether it is below zero by more than it should be.
+#[cold]
+fn with_proximal_weight<T: Scalar>(d: T, diagonal: T, scale: T) -> (T, bool) {
+    let least = T::of(4.0) * pivot_tolerance::<T>() * (diagonal + T::EPSILON * scale);
+    let own = if diagonal > T::EPSILON * T::EPSILON * scale {
+        diagonal
+    } else {
+        scale
+    };
+    // Below zero it shows how large round-off is in its row, which the weight must outdo.
+    let weight = so3::math::max(proximal_weight::<T>() * own, -(T::of(8.0) * d));
+    (so3::math::max(d, T::ZERO) + weight, d < -least)
 }

@@ -122,35 +122,6 @@ pub(crate) const fn ceil4(i: usize, limit: usize) -> usize {
     if up < limit { up } else { limit }
 }
 
-/// [`sub_scaled`] on columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
-#[inline(never)]
-pub(crate) fn sub_scaled_in<T: Scalar, const N: usize>(
-    y: &mut [T; N],
-    f: T,
-    x: &[T; N],
-    from: usize,
-    to: usize,
-) {
-    let (y4, y1) = y.as_chunks_mut::<4>();
-    let (x4, x1) = x.as_chunks::<4>();
-    let blocks = from / 4..to / 4;
-    if let (Some(y4), Some(x4)) = (y4.get_mut(blocks.clone()), x4.get(blocks)) {
-        for (y, x) in y4.iter_mut().zip(x4) {
-            *y = [
-                y[0] - f * x[0],
-                y[1] - f * x[1],
-                y[2] - f * x[2],
-                y[3] - f * x[3],
-            ];
-        }
-    }
-    if to == N {
-        for (y, x) in y1.iter_mut().zip(x1) {
-            *y -= f * *x;
-        }
-    }
-}
-
 /// `W` columns, those from `from`, of y − Σ fᵢ·aᵢ, y being `s`: they stay in registers while all rows pass.
 #[inline(always)]
 pub(crate) fn sub_block<T: Scalar, const N: usize, const W: usize>(
@@ -170,9 +141,29 @@ pub(crate) fn sub_block<T: Scalar, const N: usize, const W: usize>(
     s
 }
 
-/// Columns `from..to` of y ← y − Σ fᵢ·aᵢ, block by block, without the rows before `first` of a block's column.
+/// The first `W` columns of `y`, which are those from `column` on, of y − Σ fᵢ·aᵢ or, where `SUM`, of Σ fᵢ·aᵢ.
 #[inline(always)]
-fn sub_blocks<T: Scalar, const N: usize>(
+fn sweep_block<T: Scalar, const N: usize, const W: usize, const SUM: bool>(
+    y: &mut [T],
+    factors: &[T],
+    rows: &[[T; N]],
+    column: usize,
+) -> usize {
+    let Some(s) = y.first_chunk_mut::<W>() else {
+        return W;
+    };
+    let known = if SUM { [T::ZERO; W] } else { *s };
+    let swept = sub_block(known, factors, rows, column);
+    for (s, swept) in s.iter_mut().zip(swept) {
+        *s = if SUM { -swept } else { swept };
+    }
+    W
+}
+
+/// Columns `from..to` of y ← y − Σ fᵢ·aᵢ or, where `SUM`, of y ← Σ fᵢ·aᵢ, block by block, without the rows before `first` of a block's
+/// column.
+#[inline(always)]
+fn sweep<T: Scalar, const N: usize, const SUM: bool>(
     y: &mut [T; N],
     factors: &[T],
     rows: &[[T; N]],
@@ -186,26 +177,35 @@ fn sub_blocks<T: Scalar, const N: usize>(
         let Some(y) = y.get_mut(column..to) else {
             return;
         };
-        let (factors, rows) = (
-            span(factors, first(column), all),
-            span(rows, first(column), all),
-        );
-        column += if let (8.., Some(s)) = (left, y.first_chunk_mut::<8>()) {
-            *s = sub_block(*s, factors, rows, column);
-            8
-        } else if let (4.., Some(s)) = (left, y.first_chunk_mut::<4>()) {
-            *s = sub_block(*s, factors, rows, column);
-            4
-        } else if let (3, Some(s)) = (left, y.first_chunk_mut::<3>()) {
-            *s = sub_block(*s, factors, rows, column);
-            3
-        } else if let Some(s) = y.first_chunk_mut::<1>() {
-            *s = sub_block(*s, factors, rows, column);
-            1
-        } else {
-            1
+        let factors = span(factors, first(column), all);
+        let rows = span(rows, first(column), all);
+        column += match left {
+            8.. => sweep_block::<T, N, 8, SUM>(y, factors, rows, column),
+            4.. => sweep_block::<T, N, 4, SUM>(y, factors, rows, column),
+            3 => sweep_block::<T, N, 3, SUM>(y, factors, rows, column),
+            _ => sweep_block::<T, N, 1, SUM>(y, factors, rows, column),
         };
     }
+}
+
+#[inline(always)]
+fn sweep_whole<T: Scalar, const N: usize, const SUM: bool>(
+    y: &mut [T; N],
+    factors: &[T],
+    rows: &[[T; N]],
+    [from, to]: [usize; 2],
+) {
+    let mut column = from;
+    // Chains of that many columns hide how long a product takes.
+    while column + 16 <= to {
+        let y = span_mut(y, column, to);
+        column += if y.len() == 20 && !SUM {
+            sweep_block::<T, N, 20, SUM>(y, factors, rows, column)
+        } else {
+            sweep_block::<T, N, 16, SUM>(y, factors, rows, column)
+        };
+    }
+    sweep::<T, N, SUM>(y, factors, rows, [column, to], |_| 0);
 }
 
 /// y ← y − Σ fᵢ·aᵢ on columns `from..to` of whole rows; `from` and `to` are multiples of 4 (or `to` = N).
@@ -217,28 +217,29 @@ pub(crate) fn sub_rows<T: Scalar, const N: usize>(
     from: usize,
     to: usize,
 ) {
-    let mut column = from;
-    // Chains of that many columns hide how long a product takes.
-    while let (true, Some(s)) = (
-        column + 16 <= to,
-        y.get_mut(column..).and_then(|y| y.first_chunk_mut::<16>()),
-    ) {
-        *s = sub_block(*s, factors, rows, column);
-        column += 16;
-    }
-    sub_blocks(y, factors, rows, [column, to], |_| 0);
+    sweep_whole::<T, N, false>(y, factors, rows, [from, to]);
 }
 
-/// [`sub_rows`] of the rows of a lower triangle, row i of which is zero after column i.
+/// y ← Σ fᵢ·aᵢ on the columns up to `to`, as [`sub_rows`].
 #[inline(never)]
-pub(crate) fn sub_triangle<T: Scalar, const N: usize>(
+pub(crate) fn sum_rows<T: Scalar, const N: usize>(
     y: &mut [T; N],
     factors: &[T],
     rows: &[[T; N]],
     to: usize,
 ) {
-    let to = to.min(ceil4(rows.len(), N));
-    sub_blocks(y, factors, rows, [0, to], |column| column);
+    sweep_whole::<T, N, true>(y, factors, rows, [0, to]);
+}
+
+/// [`sum_rows`] of the rows of a lower triangle, row i of which is zero after column i.
+#[inline(never)]
+pub(crate) fn sum_triangle<T: Scalar, const N: usize>(
+    y: &mut [T; N],
+    factors: &[T],
+    rows: &[[T; N]],
+) {
+    let to = ceil4(rows.len(), N);
+    sweep::<T, N, true>(y, factors, rows, [0, to], |column| column);
 }
 
 /// (x, y) ← (c·x + s·y, c·y − s·x) on columns `from..to`; these are multiples of 4 (or `to` = N).

@@ -10,6 +10,7 @@ mod problem;
 mod residual;
 mod settings;
 mod solver;
+mod tiles;
 mod workspace;
 
 pub use error::Error;

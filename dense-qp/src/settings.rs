@@ -65,6 +65,11 @@ pub(crate) fn dependence_tolerance<T: Scalar>() -> T {
     T::of(if is_double::<T>() { 1.4e-21 } else { 6e-10 })
 }
 
+/// The same beside the terms of active rows that make up the row: (8ε)², since each of them is held to its own round-off.
+pub(crate) fn cancellation_tolerance<T: Scalar>() -> T {
+    T::of(64.0) * T::EPSILON * T::EPSILON
+}
+
 /// Proximal weight put on a direction without curvature, relative to the largest curvature.
 pub(crate) fn proximal_weight<T: Scalar>() -> T {
     T::of(if is_double::<T>() { 1e-6 } else { 1e-3 })

@@ -78,10 +78,14 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     steps: u32,
     /// Most of them.
     most: u32,
+    /// Rows of which it was in doubt whether they depend on the active ones, with none to leave for them.
+    doubts: u32,
     /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
     worth: T,
     /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
     toll: T,
+    /// The largest |λₖeₖ|.
+    complementarity: T,
     /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
@@ -101,9 +105,11 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             w: workspace,
             iterations: 0,
             steps: 0,
+            doubts: 0,
             most: settings.max_steps.min(Workspace::<T, N, M>::STEPS),
             worth: T::ZERO,
             toll: T::ZERO,
+            complementarity: T::ZERO,
             primal: T::ZERO,
         }
     }
@@ -243,7 +249,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             }
             if self.w.factor.proximal {
                 match self.ray_step() {
-                    Ray::Endless => return Ok(Status::Unbounded),
+                    Ray::Endless => return Ok(self.come_back()),
                     Ray::Moved => {
                         self.w.previous = self.w.x;
                         continue;

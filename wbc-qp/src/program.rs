@@ -1,5 +1,7 @@
 //! The arrays of one quadratic program, filled term by term.
 
+mod cost;
+
 use so3::Scalar;
 
 use crate::Error;
@@ -67,36 +69,21 @@ impl<T: Scalar, const V: usize, const M: usize> Program<T, V, M> {
         self.minimise_rows([(a, b, weight)].into_iter());
     }
 
-    /// Adds ½ Σ w (aᵀz − b)² over many rows to the cost: four at a time, so that H is read and written less often.
-    pub(crate) fn minimise_rows<'r>(&mut self, mut rows: impl Iterator<Item = (&'r [T; V], T, T)>)
+    /// Adds ½ Σ w (aᵀz − b)² over many rows to the cost.
+    pub(crate) fn minimise_rows<'r>(&mut self, rows: impl Iterator<Item = (&'r [T; V], T, T)>)
     where
         T: 'r,
     {
-        while let Some(first) = rows.next() {
-            let nothing = (first.0, T::ZERO, T::ZERO);
-            let mut next = || rows.next().unwrap_or(nothing);
-            self.add([first, next(), next(), next()]);
-        }
+        cost::add(&mut self.hessian, &mut self.gradient, rows);
         self.mirror();
     }
 
-    /// Adds four rows to g and the upper triangle of H.
-    fn add(&mut self, rows: [(&[T; V], T, T); 4]) {
-        for (i, (h, g)) in self.hessian.iter_mut().zip(&mut self.gradient).enumerate() {
-            let scaled = rows.map(|(a, _, weight)| a.get(i).map_or(T::ZERO, |x| weight * *x));
-            if scaled.iter().all(|f| *f == T::ZERO) {
-                continue;
-            }
-            for (f, (_, b, _)) in scaled.iter().zip(&rows) {
-                *g -= *f * *b;
-            }
-            let [f0, f1, f2, f3] = scaled;
-            let [a0, a1, a2, a3] = rows.map(|(a, ..)| a.get(i..).unwrap_or(&[]));
-            let h = h.get_mut(i..).unwrap_or(&mut []).iter_mut();
-            for ((((h, a0), a1), a2), a3) in h.zip(a0).zip(a1).zip(a2).zip(a3) {
-                *h += (f0 * *a0 + f1 * *a1) + (f2 * *a2 + f3 * *a3);
-            }
-        }
+    /// [`Program::minimise_rows`] of rows of this program: of each its index, b and w.
+    pub(crate) fn minimise_own(&mut self, costs: impl Iterator<Item = (usize, T, T)>) {
+        let rows = &self.rows;
+        let costs = costs.filter_map(|(i, b, weight)| Some((rows.get(i)?, b, weight)));
+        cost::add(&mut self.hessian, &mut self.gradient, costs);
+        self.mirror();
     }
 
     /// Completes H below its diagonal.

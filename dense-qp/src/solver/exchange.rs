@@ -118,6 +118,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.iterations += 1;
             self.steps += 1;
             self.answer();
+            if self.is_dependent_after_all() {
+                self.w.candidate.free = T::ZERO;
+            }
             self.turn();
             let d = self.w.candidate.free;
             let full = if d > T::ZERO { excess / d } else { T::INFINITY };
@@ -138,6 +141,20 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             self.leave(k);
             excess = self.excess(id, side);
         }
+    }
+
+    /// Whether a candidate in doubt is taken for one that depends on the active rows. Where none of those can leave for it, that says that
+    /// they contradict it: if no proof confirms so, a correction of the point may show that it was never violated. Twice; then it enters.
+    fn is_dependent_after_all(&mut self) -> bool {
+        let w = &*self.w;
+        if w.candidate.free <= T::ZERO || !w.basis.is_in_doubt(&w.candidate, &w.vec_b) {
+            return false;
+        }
+        if self.first_zero(T::INFINITY).1.is_some() {
+            return true;
+        }
+        self.doubts += 1;
+        self.doubts <= 2
     }
 
     /// How far the entering multiplier may grow until the first of the others reaches zero, and which, if that is below `full`; from r
@@ -259,7 +276,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     pub(super) fn enter(&mut self, id: usize, side: i8, lambda: T) {
         let w = &mut *self.w;
         let k = w.basis.len;
-        w.basis.append(&mut w.candidate, &w.step);
+        w.basis.append(&mut w.candidate, &w.step, &w.vec_b);
         put(&mut w.id, k, id);
         put(&mut w.side, k, side);
         put(&mut w.lambda, k, lambda);

@@ -120,6 +120,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         most * math::max(T::ONE, math::abs(limit) * inverse)
     }
 
+    /// Whether x is on the active rows and the equalities, as near as the tolerance or round-off says.
+    pub(super) fn is_on_active(&mut self) -> bool {
+        self.drift() <= self.s.feasibility || self.is_drift_round_off()
+    }
+
     fn is_drift_round_off(&mut self) -> bool {
         for i in 0..M + N {
             let state = self.w.state(i);

@@ -60,6 +60,23 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         w.basis.solve(&mut w.vec_b);
     }
 
+    /// The least step, in the metric of H, that meets all active rows and the equalities.
+    pub(super) fn meet_active(&mut self) {
+        self.w.candidate.d.fill(T::ZERO);
+        for k in 0..self.w.basis.len {
+            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
+            let e = self.excess(id, side);
+            put(&mut self.w.vec_b, k, e);
+        }
+        if self.w.basis.len > 0 {
+            self.aim();
+            let w = &mut *self.w;
+            w.basis.direction(0, &w.candidate.d, &mut w.step);
+            self.move_along_step();
+        }
+        self.w.elimination.restore(&mut self.w.x, &mut self.w.vec_a);
+    }
+
     /// Remembered rows that would pull instead of push leave before the search, all at once: one by one, each would cost a step. Returns
     /// whether the Newton step of the rows that stay is there.
     pub(super) fn drop_unfit(&mut self) -> bool {

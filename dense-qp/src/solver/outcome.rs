@@ -44,12 +44,7 @@ impl<'w, T: Scalar, const N: usize, const M: usize> Search<'_, '_, 'w, T, N, M> 
 
     /// [`kkt_residual`] from what the last look and the last gradient left behind.
     fn residual(&mut self) -> crate::Residual<T> {
-        let mut complementarity = T::ZERO;
-        for k in 0..self.w.basis.len {
-            let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
-            let c = math::abs(at(&self.w.lambda, k) * self.excess(id, side));
-            complementarity = worse(complementarity, c);
-        }
+        let mut complementarity = self.complementarity;
         let w = &mut *self.w;
         for k in 0..w.elimination.rank {
             let (id, mu) = (at(&w.elimination.id, k), at(&w.vec_a, k));

@@ -2,6 +2,7 @@
 
 use so3::{Scalar, math};
 
+use super::exchange::Pass;
 use super::outcome::set_multiplier;
 use super::{EQUALITY, Search, scale_inverse, signed};
 use crate::Status;
@@ -160,7 +161,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
         // A step also corrects what the last one left across the ray: curvature and limits of such a share are not the ray's.
         let is_bent = course.minimum() < T::INFINITY && course.minimum() > length + length;
-        let is_open = course.is_nearly_straight() && self.first_limit() == T::INFINITY;
+        let is_open = course.is_nearly_straight() && self.first_limit(length) == T::INFINITY;
         let is_refined = (is_bent || is_open) && self.is_descent();
         if is_refined {
             // Each round takes all but a share of what is left of curvature in the direction, the proximal weight's.
@@ -176,8 +177,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
                 }
             }
         }
-        let reach = math::min(course.minimum(), self.first_limit());
-        if course.is_ascent() || !(reach > T::ZERO && reach < T::INFINITY) {
+        let limit = self.first_limit(T::INFINITY);
+        let reach = math::min(course.minimum(), limit);
+        // A limit that only seems to come nearer is no place to go to: x would lose its digits on the way.
+        let is_seeming = reach == limit && limit < self.first_limit(length);
+        if course.is_ascent() || is_seeming || !(reach > T::ZERO && reach < T::INFINITY) {
             if is_refined {
                 // It has lent its place to the direction's.
                 self.evaluate_gradient();
@@ -212,8 +216,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         course
     }
 
-    /// How far x can go along `previous`. An active row stops it only by more than the round-off that holding the row leaves.
-    fn first_limit(&mut self) -> T {
+    /// How far x can go along `previous`. An active row stops it only by more than the round-off that holding the row leaves; others only if
+    /// a step of this `length` comes nearer to them by more than x may miss a row by: a step corrects such misses, which is no course.
+    fn first_limit(&mut self, length: T) -> T {
         let mut far = T::INFINITY;
         for i in 0..M + N {
             let state = self.w.state(i);
@@ -223,10 +228,12 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (l, u) = self.p.limits(i);
             let rate = self.p.value(i, &self.w.previous);
             let limit = if rate > T::ZERO { u } else { l };
+            let inverse = scale_inverse::<T, N, M>(self.p, self.w, i);
             let least = if state == 0 {
-                T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.previous)
+                let noise = T::of(32.0) * T::EPSILON * self.p.size_at(i, &self.w.previous);
+                math::max(noise, self.s.feasibility / (length * inverse))
             } else {
-                row_tolerance::<T>() / scale_inverse::<T, N, M>(self.p, self.w, i)
+                row_tolerance::<T>() / inverse
             };
             if limit.is_finite_number() && math::abs(rate) > least {
                 let room = (limit - self.p.value(i, &self.w.x)) / rate;
@@ -234,6 +241,32 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
         }
         far
+    }
+
+    /// Ends at a ray in `previous`, far out on which x is. Brings x back along it, as near to the origin as limits let it, and into the rows
+    /// again: far away their round-off is a violation, and hides others. The ray is one of every point that meets all rows.
+    pub(super) fn come_back(&mut self) -> Status {
+        let w = &mut *self.w;
+        let beyond = dot(&w.x, &w.previous) / dot(&w.previous, &w.previous);
+        if beyond > T::ZERO {
+            w.previous = w.previous.map(|d| -d);
+            let back = math::min(beyond, self.first_limit(T::INFINITY));
+            let w = &mut *self.w;
+            sub_scaled(&mut w.x, -back, &w.previous);
+            w.previous = w.previous.map(|d| -d);
+        }
+        for _ in 0..ROUNDS {
+            self.meet_active();
+            self.w.pool_len = 0;
+            match self.search() {
+                Pass::Feasible => {}
+                Pass::Stop(status) => return status,
+            }
+            if self.is_on_active() {
+                return Status::Unbounded;
+            }
+        }
+        Status::Numerical
     }
 
     /// Takes out of the direction in `previous` what the equalities, the active rows and H do not allow and round-off of x has left in

@@ -129,15 +129,18 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     }
 
     /// How far x is from the limits of the active rows and the equalities, relative to their scale;
-    /// NaN if a number is bad. Completes `primal`, and sets `toll`.
+    /// NaN if a number is bad. Completes `primal`, and sets `toll` and `complementarity`.
     pub(super) fn drift(&mut self) -> T {
         let mut drift = T::ZERO;
         self.toll = T::ZERO;
+        self.complementarity = T::ZERO;
         for k in 0..self.w.basis.len {
             let (id, side) = (at(&self.w.id, k), at(&self.w.side, k));
             let e = self.excess(id, side);
             self.primal = worse(self.primal, e);
-            self.toll += math::abs(at(&self.w.lambda, k) * e);
+            let worth = math::abs(at(&self.w.lambda, k) * e);
+            self.toll += worth;
+            self.complementarity = worse(self.complementarity, worth);
             drift = worse(
                 drift,
                 math::abs(e) * scale_inverse::<T, N, M>(self.p, self.w, id),

@@ -10,6 +10,9 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
 {
     /// Contacts whose rows are no equalities, as costs: a load between 0 and 1 leads from nothing to an equality without a step.
     pub(super) fn weigh_contacts(&mut self) {
+        let mut costs = [(0, T::ZERO, T::ZERO); K];
+        let mut free = costs.iter_mut();
+        let mut used = 0;
         for k in 0..K {
             let load = get(&self.load, k);
             let (wanted, (low, high)) = (get(&self.wanted, k), self.program.row_limits(k));
@@ -19,11 +22,14 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
                 } else {
                     T::ONE
                 };
-                let row = self.program.row(k);
-                self.program
-                    .minimise(&row, wanted, self.contact_weight * share);
+                if let Some(cost) = free.next() {
+                    *cost = (k, wanted, self.contact_weight * share);
+                    used += 1;
+                }
             }
         }
+        // All at once: each call goes over the whole of H.
+        self.program.minimise_own(costs.into_iter().take(used));
     }
 
     /// Accelerations that contacts shall have besides the damping of their velocity, in the axes of their rows: feedback on where they
