@@ -63,7 +63,8 @@ fn copy<T: Scalar, const W: usize>(a: &mut [T], b: &[T]) {
     }
 }
 
-/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`.
+/// Σ pᵢqᵢᵀ taken from the tile, with four entries of each of the rows pᵢ and qᵢ, from columns `i` and `j`. `P` is `N`, or 4 with `i` 0: what
+/// sticks out is as wide as N leaves it.
 #[inline(always)]
 pub(crate) fn sub_products<T: Scalar, const N: usize, const P: usize>(
     tile: &mut Tile<T>,
