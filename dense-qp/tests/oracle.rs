@@ -215,6 +215,15 @@ fn degenerate() {
 fn semidefinite() {
     sizes(Kind::Semidefinite, 20);
 }
+/// Draws that end at a ray far out on it, where rows are missed by round-off, and with a limit that only seems to come nearer.
+#[test]
+fn semidefinite_far_out() {
+    for seed in [2, 11] {
+        check::<6, 4>(Kind::Semidefinite, seed, 80);
+        check::<12, 20>(Kind::Semidefinite, seed, 60);
+        check::<16, 32>(Kind::Semidefinite, seed, 40);
+    }
+}
 #[test]
 fn linear() {
     sizes(Kind::Linear, 20);

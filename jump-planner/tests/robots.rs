@@ -47,6 +47,12 @@ impl Drop for Folder {
     }
 }
 
+/// Limits of effort, N m, and speed, rad/s, of all joints.
+fn efforts_and_speeds(robot: &Quadruped) -> [(f64, f64); JOINTS] {
+    let limits: &[_; JOINTS] = Model::limits(robot);
+    limits.each_ref().map(|limit| (limit.effort, limit.speed))
+}
+
 /// A URDF without any `<limit>`, as of a mini cheetah, is refused alone and good with the motors of a profile.
 #[test]
 fn motors_of_a_profile_stand_in_for_limits_that_a_urdf_lacks() {
@@ -62,28 +68,17 @@ fn motors_of_a_profile_stand_in_for_limits_that_a_urdf_lacks() {
     }
     let profile = "urdf = \"bare.urdf\"\n[motors.all]\ntorque_nm = 20\ncorner_speed_rad_s = 15\nno_load_speed_rad_s = 30\n";
     let robot = folder.load("bare.toml", profile, &[]).unwrap();
-    let limits: &[_; JOINTS] = Model::limits(&robot);
-    assert!(
-        limits
-            .iter()
-            .all(|limit| (limit.effort, limit.speed) == (20.0, 30.0))
-    );
+    assert_eq!(efforts_and_speeds(&robot), [(20.0, 30.0); JOINTS]);
     // So they do where a limit is a placeholder.
     let fast = a1().replace("velocity=\"21\"", "velocity=\"1000\"");
     folder.load("bare.urdf", &fast, &[]).unwrap();
     let robot = folder.load("bare.toml", profile, &[]).unwrap();
-    let limits: &[_; JOINTS] = Model::limits(&robot);
-    assert!(limits.iter().all(|limit| limit.speed == 30.0));
+    assert_eq!(efforts_and_speeds(&robot), [(20.0, 30.0); JOINTS]);
     assert!(robot.placeholders().is_empty());
     // The speed limit of the URDF stays where there is one.
     folder.load("bare.urdf", &a1(), &[]).unwrap();
     let robot = folder.load("bare.toml", profile, &[]).unwrap();
-    let limits: &[_; JOINTS] = Model::limits(&robot);
-    assert!(
-        limits
-            .iter()
-            .all(|limit| (limit.effort, limit.speed) == (20.0, 21.0))
-    );
+    assert_eq!(efforts_and_speeds(&robot), [(20.0, 21.0); JOINTS]);
 }
 
 /// What is refused names the culprit and a remedy that a plan has.
