@@ -215,7 +215,7 @@ fn degenerate() {
 fn semidefinite() {
     sizes(Kind::Semidefinite, 20);
 }
-/// Draws that end at a ray far out on it, where rows are missed by round-off, and with a limit that only seems to come nearer.
+/// Draws that end at a ray far out on it, where rows are missed by round-off.
 #[test]
 fn semidefinite_far_out() {
     for seed in [2, 11] {
