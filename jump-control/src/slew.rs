@@ -2,6 +2,9 @@
 //!
 //! Between two controllers, on a fault, at the edge of a plan's interval: whatever is asked, |τ_k − τ_{k−1}| ≤ rate · dt. It
 //! stands last, after the motor limits, so that every hand-over is bounded without anybody having to know of it.
+//!
+//! Joints that are limited one by one reach their torques one after the other, and the forces of the feet on the way there are nobody's: a
+//! knee that still pushes while its hip has let go turns the body. [`Slew::limit_together`] keeps the direction of the change.
 
 use so3::{Scalar, math};
 
@@ -38,6 +41,33 @@ impl<T: Scalar, const N: usize> Slew<T, N> {
         }
         self.last
     }
+
+    /// As [`Slew::limit`], but all joints go the same share of their way, the largest with which none exceeds the rate:
+    /// τ_k = τ_{k−1} + s (τ − τ_{k−1}), s = min(1, rate · dt / max |τ − τ_{k−1}|).
+    pub fn limit_together(&mut self, wanted: &[T; N], dt: T) -> [T; N] {
+        let ways = self.last.iter().zip(wanted).map(|(last, wanted)| {
+            if wanted.is_finite_number() {
+                math::abs(*wanted - *last)
+            } else {
+                math::abs(*last)
+            }
+        });
+        let most = ways.fold(T::ZERO, math::max);
+        let step = self.rate * dt;
+        if most <= step || !most.is_finite_number() {
+            return self.limit(wanted, dt);
+        }
+        let share = if step > T::ZERO { step / most } else { T::ZERO };
+        for (last, wanted) in self.last.iter_mut().zip(wanted) {
+            let wanted = if wanted.is_finite_number() {
+                *wanted
+            } else {
+                T::ZERO
+            };
+            *last += (wanted - *last) * share;
+        }
+        self.last
+    }
 }
 
 #[cfg(test)]
@@ -62,5 +92,33 @@ mod tests {
         for dt in [0.0, -1.0, f64::NAN] {
             assert_eq!(slew.limit(&[5.0, 5.0], dt), last);
         }
+    }
+
+    #[test]
+    fn torques_that_are_limited_together_go_straight() {
+        let mut slew = Slew::<f64, 3>::new(1e4);
+        let wanted = [10.0, -4.0, 0.5];
+        for k in 1..=10 {
+            let now = slew.limit_together(&wanted, 1e-4);
+            let share = f64::from(k) / 10.0;
+            for (now, wanted) in now.iter().zip(wanted) {
+                assert!((now - share * wanted).abs() < 1e-12, "{now}");
+            }
+        }
+        assert_eq!(slew.limit_together(&wanted, 1e-4), wanted);
+        // What is not a number is no torque, and the others do not wait for it for ever.
+        for _ in 0..10 {
+            let now = slew.limit_together(&[f64::NAN, 6.0, f64::INFINITY], 1e-4);
+            assert!(now[0] <= 10.0 && now[2] <= 0.5);
+        }
+        assert_eq!(slew.limit_together(&[0.0, 6.0, 0.0], 1e-4), [0.0, 6.0, 0.0]);
+        for dt in [0.0, -1.0, f64::NAN] {
+            assert_eq!(slew.limit_together(&[5.0; 3], dt), [0.0, 6.0, 0.0]);
+        }
+        // Ways that are no numbers are those of each alone.
+        let mut far = Slew::<f64, 2>::new(f64::MAX);
+        far.limit_together(&[f64::MAX, 1.0], 1.0);
+        let back = far.limit_together(&[-f64::MAX, 1.0], 1.0);
+        assert!(back.iter().all(|tau| tau.is_finite()), "{back:?}");
     }
 }

@@ -73,19 +73,22 @@ proptest! {
         rate in 0.0..1e5_f64,
         dt in 1e-5..1e-2_f64,
     ) {
-        let mut slew = Slew::<f64, N>::new(rate);
-        let mut last = [0.0; N];
-        for wanted in &asked {
-            let mut quicker = slew;
-            quicker.rate *= 2.0;
-            let (now, sooner) = (slew.limit(wanted, dt), quicker.limit(wanted, dt));
-            for i in 0..N {
-                let goal = if wanted[i].is_finite() { wanted[i] } else { 0.0 };
-                prop_assert!((now[i] - last[i]).abs() <= rate * dt * (1.0 + 1e-12) + 1e-12);
-                prop_assert!(now[i] >= last[i].min(goal) && now[i] <= last[i].max(goal));
-                prop_assert!((sooner[i] - goal).abs() <= (now[i] - goal).abs());
+        for law in [Slew::limit, Slew::limit_together] {
+            let mut slew = Slew::<f64, N>::new(rate);
+            let mut last = [0.0; N];
+            for wanted in &asked {
+                let mut quicker = slew;
+                quicker.rate *= 2.0;
+                let (now, sooner) = (law(&mut slew, wanted, dt), law(&mut quicker, wanted, dt));
+                for i in 0..N {
+                    let goal = if wanted[i].is_finite() { wanted[i] } else { 0.0 };
+                    prop_assert!((now[i] - last[i]).abs() <= rate * dt * (1.0 + 1e-12) + 1e-12);
+                    let (low, high) = (last[i].min(goal) - 1e-12, last[i].max(goal) + 1e-12);
+                    prop_assert!((low..=high).contains(&now[i]));
+                    prop_assert!((sooner[i] - goal).abs() <= (now[i] - goal).abs() + 1e-12);
+                }
+                last = now;
             }
-            last = now;
         }
     }
 }

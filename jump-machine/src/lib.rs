@@ -10,6 +10,7 @@ mod interface;
 mod jump;
 mod machine;
 mod observation;
+mod pre_landing;
 mod push_off;
 pub mod regulator;
 mod settings;

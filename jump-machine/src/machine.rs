@@ -6,10 +6,11 @@ use jump_control::{
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
 use rbd_core::{Configuration, Limbs, Tangent, Tree};
-use so3::{Scalar, math};
+use so3::Scalar;
 
 use crate::balance::Balance;
 use crate::centring::Centred;
+use crate::pre_landing::Waiting;
 use crate::push_off::predicted;
 use crate::supervisor::{Limits, Supervisor};
 use crate::{Jump, JumpMachine, Observation, Refusal, Settings, Tick, Workspace};
@@ -39,11 +40,11 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) model: &'a M,
     landing: Landing<T, N, F>,
     pub(crate) workspace: &'a mut Workspace<T, N, F>,
-    posture: PreLanding<T, N, F>,
+    pub(crate) posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
     pub(crate) level_feet: [Vector3<T>; F],
-    /// The landing posture as it follows the body.
-    legs: [T; N],
+    /// The legs as they wait for the ground.
+    pub(crate) waiting: Waiting<T, N, F>,
     /// The legs as measured, and as they should be: kept so that a tick copies nothing.
     pub(crate) limbs: Limbs<T, N, F>,
     pub(crate) wanted: Limbs<T, N, F>,
@@ -82,7 +83,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             landing: Landing::new(settings.pd.feet, settings.landing, torques),
             workspace,
             level_feet: settings.posture.level_feet(model),
-            legs: settings.posture.joints,
+            waiting: Waiting::standing(&settings.posture.joints),
             limbs: Limbs::ZERO,
             wanted: Limbs::ZERO,
             posture: settings.posture,
@@ -109,7 +110,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.supervisor.may_arm(start, s.least_hold(&jump.plan))?;
         self.posture.joints = jump.landing_joints;
         self.level_feet = self.posture.level_feet(self.model);
-        self.legs = jump.landing_joints;
+        let ground = self.ground(&jump.plan);
+        self.waiting = Waiting::new(&jump.landing_joints, ground);
         self.workspace.regulator.begin(&jump.plan, &s.regulator);
         self.jump = Some(jump);
         (self.start, self.node) = (start, 0);
@@ -207,7 +209,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             }
             (Phase::Landing | Phase::Stand, _) => {
                 let work;
-                (command, work) = self.stand(&v);
+                (command, work) = self.stand(measured, &v, dt);
                 work
             }
             _ => {
@@ -251,8 +253,9 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 }
             }
             Phase::PreLanding if levelled => {
-                self.level(measured, jump.plan.touchdown - t);
-                reference.joints = self.legs;
+                self.level(measured, jump.plan.touchdown - t, dt);
+                reference.joints = self.waiting.joints;
+                reference.joint_velocities = self.waiting.velocities;
             }
             _ => {}
         }
@@ -288,24 +291,14 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         command
     }
 
-    /// The landing posture for a body that goes on turning as it does until it touches down, `left` from now: legs that follow the tilt of
-    /// now turn a body away from its plan that would have been level in time.
-    #[inline(always)]
-    fn level(&mut self, measured: &Measurement<T, N, F>, left: T) {
-        let velocity = &measured.base_velocity;
-        let back = so3::exp(&(velocity.angular * -math::max(left, T::ZERO)));
-        let up_b = back * (measured.base.rotation.inverse() * Vector3::z());
-        self.legs = self.posture.follow(
-            self.model,
-            &self.level_feet,
-            (&up_b, &(back * velocity.linear)),
-            &self.legs,
-            &mut self.wanted,
-        );
-    }
-
     /// On the ground: forces on the feet in contact that bring the body to rest over them.
-    fn stand(&mut self, v: &Tangent<T, N>) -> (JointCommand<T, N>, Work) {
+    fn stand(
+        &mut self,
+        measured: &Measurement<T, N, F>,
+        v: &Tangent<T, N>,
+        dt: T,
+    ) -> (JointCommand<T, N>, Work) {
+        let velocity = self.meet(measured, dt);
         let mut target = Target {
             height: self.settings.stand_height,
             ..Target::LEVEL
@@ -319,7 +312,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             v,
             &self.contact.contacts,
             &target,
-            &self.posture.joints,
+            &self.waiting.joints,
             &mut self.workspace.landing,
         );
         let mut gains = [JointGains {
@@ -333,7 +326,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         }
         let command = JointCommand {
             position: c.position,
-            velocity: [T::ZERO; N],
+            velocity,
             feed_forward: c.feed_forward,
             gains,
         };

@@ -1,7 +1,7 @@
 //! Everything about the machine that is neither the robot's tables nor the jump.
 
 use jump_control::{CartesianPd, Plan};
-use landing::{Detector, InertiaShaping, PreLanding};
+use landing::{Detector, InertiaShaping, PreLanding, Retraction, Shortening};
 use rbd_core::{Build, Frame, Motor};
 use so3::{Scalar, math};
 
@@ -55,6 +55,10 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub detector: Detector<T, N, F>,
     /// Legs before touchdown; its joints are those of legs without ground while no jump is armed.
     pub posture: PreLanding<T, N, F>,
+    /// Feet that go along with the ground.
+    pub retraction: Retraction<T>,
+    /// Legs that wait shorter for a fast ground.
+    pub shortening: Shortening<T>,
     /// Stance after touchdown.
     pub landing: landing::Settings<T>,
     /// The motors.
@@ -109,6 +113,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             inertia_shaping: InertiaShaping::new(build),
             detector: Detector::new(build, feet),
             posture: PreLanding::new(build, feet, standing),
+            retraction: Retraction::new(build),
+            shortening: Shortening::new(build),
             landing: landing::Settings::new(build),
             motors,
         }

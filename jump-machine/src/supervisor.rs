@@ -194,7 +194,11 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
     ) -> [T; N] {
         let dt = self.watch_joints(q, qd, dt);
         let wanted = self.command.torques(q, qd, motors);
-        self.slew.limit(&wanted, dt)
+        match self.phase {
+            // Up to the touch torques are those of a plan, whose direction counts. From then on what counts is that each is there soon.
+            Phase::Landing | Phase::Stand | Phase::Abort => self.slew.limit(&wanted, dt),
+            _ => self.slew.limit_together(&wanted, dt),
+        }
     }
 
     /// As [`Supervisor::joint_tick`], with positions that go on at the velocities asked for: held for a millisecond at 7 rad/s a

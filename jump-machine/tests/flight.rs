@@ -126,10 +126,11 @@ proptest! {
         prop_assert!((posing.unwrap() - (TOUCHDOWN - POSED)).abs() < 1.5e-3, "{posing:?}");
     }
 
-    /// Before the ground, feet are where the body's tilt wants them.
+    /// Before the ground, feet are where the body's tilt wants them: legs that do not give way show where that is.
     #[test]
     fn feet_follow_the_tilt_before_the_ground(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
-        let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+        let mut settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+        (settings.retraction.share, settings.shortening.most) = (0.0, 0.0);
         let nodes = nodes(rate);
         // The plan's rotation is shifted by the tilt with which the body will arrive.
         let nodes: Vec<_> = nodes
@@ -190,6 +191,149 @@ proptest! {
             prop_assert!(last.abs() < 2e-3, "{last}");
         }
     }
+}
+
+/// A flight of the planned length at whose end a level body falls at `fall`, as high as planned.
+fn arriving_at(fall: f64) -> (f64, f64, f64) {
+    let (lasting, g) = (TOUCHDOWN - TAKEOFF, -GRAVITY[2]);
+    let speed = g * lasting - fall;
+    (0.35 + (2.5 - speed) * lasting, speed, 0.0)
+}
+
+/// Velocities, relative to the base and base axes, with which the command moves the feet of a crouching robot.
+fn foot_velocities(machine: &Machine<'_, f64, A1Geared, 12, 4>) -> [Vector3<f64>; 4] {
+    let q = Configuration {
+        joints: crouch(),
+        ..Configuration::NEUTRAL
+    };
+    let velocities = &machine.command().velocity;
+    Limbs::new(&A1Geared, &q, &feet())
+        .ends
+        .map(|end| end.mul(velocities))
+}
+
+#[test]
+fn feet_near_the_ground_go_along_with_it() {
+    let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+    let gentle = settings.retraction.gentle;
+    for fall in [1.4, 1.7, 1.9] {
+        let mut began = 0.0_f64;
+        let flight = arriving_at(fall);
+        fly(
+            &settings,
+            &nodes(0.0),
+            flight,
+            TOUCHDOWN - 0.0005,
+            |t, machine| {
+                if t < TOUCHDOWN - 0.05 {
+                    return None::<()>;
+                }
+                let falls = fall - (TOUCHDOWN - t) * -GRAVITY[2];
+                for foot in foot_velocities(machine) {
+                    if foot.z == 0.0 {
+                        assert_eq!(began, 0.0);
+                        continue;
+                    }
+                    // The Tikhonov term takes some of the way.
+                    assert!((foot.z - (falls - gentle)).abs() < 0.02 * falls, "{foot}");
+                    assert!(foot.xy().norm() < 0.01, "{foot}");
+                    if began == 0.0 {
+                        began = TOUCHDOWN - t;
+                    }
+                }
+                None
+            },
+        );
+        // From a centimetre above the ground on.
+        assert!((began - 0.01 / fall).abs() < 2.5e-3, "{began}");
+    }
+    // Slow feet are left alone, and a fast fall needs the whole legs.
+    for fall in [1.0, 3.1] {
+        let flight = arriving_at(fall);
+        fly(
+            &settings,
+            &nodes(0.0),
+            flight,
+            TOUCHDOWN - 0.0005,
+            |t, machine| {
+                if t > TOUCHDOWN - 0.009 {
+                    assert_eq!(foot_velocities(machine), [Vector3::zeros(); 4]);
+                }
+                None::<()>
+            },
+        );
+    }
+}
+
+/// One foot is on the ground and the body still falls: the other feet go on for 40 ms, then wait where they are.
+#[test]
+fn feet_that_are_still_in_the_air_go_on_when_one_has_touched() {
+    let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+    let (mut workspace, nodes, fall) = (Workspace::new(), nodes(0.0), 1.5);
+    let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
+    machine.arm(jump(&nodes), 0.0).unwrap();
+    let (height, speed, _) = arriving_at(fall);
+    let mut last = [0.0; 12];
+    for k in -500..=870 {
+        let t = f64::from(k) * 1e-3;
+        let flown = (t - TAKEOFF).clamp(0.0, TOUCHDOWN - TAKEOFF);
+        let (z, vz) = ballistic(height, speed, flown);
+        let base = Transform::new(Rotation3::identity(), Vector3::new(0.0, 0.0, z));
+        let mut heard = flying(base, Vector3::new(0.0, 0.0, vz), Vector3::zeros());
+        if t >= TOUCHDOWN {
+            heard.measured.foot_forces = [60.0, 0.0, 0.0, 0.0];
+            heard.measured.base.translation.z -= 0.001;
+        }
+        machine.tick(t, Some(&heard));
+        machine.joint_tick(&crouch(), &[0.0; 12], 1e-4);
+        if t < TOUCHDOWN + 0.001 {
+            continue;
+        }
+        assert_eq!(machine.phase(), Phase::Landing);
+        let [first, others @ ..] = foot_velocities(&machine);
+        let (stands, waits) = machine.command().position.split_at(3);
+        assert_eq!(first, Vector3::zeros());
+        let goes_on = t < TOUCHDOWN + 0.0385;
+        for foot in others {
+            if goes_on {
+                assert!((foot.z - (fall - 1.0)).abs() < 0.02, "{t} {foot}");
+            } else if t > TOUCHDOWN + 0.041 {
+                assert_eq!(foot, Vector3::zeros());
+                assert_eq!(waits, &last[3..]);
+            }
+        }
+        last[..3].copy_from_slice(stands);
+        last[3..].copy_from_slice(waits);
+    }
+    let raised = place(&last)[3].z - place(&crouch())[3].z;
+    let way = (fall - 1.0) * (0.01 / fall + 0.039);
+    assert!((raised - way).abs() < 2e-3, "{raised}");
+}
+
+/// Legs wait shorter for a ground that would tear their joints along at more than 20 rad/s, unless that would not help.
+#[test]
+fn legs_wait_shorter_for_a_fast_ground() {
+    let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+    let raised = |fall: f64| {
+        let mut raised = 0.0;
+        fly(
+            &settings,
+            &nodes(0.0),
+            arriving_at(fall),
+            TOUCHDOWN - 0.012,
+            |_, machine| {
+                raised = place(&machine.command().position)[0].z - place(&crouch())[0].z;
+                None::<()>
+            },
+        );
+        raised
+    };
+    // The knees of this crouch turn by 7 rad for a metre of fall.
+    for slow in [1.0, 2.0, 2.8] {
+        assert!(raised(slow).abs() < 1e-4, "{}", raised(slow));
+    }
+    assert!((0.003..0.035).contains(&raised(3.1)), "{}", raised(3.1));
+    assert!(raised(5.0).abs() < 1e-4, "{}", raised(5.0));
 }
 
 fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {

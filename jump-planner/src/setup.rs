@@ -47,6 +47,9 @@ const ROLL: f64 = 0.03;
 const KNEE_CLEARANCE: f64 = 0.03;
 /// Least normal force of a foot that stands, in weights of the robot.
 const LEAST_FORCE: f64 = 0.04;
+/// Fastest that a foot lets go at the take-off, N/s, of a robot of the size that [`rbd_core::Build`] scales from: two feet that bear it take
+/// 2 ms to nothing.
+const RELEASE: f64 = 3e4;
 /// Speed at which planned Coulomb friction of the joints fades, rad/s.
 pub const FRICTION_SMOOTHING: f64 = 0.3;
 /// How far from its goal the base may be at the touchdown: m, and rad.
@@ -214,6 +217,7 @@ impl<'a> Setup<'a> {
     pub(crate) fn problem(&self, drawn: &Tightening) -> Problem<'_, f64, N, FOOT_COUNT> {
         let task = self.task;
         let rigid = &task.problem;
+        let build = task.robot.build(&task.start);
         let cone = CONE_SHARE * rigid.friction / task.limits.friction_share;
         let mut problem = Problem {
             robot: Robot::on_free_base(&task.robot),
@@ -238,6 +242,7 @@ impl<'a> Setup<'a> {
             goal: self.goal,
             goal_tolerance: GOAL_TOLERANCE,
             least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
+            release: build.force(RELEASE) / build.time(1.0),
             landing_intervals: self.landing_intervals,
             friction_smoothing: FRICTION_SMOOTHING,
             friction: Friction {

@@ -111,8 +111,9 @@ impl<T: Scalar, const N: usize, const F: usize> Command<T, N, F> {
             if let (Some((tau, other)), Some((stiffness, damping)), Some((gravity, qd))) =
                 (slots, gains, known)
             {
-                (*tau, *other) = (*gravity, *gravity - settings.stance_damping * *qd);
-                (*stiffness, *damping) = (T::ZERO, settings.stance_damping);
+                let stance_damping = settings.damping(*qd);
+                (*tau, *other) = (*gravity, *gravity - stance_damping * *qd);
+                (*stiffness, *damping) = (T::ZERO, stance_damping);
             }
         }
         other

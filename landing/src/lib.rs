@@ -11,7 +11,9 @@ mod limits;
 mod observer;
 mod posture;
 mod program;
+mod retraction;
 mod settings;
+mod shortening;
 mod touchdown;
 mod wrench;
 
@@ -23,5 +25,7 @@ pub use least_squares::solve_damped;
 pub use observer::{ForceObserver, ObserverState};
 pub use posture::PreLanding;
 pub use program::Program;
+pub use retraction::Retraction;
 pub use settings::{Settings, Target};
+pub use shortening::Shortening;
 pub use touchdown::{ContactFilter, TouchdownState};

@@ -35,7 +35,7 @@ pub struct PreLanding<T, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
-    /// Joints within 0.5 rad; and, on legs of 0.4 m, 0.15 s to the capture point, which is that of a body at 0.22 m, as far down as a landing
+    /// Joints within 0.8 rad; and, on legs of 0.4 m, 0.15 s to the capture point, which is that of a body at 0.22 m, as far down as a landing
     /// presses it, and up to 12 cm of way, scaled by [dynamic similarity](rbd_core::similarity).
     #[must_use]
     pub fn new(build: &Build<T>, feet: [Frame<T>; F], joints: [T; N]) -> Self {
@@ -44,7 +44,7 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
             joints,
             capture: build.time(0.15),
             most: build.length(0.12),
-            reach: T::HALF,
+            reach: T::of(0.8),
             damping: build.area(1e-4),
         }
     }
@@ -81,19 +81,24 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
     }
 
     /// [`PreLanding::joints`] for every tick of a controller: one Gauss-Newton step from the `last` answer, so that a tick costs
-    /// a third and the answer is exact after two or three. Begin with the level posture. `limbs` is storage.
+    /// a third and the answer is exact after two or three. Begin with the level posture. Every foot is raised along `up_b` by its number in
+    /// `raised`, m: zeros for the posture itself. `limbs` is storage.
     #[must_use]
     pub fn follow<M: Tree<T, N>>(
         &self,
         model: &M,
         level_feet: &[Vector3<T>; F],
         (up_b, velocity_b): (&Vector3<T>, &Vector3<T>),
+        raised: &[T; F],
         last: &[T; N],
         limbs: &mut Limbs<T, N, F>,
     ) -> [T; N] {
-        let Some(wanted) = self.feet(level_feet, up_b, velocity_b) else {
+        let Some(mut wanted) = self.feet(level_feet, up_b, velocity_b) else {
             return self.joints;
         };
+        for (foot, raised) in wanted.iter_mut().zip(raised) {
+            *foot += up_b * *raised;
+        }
         let q = Configuration {
             joints: *last,
             ..Configuration::NEUTRAL
@@ -215,16 +220,22 @@ mod tests {
         let up_b = Vector3::new(0.1, 0.2, 0.97);
         let velocity = Vector3::new(1.6, -0.1, -1.0);
         let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
+        let body = (&up_b, &velocity);
         for _ in 0..super::STEPS {
-            joints = posture.follow(&A1Geared, &level, (&up_b, &velocity), &joints, &mut limbs);
+            joints = posture.follow(&A1Geared, &level, body, &[0.0; 4], &joints, &mut limbs);
         }
         assert_eq!(joints, posture.joints(&A1Geared, &up_b, &velocity));
         let mut follow = |velocity: Vector3<f64>, last| {
-            posture.follow(&A1Geared, &level, (&up_b, &velocity), last, &mut limbs)
+            let body = (&up_b, &velocity);
+            posture.follow(&A1Geared, &level, body, &[0.0; 4], last, &mut limbs)
         };
         assert_eq!(follow(velocity * f64::NAN, &joints), LEVEL);
         let lost = follow(velocity, &[f64::NAN; 12]);
-        assert!(lost.iter().zip(LEVEL).all(|(q, l)| (q - l).abs() <= 0.5));
+        assert!(
+            lost.iter()
+                .zip(LEVEL)
+                .all(|(q, l)| (q - l).abs() <= posture.reach)
+        );
     }
 
     #[test]
@@ -239,7 +250,24 @@ mod tests {
         // However fast and tilted, joints stay within reach of the level posture.
         let wild = joints(Vector3::new(1.0, 1.0, -1.0), Vector3::new(9.0, -9.0, 1.0));
         let far = wild.iter().zip(LEVEL).map(|(q, l)| (q - l).abs());
-        assert!(far.fold(0.0, f64::max) <= 0.5);
+        assert!(far.fold(0.0, f64::max) <= posture.reach);
+    }
+
+    #[test]
+    fn feet_are_raised_along_the_vertical_each_by_its_own() {
+        let posture = PreLanding::new(&BUILD, FEET.map(|foot| foot.frame), LEVEL);
+        let level = posture.level_feet(&A1Geared);
+        let up_b = Vector3::new(0.1, 0.0, 0.995);
+        let raised = [0.0, 0.03, 0.05, 0.01];
+        let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
+        for _ in 0..5 {
+            let body = (&up_b, &Vector3::zeros());
+            joints = posture.follow(&A1Geared, &level, body, &raised, &joints, &mut limbs);
+        }
+        for ((foot, level), raised) in feet_b(joints).into_iter().zip(level).zip(raised) {
+            let way = foot - level;
+            assert!((way - up_b * raised).norm() < 1e-3, "{way}");
+        }
     }
 
     /// However fast, feet are moved by no more than the farthest way.

@@ -2,7 +2,7 @@
 
 use nalgebra::Rotation3;
 use rbd_core::{Build, Transform};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 /// Settings; [`Settings::new`] holds those measured on drops, for a robot of any size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,8 +25,11 @@ pub struct Settings<T> {
     pub friction: T,
     /// Largest normal force of one foot, N.
     pub max_normal_force: T,
-    /// Damping of the joints of stance legs, N m s/rad.
-    pub stance_damping: T,
+    /// Damping of the joints of stance legs, N m s/rad: of slow ones, and of those that are as fast as the second of
+    /// [`Self::stance_speeds`] or faster.
+    pub stance_damping: [T; 2],
+    /// Joint speeds between which the damping grows from the first to the second, rad/s.
+    pub stance_speeds: [T; 2],
     /// Stiffness of the joints of swing legs, N m/rad.
     pub swing_stiffness: T,
     /// Damping of the joints of swing legs, N m s/rad.
@@ -39,13 +42,14 @@ impl<T: Scalar> Settings<T> {
     /// The numbers were measured on drops of A1 from 0.3 to 2 m
     /// (`cargo xtask mujoco run --release -p saltus-tests --features mujoco --example drops -- 1000`). Height and rotation are damped by
     /// 0.64 and 0.89 of critical; a foot may carry three times the robot's weight; a moment weighs as much as the
-    /// force that makes it at 0.18 m, half a trunk. Friction is the ground's and does not scale.
+    /// force that makes it at 0.18 m, half a trunk. Joints of stance legs are damped little, for what damps a joint that the ground
+    /// has just torn along is a blow on the ground, and five times as much near the 21 rad/s that they can do. Friction is the ground's and does not scale.
     #[must_use]
     pub fn new(build: &Build<T>) -> Self {
         let gains = |way, speed| (build.rate_squared(way), build.rate(speed));
         Self {
             height: gains(120.0, 14.0),
-            horizontal: gains(20.0, 8.0),
+            horizontal: gains(20.0, 11.2),
             rotation: gains(250.0, 28.0),
             inertia_b: build.inertia_b,
             force_weight: build.per_force_squared(1.0),
@@ -53,10 +57,19 @@ impl<T: Scalar> Settings<T> {
             effort_weight: build.per_force_squared(1e-4),
             friction: T::HALF,
             max_normal_force: build.force(400.0),
-            stance_damping: build.joint_damping(1.0),
+            stance_damping: [build.joint_damping(0.2), build.joint_damping(1.0)],
+            stance_speeds: [build.rate(15.0), build.rate(21.0)],
             swing_stiffness: build.joint_stiffness(60.0),
             swing_damping: build.joint_damping(2.0),
         }
+    }
+
+    /// Damping of a joint of a stance leg at this speed, N m s/rad.
+    #[inline(always)]
+    pub(crate) fn damping(&self, speed: T) -> T {
+        let ([slow, fast], [begin, end]) = (self.stance_damping, self.stance_speeds);
+        let beyond = (math::abs(speed) - begin) / (end - begin);
+        slow + (fast - slow) * math::clamp(beyond, T::ZERO, T::ONE)
     }
 }
 

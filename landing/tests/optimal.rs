@@ -114,7 +114,10 @@ fn stated(controller: &Controller<f64>, case: &Case) -> Stated {
         frame_jacobian(&A1Geared, &kinematics, frame, Axes::Local, &mut jacobian);
         let rot_wf = kinematics.frame(frame).rotation;
         for (joint, weight) in gravity.iter().enumerate().skip(3 * foot).take(3) {
-            let other = weight - s.stance_damping * case.v.joints[joint];
+            let (speed, [slow, fast]) = (case.v.joints[joint], s.stance_damping);
+            let [begin, end] = s.stance_speeds;
+            let beyond = ((speed.abs() - begin) / (end - begin)).clamp(0.0, 1.0);
+            let other = weight - (slow + (fast - slow) * beyond) * speed;
             let most = landing.max_torques[joint];
             out.room[joint] = [(-most - other).min(0.0), (most - other).max(0.0)];
             let column = -(rot_wf * jacobian.joints[joint].linear);

@@ -155,6 +155,7 @@ impl Data {
             goal: self.goal,
             goal_tolerance: GOAL_TOLERANCE,
             least_force: 0.0,
+            release: f64::INFINITY,
             landing_intervals: LANDING_INTERVALS,
             friction_smoothing: FRICTION_SMOOTHING,
             friction: Friction::pyramid(self.friction),

@@ -116,7 +116,8 @@ fn the_study_without_each_measure_is_one_table() {
             "posture",
             "regulator",
             "unloading",
-            "inertia-shaping"
+            "inertia-shaping",
+            "retraction"
         ]
     );
     for row in rows {

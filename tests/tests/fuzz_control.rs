@@ -244,8 +244,10 @@ proptest! {
 
     #[test]
     fn legs_meet_the_ground_within_reach(up in vector(), velocity in vector()) {
-        let joints = PreLanding::new(&BUILD, feet(), CROUCH).joints(&A1Geared, &up, &velocity);
-        prop_assert!(joints.iter().zip(&CROUCH).all(|(q, level)| (q - level).abs() <= 0.5 + 1e-12));
+        let posture = PreLanding::new(&BUILD, feet(), CROUCH);
+        let joints = posture.joints(&A1Geared, &up, &velocity);
+        let near = |q: &f64, level: &f64| (q - level).abs() <= posture.reach + 1e-12;
+        prop_assert!(joints.iter().zip(&CROUCH).all(|(q, level)| near(q, level)));
     }
 
     #[test]

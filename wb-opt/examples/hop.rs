@@ -64,6 +64,7 @@ fn main() -> Result<(), wb_opt::Error> {
         goal: crouch,
         goal_tolerance: [0.02; BASE],
         least_force: 0.0,
+        release: f64::INFINITY,
         landing_intervals: 5,
         friction_smoothing: 0.5,
         friction: Friction::pyramid(0.6),

@@ -214,6 +214,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 let sides = rows.map(|row| -Vector3::from(row).dot(f));
                 sides.take(self.friction.sides()).for_each(&mut *above);
                 above(self.least_force - f.z);
+                above(f.z - self.most_force(k, i));
             } else {
                 above(self.least_height(k, i) - self.over_ground(&point.pos).height);
             }

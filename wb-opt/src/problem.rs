@@ -94,6 +94,9 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     pub friction: Friction<T>,
     /// Least normal force of a foot in contact, N: above 0, it still pushes where the true force leaves the interval's constant one.
     pub least_force: T,
+    /// Fastest that the normal force of a foot falls to nothing before it leaves the ground, N/s; infinite is no limit. Motors and soft ground
+    /// cannot let go at once, and what is still there when the foot should have left turns the body.
+    pub release: T,
     /// How far a foot in contact may be from its place, per axis, m.
     pub drift: T,
     /// Weights.
@@ -148,6 +151,19 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let after = (k.saturating_add(1)..self.intervals()).take_while(in_air);
         let nearest = math::min(before, after.fold(half, sum));
         self.swing_height + math::min(self.swing_rise, nearest * T::of(CLIMB))
+    }
+
+    /// Largest normal force of a foot in contact in the middle of interval `k`, N: what falls to nothing, at [`Self::release`], until it leaves
+    /// the ground; infinite for a foot that never does.
+    pub(crate) fn most_force(&self, k: usize, foot: usize) -> T {
+        let on = |k: &usize| self.contacts(*k).get(foot).is_some_and(|on| *on);
+        let after = k.saturating_add(1)..self.intervals();
+        if after.clone().all(|k| on(&k)) {
+            return T::INFINITY;
+        }
+        let half = self.dt(k) * T::HALF;
+        let standing = after.take_while(on);
+        self.release * standing.fold(half, |time, k| time + self.dt(k))
     }
 
     /// Length of interval `k`, s; 0 at the last node.
@@ -225,6 +241,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 natural(self.least_force),
                 "least_force: must not be negative",
             ),
+            // An infinite one is no limit.
+            (self.release > T::ZERO, "release: must be positive"),
             (
                 natural(self.friction.apex),
                 "friction.apex: must not be negative",

@@ -149,11 +149,12 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 push(T::ZERO, T::ZERO, units.speed);
             }
         }
-        for _ in 0..groups.feet {
+        let standing = self.contacts(k).into_iter().enumerate();
+        for (foot, _) in standing.filter(|(_, on)| *on) {
             for [_, _, mu] in self.friction.gradients().take(self.friction.sides()) {
                 push(mu * self.friction.apex, T::INFINITY, units.force);
             }
-            push(self.least_force, T::INFINITY, units.force);
+            push(self.least_force, self.most_force(k, foot), units.force);
         }
         for _ in 0..BASE.saturating_add(groups.feet.saturating_mul(3)) {
             push(T::ZERO, T::ZERO, T::ONE);

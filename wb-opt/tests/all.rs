@@ -5,6 +5,7 @@ mod apex;
 mod common;
 mod derivatives;
 mod gains;
+mod release;
 mod split;
 mod swing;
 mod timing;

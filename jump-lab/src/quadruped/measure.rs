@@ -31,11 +31,13 @@ pub enum Measure {
     Unloading,
     /// Legs drawn in or stretched in flight, so that the body turns on time.
     InertiaShaping,
+    /// Legs that wait shorter for a fast ground, and feet that go along with it.
+    Retraction,
 }
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Weighing,
         Self::Centring,
         Self::Drives,
@@ -45,6 +47,7 @@ impl Measure {
         Self::Regulator,
         Self::Unloading,
         Self::InertiaShaping,
+        Self::Retraction,
     ];
 
     /// Its name on the command line and in results.
@@ -60,6 +63,7 @@ impl Measure {
             Self::Regulator => "regulator",
             Self::Unloading => "unloading",
             Self::InertiaShaping => "inertia-shaping",
+            Self::Retraction => "retraction",
         }
     }
 
@@ -83,6 +87,9 @@ impl Measure {
             Self::Unloading => "Feet that let go at the take-off and are pulled up",
             Self::InertiaShaping => {
                 "Legs drawn in or stretched in flight, so that the body turns on time"
+            }
+            Self::Retraction => {
+                "Legs that wait shorter for a fast ground, and feet that go along with it"
             }
         }
     }
@@ -124,11 +131,18 @@ impl Measure {
             Self::Centring => settings.centring.most = 0.0,
             Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
-            Self::Posture => settings.levelling = -f64::INFINITY,
+            Self::Posture => {
+                settings.levelling = -f64::INFINITY;
+                settings.retraction.lasting = -f64::INFINITY;
+            }
             Self::Regulator => settings.regulator.normal = 0.0,
             // No time after the take-off is that early.
             Self::Unloading => settings.unloading.lasting = -f64::INFINITY,
             Self::InertiaShaping => settings.inertia_shaping.gain = 0.0,
+            Self::Retraction => {
+                settings.retraction.share = 0.0;
+                settings.shortening.most = 0.0;
+            }
             Self::Drives | Self::Margins => {}
         }
     }

@@ -127,6 +127,7 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
         goal: Pose::level(goal),
         goal_tolerance: [0.02, 0.02, 0.02, 0.05, 0.05, 0.05],
         least_force: 0.0,
+        release: f64::INFINITY,
         landing_intervals: 5,
         friction_smoothing: 0.5,
         friction: Friction::pyramid(0.6),

@@ -78,6 +78,9 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     on.call("Slew::limit", (&mut slew, torques), |(s, tau)| {
         s.limit(&tau, T::of(1e-4))
     });
+    on.call("Slew::limit_together", (&mut slew, torques), |(s, tau)| {
+        s.limit_together(&tau, T::of(1e-5))
+    });
     for phase in Phase::ALL {
         on.call("next_phase", phase, |phase| {
             next_phase(phase, Event::Touchdown) == phase

@@ -1,10 +1,11 @@
 //! Touchdown detection, posture before landing, the landing program, and the estimator of the base.
 
 use landing::{
-    Command, Detector, DetectorState, Landing, Outcome, PreLanding, Settings, Target, Workspace,
+    Command, Detector, DetectorState, Landing, Outcome, PreLanding, Retraction, Settings,
+    Shortening, Target, Workspace,
 };
 use nalgebra::Vector3;
-use rbd_core::{Transform, Tree};
+use rbd_core::{Limbs, Transform, Tree};
 use state_est::{Estimate, Estimator, Foot, Sample, State, Status};
 
 use super::Robot;
@@ -55,6 +56,16 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     let up: Vector3<T> = vector(stream, 1.0);
     on.call("PreLanding::joints", (&posture, up), |(p, up)| {
         p.joints(model, &up, &v.base.linear)
+    });
+    let legs = Limbs::new(model, q, &robot.feet);
+    let shortening = Shortening::new(&robot.build);
+    on.call("Shortening::raise", (&shortening, &legs), |(s, legs)| {
+        let fastest = s.fastest(&legs.ends, &v.base);
+        s.raise(T::ZERO, fastest, T::ONE, T::of(1e-3))
+    });
+    let retraction = Retraction::new(&robot.build);
+    on.call("Retraction::speed", (&retraction, T::ONE), |(r, fall)| {
+        r.speed(T::ZERO, T::ZERO, (fall, fall))
     });
 
     let limits = robot.motors.map(|motor| motor.torque);
