@@ -265,6 +265,8 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             ..Configuration::NEUTRAL
         };
         self.wanted.update(self.model, &q, &s.pd.feet);
+        // Nothing moves levelled legs any more.
+        self.waiting.known = levelled;
         let way_b = self.centre(t, levelled, &mut reference.joints);
         match phase {
             Phase::Stance => self.push_off(jump, t, (measured, velocity), &mut reference),

@@ -25,6 +25,8 @@ pub(crate) struct Waiting<T: Scalar, const N: usize, const F: usize> {
     touched: [bool; F],
     /// Time on the ground, s.
     since: T,
+    /// Whether the machine's wanted legs are those of `joints`.
+    pub(crate) known: bool,
 }
 
 impl<T: Scalar, const N: usize, const F: usize> Waiting<T, N, F> {
@@ -46,6 +48,7 @@ impl<T: Scalar, const N: usize, const F: usize> Waiting<T, N, F> {
             retracted: [T::ZERO; F],
             touched: [false; F],
             since: T::ZERO,
+            known: false,
         }
     }
 }
@@ -73,6 +76,13 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
     /// their way change, but that of the robot with its joints locked.
     #[inline(always)]
     pub(crate) fn level(&mut self, measured: &Measurement<T, N, F>, left: T, dt: T) {
+        if !self.waiting.known {
+            let q = Configuration {
+                joints: self.waiting.joints,
+                ..Configuration::NEUTRAL
+            };
+            self.wanted.update(self.model, &q, &self.settings.pd.feet);
+        }
         let left = math::max(left, T::ZERO);
         let rot_bw = measured.base.rotation.inverse();
         let mut up_b = rot_bw * Vector3::z();
@@ -87,13 +97,12 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         }
         let raised = self.give_way(measured, (&up_b, &velocity_b), left, dt);
         self.waiting.joints = self.posture.follow(
-            self.model,
             &self.level_feet,
             (&up_b, &velocity_b.linear),
             &raised,
-            &self.waiting.joints,
-            &mut self.wanted,
+            (&self.waiting.joints, &self.wanted),
         );
+        self.waiting.known = false;
     }
 
     /// How far each foot is to be raised, m: legs are shortened for what the ground will do to their joints, and feet near it are drawn up.

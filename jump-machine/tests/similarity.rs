@@ -306,119 +306,122 @@ fn a_large_robot_jumps_as_a_small_one_does() {
     assert_eq!(phases, whole);
 }
 
+type Take = fn(&mut Settings<f64, 12, 4>, &Settings<f64, 12, 4>);
+
+/// Every number of the settings that has a size.
+const TAKES: [(&str, Take); 48] = [
+    ("weighing", |to, of| to.weighing = of.weighing),
+    ("moving", |to, of| to.centring.moving = of.centring.moving),
+    ("rest of the trunk", |to, of| {
+        to.centring.rest = of.centring.rest
+    }),
+    ("most", |to, of| to.centring.most = of.centring.most),
+    ("agreement", |to, of| {
+        to.centring.agreement = of.centring.agreement
+    }),
+    ("centring.damping", |to, of| {
+        to.centring.damping = of.centring.damping
+    }),
+    ("levelling", |to, of| to.levelling = of.levelling),
+    ("rest", |to, of| to.rest = of.rest),
+    ("settling", |to, of| to.settling = of.settling),
+    ("stand_height", |to, of| to.stand_height = of.stand_height),
+    ("slew", |to, of| to.slew = of.slew),
+    ("pd.gains", |to, of| to.pd.gains = of.pd.gains),
+    ("joint_gains", |to, of| {
+        to.pd.joint_gains = of.pd.joint_gains
+    }),
+    ("takeoff", |to, of| {
+        to.regulator.takeoff = of.regulator.takeoff
+    }),
+    ("touchdown", |to, of| {
+        to.regulator.touchdown = of.regulator.touchdown
+    }),
+    ("running", |to, of| {
+        to.regulator.running = of.regulator.running
+    }),
+    ("time", |to, of| to.regulator.time = of.regulator.time),
+    ("easing", |to, of| to.unloading.easing = of.unloading.easing),
+    ("lasting", |to, of| {
+        to.unloading.lasting = of.unloading.lasting
+    }),
+    ("pull", |to, of| to.unloading.pull = of.unloading.pull),
+    ("unloaded", |to, of| {
+        to.unloading.loaded = of.unloading.loaded
+    }),
+    ("inertia_shaping.gain", |to, of| {
+        to.inertia_shaping.gain = of.inertia_shaping.gain
+    }),
+    ("inertia_shaping.slowest", |to, of| {
+        to.inertia_shaping.slowest = of.inertia_shaping.slowest
+    }),
+    ("inertia_shaping.ramp", |to, of| {
+        to.inertia_shaping.ramp = of.inertia_shaping.ramp
+    }),
+    ("inertia_shaping.damping", |to, of| {
+        to.inertia_shaping.damping = of.inertia_shaping.damping
+    }),
+    ("loaded", |to, of| to.detector.loaded = of.detector.loaded),
+    ("observer", |to, of| {
+        to.detector.observer.damping = of.detector.observer.damping
+    }),
+    ("filter", |to, of| to.detector.filter = of.detector.filter),
+    ("capture", |to, of| to.posture.capture = of.posture.capture),
+    ("posture", |to, of| to.posture.damping = of.posture.damping),
+    ("height", |to, of| to.landing.height = of.landing.height),
+    ("rotation", |to, of| {
+        to.landing.rotation = of.landing.rotation
+    }),
+    ("inertia", |to, of| {
+        to.landing.inertia_b = of.landing.inertia_b
+    }),
+    ("moment", |to, of| {
+        to.landing.moment_weight = of.landing.moment_weight
+    }),
+    ("horizontal", |to, of| {
+        to.landing.horizontal = of.landing.horizontal
+    }),
+    ("stance_damping", |to, of| {
+        to.landing.stance_damping = of.landing.stance_damping
+    }),
+    ("stance_speeds", |to, of| {
+        to.landing.stance_speeds = of.landing.stance_speeds
+    }),
+    ("retraction.fastest", |to, of| {
+        to.retraction.fastest = of.retraction.fastest
+    }),
+    ("gentle", |to, of| {
+        to.retraction.gentle = of.retraction.gentle
+    }),
+    ("near", |to, of| to.retraction.near = of.retraction.near),
+    ("retraction.most", |to, of| {
+        to.retraction.most = of.retraction.most
+    }),
+    ("fading", |to, of| {
+        to.retraction.fading = of.retraction.fading
+    }),
+    ("retraction.lasting", |to, of| {
+        to.retraction.lasting = of.retraction.lasting
+    }),
+    ("joint_speed", |to, of| {
+        to.shortening.joint_speed = of.shortening.joint_speed
+    }),
+    ("gain", |to, of| to.shortening.gain = of.shortening.gain),
+    ("shortening.most", |to, of| {
+        to.shortening.most = of.shortening.most
+    }),
+    ("rate", |to, of| to.shortening.rate = of.shortening.rate),
+    ("travel", |to, of| {
+        to.shortening.travel = of.shortening.travel
+    }),
+];
+
 /// The test above would see them: each number of a small robot makes a large one jump otherwise.
 #[test]
 fn a_large_robot_with_a_number_of_a_small_one_jumps_otherwise() {
-    type Take = fn(&mut Settings<f64, 12, 4>, &Settings<f64, 12, 4>);
-    let takes: [(&str, Take); 48] = [
-        ("weighing", |to, of| to.weighing = of.weighing),
-        ("moving", |to, of| to.centring.moving = of.centring.moving),
-        ("rest of the trunk", |to, of| {
-            to.centring.rest = of.centring.rest
-        }),
-        ("most", |to, of| to.centring.most = of.centring.most),
-        ("agreement", |to, of| {
-            to.centring.agreement = of.centring.agreement
-        }),
-        ("centring.damping", |to, of| {
-            to.centring.damping = of.centring.damping
-        }),
-        ("levelling", |to, of| to.levelling = of.levelling),
-        ("rest", |to, of| to.rest = of.rest),
-        ("settling", |to, of| to.settling = of.settling),
-        ("stand_height", |to, of| to.stand_height = of.stand_height),
-        ("slew", |to, of| to.slew = of.slew),
-        ("pd.gains", |to, of| to.pd.gains = of.pd.gains),
-        ("joint_gains", |to, of| {
-            to.pd.joint_gains = of.pd.joint_gains
-        }),
-        ("takeoff", |to, of| {
-            to.regulator.takeoff = of.regulator.takeoff
-        }),
-        ("touchdown", |to, of| {
-            to.regulator.touchdown = of.regulator.touchdown
-        }),
-        ("running", |to, of| {
-            to.regulator.running = of.regulator.running
-        }),
-        ("time", |to, of| to.regulator.time = of.regulator.time),
-        ("easing", |to, of| to.unloading.easing = of.unloading.easing),
-        ("lasting", |to, of| {
-            to.unloading.lasting = of.unloading.lasting
-        }),
-        ("pull", |to, of| to.unloading.pull = of.unloading.pull),
-        ("unloaded", |to, of| {
-            to.unloading.loaded = of.unloading.loaded
-        }),
-        ("inertia_shaping.gain", |to, of| {
-            to.inertia_shaping.gain = of.inertia_shaping.gain
-        }),
-        ("inertia_shaping.slowest", |to, of| {
-            to.inertia_shaping.slowest = of.inertia_shaping.slowest
-        }),
-        ("inertia_shaping.ramp", |to, of| {
-            to.inertia_shaping.ramp = of.inertia_shaping.ramp
-        }),
-        ("inertia_shaping.damping", |to, of| {
-            to.inertia_shaping.damping = of.inertia_shaping.damping
-        }),
-        ("loaded", |to, of| to.detector.loaded = of.detector.loaded),
-        ("observer", |to, of| {
-            to.detector.observer.damping = of.detector.observer.damping
-        }),
-        ("filter", |to, of| to.detector.filter = of.detector.filter),
-        ("capture", |to, of| to.posture.capture = of.posture.capture),
-        ("posture", |to, of| to.posture.damping = of.posture.damping),
-        ("height", |to, of| to.landing.height = of.landing.height),
-        ("rotation", |to, of| {
-            to.landing.rotation = of.landing.rotation
-        }),
-        ("inertia", |to, of| {
-            to.landing.inertia_b = of.landing.inertia_b
-        }),
-        ("moment", |to, of| {
-            to.landing.moment_weight = of.landing.moment_weight
-        }),
-        ("horizontal", |to, of| {
-            to.landing.horizontal = of.landing.horizontal
-        }),
-        ("stance_damping", |to, of| {
-            to.landing.stance_damping = of.landing.stance_damping
-        }),
-        ("stance_speeds", |to, of| {
-            to.landing.stance_speeds = of.landing.stance_speeds
-        }),
-        ("retraction.fastest", |to, of| {
-            to.retraction.fastest = of.retraction.fastest
-        }),
-        ("gentle", |to, of| {
-            to.retraction.gentle = of.retraction.gentle
-        }),
-        ("near", |to, of| to.retraction.near = of.retraction.near),
-        ("retraction.most", |to, of| {
-            to.retraction.most = of.retraction.most
-        }),
-        ("fading", |to, of| {
-            to.retraction.fading = of.retraction.fading
-        }),
-        ("retraction.lasting", |to, of| {
-            to.retraction.lasting = of.retraction.lasting
-        }),
-        ("joint_speed", |to, of| {
-            to.shortening.joint_speed = of.shortening.joint_speed
-        }),
-        ("gain", |to, of| to.shortening.gain = of.shortening.gain),
-        ("shortening.most", |to, of| {
-            to.shortening.most = of.shortening.most
-        }),
-        ("rate", |to, of| to.shortening.rate = of.shortening.rate),
-        ("travel", |to, of| {
-            to.shortening.travel = of.shortening.travel
-        }),
-    ];
     let (own, foreign) = (LARGE.settings(), SMALL.settings());
     let similar = fly(LARGE, own);
-    let idle = takes.iter().filter(|(_, take)| {
+    let idle = TAKES.iter().filter(|(_, take)| {
         let mut settings = own;
         take(&mut settings, &foreign);
         fly(LARGE, settings) == similar

@@ -80,18 +80,16 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
             .map(|end| end.position)
     }
 
-    /// [`PreLanding::joints`] for every tick of a controller: one Gauss-Newton step from the `last` answer, so that a tick costs
-    /// a third and the answer is exact after two or three. Begin with the level posture. Every foot is raised along `up_b` by its number in
-    /// `raised`, m: zeros for the posture itself. `limbs` is storage.
+    /// [`PreLanding::joints`] for every tick of a controller: one Gauss-Newton step from the `last` answer, whose legs `limbs` are, so that a
+    /// tick costs a third and the answer is exact after two or three. Begin with the level posture. Every foot is raised along `up_b` by its
+    /// number in `raised`, m: zeros for the posture itself.
     #[must_use]
-    pub fn follow<M: Tree<T, N>>(
+    pub fn follow(
         &self,
-        model: &M,
         level_feet: &[Vector3<T>; F],
         (up_b, velocity_b): (&Vector3<T>, &Vector3<T>),
         raised: &[T; F],
-        last: &[T; N],
-        limbs: &mut Limbs<T, N, F>,
+        (last, limbs): (&[T; N], &Limbs<T, N, F>),
     ) -> [T; N] {
         let Some(mut wanted) = self.feet(level_feet, up_b, velocity_b) else {
             return self.joints;
@@ -99,11 +97,6 @@ impl<T: Scalar, const N: usize, const F: usize> PreLanding<T, N, F> {
         for (foot, raised) in wanted.iter_mut().zip(raised) {
             *foot += up_b * *raised;
         }
-        let q = Configuration {
-            joints: *last,
-            ..Configuration::NEUTRAL
-        };
-        limbs.update(model, &q, &self.feet);
         self.step(limbs, &wanted, last)
     }
 
@@ -170,7 +163,7 @@ mod tests {
     use super::PreLanding;
     use a1_model::{A1Geared, BUILD, FEET};
     use nalgebra::Vector3;
-    use rbd_core::{Configuration, Kinematics, Limbs, Posture, forward_kinematics};
+    use rbd_core::{Configuration, Kinematics, Posture, forward_kinematics};
 
     const LEVEL: [f64; 12] = [
         0.14, 0.77, -1.54, -0.14, 0.77, -1.54, 0.14, 0.77, -1.54, -0.14, 0.77, -1.54,
@@ -219,18 +212,17 @@ mod tests {
         let level = posture.level_feet(&A1Geared);
         let up_b = Vector3::new(0.1, 0.2, 0.97);
         let velocity = Vector3::new(1.6, -0.1, -1.0);
-        let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
-        let body = (&up_b, &velocity);
+        let mut joints = LEVEL;
+        let follow = |velocity: Vector3<f64>, last: [f64; 12]| {
+            let limbs = posture.limbs(&A1Geared, &last);
+            posture.follow(&level, (&up_b, &velocity), &[0.0; 4], (&last, &limbs))
+        };
         for _ in 0..super::STEPS {
-            joints = posture.follow(&A1Geared, &level, body, &[0.0; 4], &joints, &mut limbs);
+            joints = follow(velocity, joints);
         }
         assert_eq!(joints, posture.joints(&A1Geared, &up_b, &velocity));
-        let mut follow = |velocity: Vector3<f64>, last| {
-            let body = (&up_b, &velocity);
-            posture.follow(&A1Geared, &level, body, &[0.0; 4], last, &mut limbs)
-        };
-        assert_eq!(follow(velocity * f64::NAN, &joints), LEVEL);
-        let lost = follow(velocity, &[f64::NAN; 12]);
+        assert_eq!(follow(velocity * f64::NAN, joints), LEVEL);
+        let lost = follow(velocity, [f64::NAN; 12]);
         assert!(
             lost.iter()
                 .zip(LEVEL)
@@ -259,10 +251,11 @@ mod tests {
         let level = posture.level_feet(&A1Geared);
         let up_b = Vector3::new(0.1, 0.0, 0.995);
         let raised = [0.0, 0.03, 0.05, 0.01];
-        let (mut joints, mut limbs) = (LEVEL, Limbs::ZERO);
+        let mut joints = LEVEL;
         for _ in 0..5 {
+            let limbs = posture.limbs(&A1Geared, &joints);
             let body = (&up_b, &Vector3::zeros());
-            joints = posture.follow(&A1Geared, &level, body, &raised, &joints, &mut limbs);
+            joints = posture.follow(&level, body, &raised, (&joints, &limbs));
         }
         for ((foot, level), raised) in feet_b(joints).into_iter().zip(level).zip(raised) {
             let way = foot - level;
