@@ -38,7 +38,7 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     /// Time at rest so far, s.
     pub(crate) calm: T,
     pub(crate) model: &'a M,
-    landing: Landing<T, N, F>,
+    pub(crate) landing: Landing<T, N, F>,
     pub(crate) workspace: &'a mut Workspace<T, N, F>,
     pub(crate) posture: PreLanding<T, N, F>,
     /// Feet of the level landing posture, base axes.
@@ -253,7 +253,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 }
             }
             Phase::PreLanding if levelled => {
-                self.level(measured, jump.plan.touchdown - t, dt);
+                // The first tick takes up the posture from which the next ones go on.
+                if self.waiting.known {
+                    self.level(measured, jump.plan.touchdown - t, dt);
+                }
                 reference.joints = self.waiting.joints;
                 reference.joint_velocities = self.waiting.velocities;
             }

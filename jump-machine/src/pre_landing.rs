@@ -25,7 +25,7 @@ pub(crate) struct Waiting<T: Scalar, const N: usize, const F: usize> {
     touched: [bool; F],
     /// Time on the ground, s.
     since: T,
-    /// Whether the machine's wanted legs are those of `joints`.
+    /// Whether the machine's wanted legs are those of `joints`, from which the next posture is found.
     pub(crate) known: bool,
 }
 
@@ -73,16 +73,9 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
 
     /// The landing posture for a body that goes on turning until it touches down, `left` from now: legs that follow the tilt of
     /// now turn a body away from its plan that would have been level in time. What goes on is not the base's angular velocity, which legs on
-    /// their way change, but that of the robot with its joints locked.
+    /// their way change, but that of the robot with its joints locked. The wanted legs must be those of the last posture.
     #[inline(always)]
     pub(crate) fn level(&mut self, measured: &Measurement<T, N, F>, left: T, dt: T) {
-        if !self.waiting.known {
-            let q = Configuration {
-                joints: self.waiting.joints,
-                ..Configuration::NEUTRAL
-            };
-            self.wanted.update(self.model, &q, &self.settings.pd.feet);
-        }
         let left = math::max(left, T::ZERO);
         let rot_bw = measured.base.rotation.inverse();
         let mut up_b = rot_bw * Vector3::z();
@@ -142,15 +135,27 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         raised
     }
 
-    /// Feet that have not touched the ground yet when others have: they go on as before it, for a while. The velocities of their joints, rad/s.
+    /// What the first touch changes, and feet that have not touched the ground yet when others have: they go on as before it, for a while. The
+    /// velocities of their joints, rad/s.
     pub(crate) fn meet(&mut self, measured: &Measurement<T, N, F>, dt: T) -> [T; N] {
         let waiting = &mut self.waiting;
         for (touched, on) in waiting.touched.iter_mut().zip(&self.contact.contacts) {
             *touched |= *on;
         }
+        if waiting.since == T::ZERO {
+            let fall = -(measured.base.rotation * measured.base_velocity.linear).z;
+            self.landing.settings = self.settings.landing.after_fall(fall);
+        }
         waiting.since += dt;
         if waiting.since >= self.settings.retraction.lasting {
             return [T::ZERO; N];
+        }
+        if !self.waiting.known {
+            let q = Configuration {
+                joints: self.waiting.joints,
+                ..Configuration::NEUTRAL
+            };
+            self.wanted.update(self.model, &q, &self.settings.pd.feet);
         }
         self.level(measured, T::ZERO, dt);
         self.waiting.velocities

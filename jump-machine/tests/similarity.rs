@@ -309,7 +309,7 @@ fn a_large_robot_jumps_as_a_small_one_does() {
 type Take = fn(&mut Settings<f64, 12, 4>, &Settings<f64, 12, 4>);
 
 /// Every number of the settings that has a size.
-const TAKES: [(&str, Take); 48] = [
+const TAKES: [(&str, Take); 49] = [
     ("weighing", |to, of| to.weighing = of.weighing),
     ("moving", |to, of| to.centring.moving = of.centring.moving),
     ("rest of the trunk", |to, of| {
@@ -387,6 +387,7 @@ const TAKES: [(&str, Take); 48] = [
     ("stance_speeds", |to, of| {
         to.landing.stance_speeds = of.landing.stance_speeds
     }),
+    ("hard", |to, of| to.landing.hard = of.landing.hard),
     ("retraction.fastest", |to, of| {
         to.retraction.fastest = of.retraction.fastest
     }),

@@ -30,6 +30,9 @@ pub struct Settings<T> {
     pub stance_damping: [T; 2],
     /// Joint speeds between which the damping grows from the first to the second, rad/s.
     pub stance_speeds: [T; 2],
+    /// Falls at the first touch from which on, and at which wholly, slow joints are damped as fast ones, m/s: a landing that the knees can
+    /// hardly take up needs all that takes energy. See [`Self::after_fall`].
+    pub hard: [T; 2],
     /// Stiffness of the joints of swing legs, N m/rad.
     pub swing_stiffness: T,
     /// Damping of the joints of swing legs, N m s/rad.
@@ -59,9 +62,22 @@ impl<T: Scalar> Settings<T> {
             max_normal_force: build.force(400.0),
             stance_damping: [build.joint_damping(0.2), build.joint_damping(1.0)],
             stance_speeds: [build.rate(15.0), build.rate(21.0)],
+            hard: [build.speed(3.5), build.speed(4.5)],
             swing_stiffness: build.joint_stiffness(60.0),
             swing_damping: build.joint_damping(2.0),
         }
+    }
+
+    /// The settings for a landing of a body that falls with `fall`, m/s, at the first touch; one that is not a number changes nothing.
+    #[must_use]
+    pub fn after_fall(&self, fall: T) -> Self {
+        let ([slow, fast], [begin, end]) = (self.stance_damping, self.hard);
+        let mut after = *self;
+        if fall > begin {
+            let share = math::clamp((fall - begin) / (end - begin), T::ZERO, T::ONE);
+            after.stance_damping = [slow + (fast - slow) * share, fast];
+        }
+        after
     }
 
     /// Damping of a joint of a stance leg at this speed, N m s/rad.
@@ -91,4 +107,31 @@ impl<T: Scalar> Target<T> {
         rot_wb: Transform::<T>::IDENTITY.rotation,
         offset_w: [T::ZERO; 2],
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Settings;
+    use a1_model::BUILD;
+
+    #[test]
+    fn fast_joints_and_hard_landings_are_damped() {
+        let settings = Settings::<f64>::new(&BUILD);
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        for (speed, damping) in [
+            (0.0, 0.2),
+            (15.0, 0.2),
+            (-18.0, 0.6),
+            (21.0, 1.0),
+            (-90.0, 1.0),
+        ] {
+            near(settings.damping(speed), damping);
+        }
+        for (fall, damping) in [(-2.0, 0.2), (3.5, 0.2), (4.0, 0.6), (4.5, 1.0), (7.0, 1.0)] {
+            let after = settings.after_fall(fall);
+            near(after.damping(3.0), damping);
+            near(after.damping(22.0), 1.0);
+        }
+        assert_eq!(settings.after_fall(f64::NAN), settings);
+    }
 }
