@@ -1,8 +1,8 @@
 //! Feet that go along with the ground as it comes: ground speed matching.
 //!
-//! A foot that stands still in base axes meets the ground at the speed of the body, and what it weighs together with its rotor stops at once:
-//! a blow of seven weights at 1.7 m/s, and joints that are torn along. A foot that is drawn up just before meets it with the rest of the speed. It costs legs that are shorter by the way, which a fast fall needs to come to rest: so it
-//! fades out there.
+//! A foot that stands still in base axes meets the ground at the speed of the body, and what it weighs together with its rotor stops at
+//! once: a blow of seven weights at 1.7 m/s, and joints that are torn along. A foot that is drawn up just before meets it with the rest of the
+//! speed. That takes length from the legs, which a fast fall needs to come to rest: so it fades out there.
 //!
 //! The feet that come first are drawn up until they touch; the others go on, for when one foot is on the ground the body still falls.
 
