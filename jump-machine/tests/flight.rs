@@ -7,7 +7,10 @@ use jump_machine::{Jump, Machine, Observation, Settings, Workspace};
 use landing::PreLanding;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
-use rbd_core::{Configuration, Frame, GRAVITY, Limbs, Motion, Transform};
+use rbd_core::{
+    CentroidalMap, Configuration, Frame, GRAVITY, Limbs, Motion, Posture, Tangent, Transform,
+    centroidal_map,
+};
 
 const TAKEOFF: f64 = 0.2;
 const TOUCHDOWN: f64 = 0.8;
@@ -198,6 +201,54 @@ fn arriving_at(fall: f64) -> (f64, f64, f64) {
     let (lasting, g) = (TOUCHDOWN - TAKEOFF, -GRAVITY[2]);
     let speed = g * lasting - fall;
     (0.35 + (2.5 - speed) * lasting, speed, 0.0)
+}
+
+/// A base that turns only because the legs swing stops turning when they do: it is level at the touchdown.
+#[test]
+fn what_legs_turn_by_swinging_is_no_tilt() {
+    let mut settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+    (settings.retraction.share, settings.shortening.most) = (0.0, 0.0);
+    let swinging: [f64; 12] = core::array::from_fn(|i| [0.0, 3.0, 0.0][i % 3]);
+    let mut v = Tangent::ZERO;
+    v.joints = swinging;
+    let q = Configuration {
+        joints: crouch(),
+        ..Configuration::NEUTRAL
+    };
+    let mut map = CentroidalMap::ZERO;
+    centroidal_map(&A1Geared, &Posture::new(&A1Geared, &q), &mut map);
+    // Together with what the legs do this is no angular momentum.
+    let omega_b = -map.locked_angular_velocity(&map.momentum(&v));
+    assert!(omega_b.norm() > 0.3, "{omega_b}");
+    let (mut workspace, nodes) = (Workspace::new(), nodes(0.0));
+    let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
+    machine.arm(jump(&nodes), 0.0).unwrap();
+    let (height, speed, _) = arriving_at(1.5);
+    let mut velocity = Vector3::zeros();
+    for k in -500..795 {
+        let t = f64::from(k) * 1e-3;
+        let (z, vz) = ballistic(height, speed, (t - TAKEOFF).max(0.0));
+        // Fast enough that the capture point is outside the feet, where every tilt would move them.
+        velocity = Vector3::new(1.5, 0.0, vz);
+        let base = Transform::new(Rotation3::identity(), Vector3::new(0.0, 0.0, z));
+        let mut heard = flying(base, velocity, omega_b);
+        heard.measured.joint_velocities = swinging;
+        if t > TOUCHDOWN - POSED {
+            machine.tick(t, Some(&heard));
+        } else {
+            machine.tick(t, Some(&flying(base, velocity, Vector3::zeros())));
+        }
+        machine.joint_tick(&crouch(), &[0.0; 12], 1e-4);
+    }
+    assert_eq!(machine.phase(), Phase::PreLanding);
+    let posture = PreLanding {
+        joints: crouch(),
+        ..settings.posture
+    };
+    let level = place(&posture.joints(&A1Geared, &Vector3::z(), &velocity));
+    for (found, level) in place(&machine.command().position).iter().zip(&level) {
+        assert!((found - level).norm() < 2e-4, "{found} {level}");
+    }
 }
 
 /// Velocities, relative to the base and base axes, with which the command moves the feet of a crouching robot.
