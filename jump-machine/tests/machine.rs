@@ -118,6 +118,41 @@ fn a_jump_goes_through_its_phases_and_another_may_follow() {
     );
 }
 
+/// Shares of their way that torques have gone after a joint tick, of the joints that have one: until then a leg was where it should be, now it is not.
+fn shares(machine: &mut A1Machine<'_, f64>) -> Vec<f64> {
+    let bent = core::array::from_fn(|i| crouch::<f64>()[i] + [0.02, -0.1, 0.15][i % 3]);
+    let mut after = |q: &[f64; 12], ticks: usize| {
+        let torques = (0..ticks).map(|_| machine.joint_tick(q, &[0.0; 12], 1e-4));
+        torques.last().unwrap()
+    };
+    // Less than five milliseconds in all, after which a machine without a tick is silent.
+    let from = after(&crouch(), 20);
+    let between = after(&bent, 1);
+    let last = after(&bent, 25);
+    let ways = from.iter().zip(between).zip(last);
+    let ways = ways.filter(|((from, _), last)| (last - *from).abs() > 0.1);
+    ways.map(|((from, between), last)| (between - from) / (last - from))
+        .collect()
+}
+
+/// Torques of a plan go straight to what they are to be, all by the same share of their way.
+#[test]
+fn torques_of_a_plan_keep_their_direction() {
+    let (nodes, mut workspace) = (nodes(), Workspace::new());
+    let mut machine = machine(&mut workspace);
+    machine.arm(jump(&nodes), 1.0).unwrap();
+    machine.tick(0.0, Some(&inputs()));
+    assert_eq!(machine.phase(), Phase::Hold);
+    let shares = shares(&mut machine);
+    assert!(shares.len() > 4);
+    for share in &shares {
+        assert!(
+            (share - shares[0]).abs() < 1e-9 && *share < 0.9,
+            "{shares:?}"
+        );
+    }
+}
+
 #[test]
 fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_on() {
     let (mut workspace, nodes) = (Workspace::new(), nodes());
