@@ -68,6 +68,8 @@ pub struct State<T: Scalar, const F: usize, const S: usize> {
     anchored: [bool; F],
     confidence: [T; F],
     coasting: T,
+    /// Time for which most feet have agreed, s.
+    agreed: T,
 }
 
 /// Whether the estimate may be acted on.
@@ -123,6 +125,7 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
             anchored: [false; F],
             confidence: [T::ZERO; F],
             coasting: T::ZERO,
+            agreed: T::ZERO,
         }
     }
 
@@ -315,6 +318,12 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
         let s = &self.settings;
         let velocity = state.filter.get(VELOCITY);
         let majority = consensus(seen, s);
+        state.agreed = match majority {
+            // Not beyond the limit: sums of small numbers must not end in a stuck float.
+            Some(_) => math::min(state.agreed + dt, s.agreement),
+            None => T::ZERO,
+        };
+        let majority = majority.filter(|_| state.agreed >= s.agreement);
         let half = |slip: T| {
             let ratio = slip / s.slip_gate;
             T::ONE / (T::ONE + ratio * ratio)

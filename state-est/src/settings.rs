@@ -17,6 +17,9 @@ pub struct Settings<T> {
     pub slip_gate: T,
     /// Confidence below which a foot is no anchor.
     pub least_confidence: T,
+    /// Time for which most feet must have agreed before they are believed against the filter, s: ground that gives way at a touchdown takes all of
+    /// them along, and they agree for as long as it does.
+    pub agreement: T,
     /// Rate at which gravity corrects the tilt while quasi-static, 1/s.
     pub tilt_gain: T,
     /// Rate at which feet that stand correct the gyroscope's bias, 1/s.
@@ -45,6 +48,7 @@ impl<T: Scalar> Settings<T> {
             foot_speed: of(0.1),
             slip_gate: of(0.3),
             least_confidence: of(0.1),
+            agreement: of(0.05),
             tilt_gain: of(0.5),
             bias_gain: of(1.0),
             max_bias: of(0.1),
