@@ -32,11 +32,7 @@ impl<T: Scalar, const N: usize> Slew<T, N> {
         let step = self.rate * dt;
         let step = if step > T::ZERO { step } else { T::ZERO };
         for (last, wanted) in self.last.iter_mut().zip(wanted) {
-            let wanted = if wanted.is_finite_number() {
-                *wanted
-            } else {
-                T::ZERO
-            };
+            let wanted = torque(*wanted);
             *last = math::clamp(wanted, *last - step, *last + step);
         }
         self.last
@@ -45,28 +41,28 @@ impl<T: Scalar, const N: usize> Slew<T, N> {
     /// As [`Slew::limit`], but all joints go the same share of their way, the largest with which none exceeds the rate:
     /// τ_k = τ_{k−1} + s (τ − τ_{k−1}), s = min(1, rate · dt / max |τ − τ_{k−1}|).
     pub fn limit_together(&mut self, wanted: &[T; N], dt: T) -> [T; N] {
-        let ways = self.last.iter().zip(wanted).map(|(last, wanted)| {
-            if wanted.is_finite_number() {
-                math::abs(*wanted - *last)
-            } else {
-                math::abs(*last)
-            }
+        let ways = self.last.iter().zip(wanted);
+        let most = ways.fold(T::ZERO, |most, (last, wanted)| {
+            math::max(most, math::abs(torque(*wanted) - *last))
         });
-        let most = ways.fold(T::ZERO, math::max);
         let step = self.rate * dt;
         if most <= step || !most.is_finite_number() {
             return self.limit(wanted, dt);
         }
         let share = if step > T::ZERO { step / most } else { T::ZERO };
         for (last, wanted) in self.last.iter_mut().zip(wanted) {
-            let wanted = if wanted.is_finite_number() {
-                *wanted
-            } else {
-                T::ZERO
-            };
-            *last += (wanted - *last) * share;
+            *last += (torque(*wanted) - *last) * share;
         }
         self.last
+    }
+}
+
+/// What is not a number is no torque.
+fn torque<T: Scalar>(wanted: T) -> T {
+    if wanted.is_finite_number() {
+        wanted
+    } else {
+        T::ZERO
     }
 }
 

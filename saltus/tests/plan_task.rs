@@ -115,11 +115,9 @@ fn plans_are_made_again_where_the_first_way_ends() {
     let folder = folder("again");
     let spin = built_in("a1/spin-90");
     let longer = spin.replace("max_s = 0.9", "max_s = 1.2");
-    let down = built_in("a1/lateral-down").replace("-0.3]", "-0.6]");
-    let down = down.replace("[0.0, 0.5,", "[0.0, 0.6,");
-    let down = down.replace("drop_m = 0.3", "drop_m = 0.6");
-    let down = down.replace("max_s = 0.9", "max_s = 1.2");
-    let half_turn = "\n[turn]\naxis = [0.0, 0.0, 1.0]\nangle_deg = 180.0\n";
+    let diagonal = built_in("a1/diagonal");
+    let further = diagonal.replace("[0.4, -0.3, ", "[0.52, -0.39, ");
+    assert_ne!(further, diagonal);
     // Whose durations, and whether it takes the search.
     let cases = [
         (
@@ -128,12 +126,7 @@ fn plans_are_made_again_where_the_first_way_ends() {
             "whole body",
             true,
         ),
-        (
-            "down-turned",
-            format!("{down}{half_turn}"),
-            "rigid body",
-            false,
-        ),
+        ("further", further, "rigid body", false),
     ];
     for (name, text, durations, searched) in cases {
         let path = folder.join(name).with_extension("toml");

@@ -121,6 +121,7 @@ impl World {
     pub(crate) fn by_foot(&self, foot: Foot<f64>) -> Estimate<f64, 1> {
         let mut settings = Settings::new();
         settings.foot_speed = 1e-9;
+        settings.agreement = 0.0;
         let estimator = self.estimator::<1, 3>([foot], settings);
         let mut state = State::new(&estimator, &A1, &self.q);
         let sample = self.sample(&self.held(), [1.0]);

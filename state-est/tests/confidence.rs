@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use state_est::{Estimate, Foot, Settings, State};
 
-use crate::common::{World, config, feet, vector, world};
+use crate::common::{World, config, feet, rotation, vector, world};
 
 /// One very short step of an estimator that believes to move at `vel_w`.
 fn step<const F: usize, const S: usize>(
@@ -50,6 +50,7 @@ proptest! {
         let worst = stands.iter().map(|i| slips[*i]).fold(0.0, f64::max);
         let mut settings = Settings::new();
         settings.slip_gate = worst.max(0.1) * stretch;
+        settings.agreement = 0.0;
         let agreed = stands.len() > 2 && worst < settings.slip_gate;
         // The filter believes in a velocity far from all.
         let wrong = mean + Vector3::new(300.0, 400.0, 0.0) * settings.slip_gate;
@@ -62,11 +63,48 @@ proptest! {
         }
     }
 
+    /// Feet that sink together do not take the estimate along while they agree for less than the time asked for; a filter that is wrong is put right
+    /// after it. A tick without a majority begins the time again.
+    #[test]
+    fn a_majority_is_believed_after_it_has_agreed_for_a_time(
+        orientation in rotation(), direction in rotation(), fast in 1.0..3.0_f64, agreement in 0.01..0.08_f64, lifted in 1..9_usize,
+    ) {
+        // So far from what the feet say that none of them is believed by itself.
+        let wrong = direction * Vector3::x() * fast;
+        let mut world = World::crouched();
+        world.q.base.rotation = orientation;
+        let mut settings = Settings::new();
+        settings.agreement = agreement;
+        let estimator = world.estimator::<4, 6>(feet(), settings);
+        // The feet say that the robot stands.
+        let run = |lifted: Option<usize>| {
+            let mut state = State::new(&estimator, &A1, &world.q).moving(wrong);
+            let ticks = 1..=2 * (agreement / 1e-3) as usize + 10;
+            ticks.map(|tick| {
+                let evidence = if Some(tick) == lifted { [0.0; 4] } else { [1.0; 4] };
+                let sample = world.sample(&world.held(), evidence);
+                let estimate = estimator.step(&A1, &mut state, Some(&sample), 1e-3);
+                (tick, (estimate.velocity.linear.norm(), estimate.confidence[0]))
+            }).collect::<Vec<_>>()
+        };
+        for (pause, lifted) in [(0, None), (lifted, Some(lifted))] {
+            for (tick, (speed, confidence)) in run(lifted) {
+                let agreed = (tick as f64 - if tick >= pause { pause as f64 } else { 0.0 }) * 1e-3;
+                if agreed < agreement - 1e-9 {
+                    prop_assert!((speed - fast).abs() < 1e-6, "{tick}: {speed}");
+                } else {
+                    prop_assert!(confidence > 0.99 && speed < fast, "{tick}: {confidence} {speed}");
+                }
+            }
+        }
+    }
+
     /// Below the least confidence a foot changes nothing, and from it on it does. Evidence beyond its range is taken at its end.
     #[test]
     fn a_foot_that_is_not_believed_changes_nothing(world in world(), slip in vector(1.0), least in 0.51..0.99_f64, above in 0.0..9.0_f64) {
         let mut settings = Settings::new();
         settings.least_confidence = least;
+        settings.agreement = 0.0;
         settings.foot_speed = 1e-9;
         let [foot, ..] = feet();
         let vel_w = world.velocity_by(foot) + slip;

@@ -40,6 +40,7 @@ fn settings() -> impl Strategy<Value = Settings<f64>> {
         settings.foot_speed *= d;
         // The attitude is left to the gyroscope.
         (settings.tilt_gain, settings.bias_gain) = (0.0, 0.0);
+        settings.agreement = 0.0;
         settings
     })
 }
