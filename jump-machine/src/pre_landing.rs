@@ -135,8 +135,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         raised
     }
 
-    /// What the first touch changes, and feet that have not touched the ground yet when others have: they go on as before it, for a while. The
-    /// velocities of their joints, rad/s.
+    /// What the first touch changes, and feet that have not touched the ground yet when others have: they go on as before it, for a while, and
+    /// then stand as the robot will. The velocities of their joints, rad/s.
     pub(crate) fn meet(&mut self, measured: &Measurement<T, N, F>, dt: T) -> [T; N] {
         let waiting = &mut self.waiting;
         for (touched, on) in waiting.touched.iter_mut().zip(&self.contact.contacts) {
@@ -148,6 +148,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         }
         waiting.since += dt;
         if waiting.since >= self.settings.retraction.lasting {
+            // Feet that are still in the air come down beside those that carry the robot: legs as short as they waited would not reach.
+            waiting.joints = self.posture.joints;
             return [T::ZERO; N];
         }
         if !self.waiting.known {

@@ -25,12 +25,12 @@ fn good(sim: Sim, drops: impl Iterator<Item = Drop>) -> usize {
     good
 }
 
-/// Level and tilted by 20°, at rest and at half a metre per second: what `cargo test` has time for.
+/// Level and tilted by 20°, at rest and at half a metre per second: what `cargo test` has time for. Index 9 lifts a foot at the touchdown, which comes down again only as long as a standing leg.
 #[test]
 fn drops_from_30_cm_are_landed() {
     let some = eighteen(0.3).enumerate();
-    let some = some.filter(|(i, _)| [0, 7, 15].contains(i));
-    assert_eq!(good(Sim::Native, some.map(|(_, drop)| drop)), 3);
+    let some = some.filter(|(i, _)| [0, 7, 9, 15].contains(i));
+    assert_eq!(good(Sim::Native, some.map(|(_, drop)| drop)), 4);
 }
 
 #[test]
