@@ -1,48 +1,15 @@
 //! One step of the estimator.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 use rbd_core::{
-    Axes, Configuration, Contact, ContactShape, Frame, FrameJacobian, GRAVITY, Kinematics, Motion,
-    Posture, Tangent, Transform, Tree, forward_kinematics, frame_jacobian,
+    Axes, Configuration, FrameJacobian, GRAVITY, Kinematics, Motion, Posture, Tangent, Transform,
+    Tree, forward_kinematics, frame_jacobian,
 };
 use so3::{Scalar, math, orthonormalize_step};
 
+use crate::feet::{Seen, consensus, turn_of_feet};
 use crate::filter::{FEET, Filter, POSITION, VELOCITY};
-use crate::{Fault, Sample, Settings};
-
-/// A foot: the centre of a ball that may roll, or the middle of a sole.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot<T> {
-    /// Where it is.
-    pub frame: Frame<T>,
-    /// Radius of the ball, m; zero for a sole.
-    pub radius: T,
-}
-
-impl<T: Scalar> Foot<T> {
-    /// A robot's contact: a ball by its centre, a sole by its middle.
-    #[must_use]
-    pub fn of(contact: &Contact<T>) -> Self {
-        match contact.shape {
-            ContactShape::Sphere { radius } => Self {
-                frame: contact.frame,
-                radius,
-            },
-            ContactShape::Rectangle {
-                x: [a, b],
-                y: [c, d],
-            } => {
-                let middle = Vector3::new((a + b) * T::HALF, (c + d) * T::HALF, T::ZERO);
-                let mut frame = contact.frame;
-                frame.offset = frame.placement().point(&middle).into();
-                Self {
-                    frame,
-                    radius: T::ZERO,
-                }
-            }
-        }
-    }
-}
+use crate::{Fault, Foot, Sample, Settings};
 
 /// The estimator of a robot with `N` joints and `F` feet; `S` must be F + 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,19 +114,6 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
     }
 }
 
-/// A foot as the legs say: from the IMU's point, world axes.
-#[derive(Clone, Copy)]
-struct Seen<T: Scalar> {
-    /// Place.
-    arm_w: Vector3<T>,
-    /// Velocity of the IMU's point if the foot stands or rolls.
-    velocity_w: Vector3<T>,
-    /// Velocity of a ball's centre while it rolls.
-    rolling_w: Vector3<T>,
-    /// Evidence of contact; zero where the leg cannot be used.
-    evidence: T,
-}
-
 impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, F, S> {
     /// One step of `dt` seconds; `None` if no sample arrived.
     #[must_use]
@@ -245,9 +199,13 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
         let middle = state.rot_wb * turn;
         let acceleration = middle * state.force_b + gravity::<T>();
         state.rot_wb = orthonormalize_step(&(middle * turn));
-        state
-            .filter
-            .predict(&acceleration, self.settings.accelerometer, dt);
+        // What is not there, or beyond the range at an impact, may have been as large as the range.
+        let deviation = if state.coasting > T::ZERO {
+            self.settings.max_specific_force
+        } else {
+            self.settings.accelerometer
+        };
+        state.filter.predict(&acceleration, deviation, dt);
     }
 
     /// Where the legs say the feet are, and how the IMU moves if they stand.
@@ -324,14 +282,14 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
             None => T::ZERO,
         };
         let majority = majority.filter(|_| state.agreed >= s.agreement);
-        let half = |slip: T| {
-            let ratio = slip / s.slip_gate;
-            T::ONE / (T::ONE + ratio * ratio)
-        };
+        // By half at the gate; from a velocity of which the filter itself is not sure, wider by its variance along three axes.
+        let gate = s.slip_gate * s.slip_gate;
+        let wide = gate + T::of(3.0) * state.filter.variance(VELOCITY);
+        let half = |slip: T, gate: T| gate / (gate + slip * slip);
         for (i, foot) in seen.iter().enumerate() {
-            let slip = |from: Vector3<T>| half((foot.velocity_w - from).norm());
-            let fit =
-                majority.map_or_else(|| slip(velocity), |m| math::max(slip(velocity), slip(m)));
+            let slip = |from: Vector3<T>, gate| half((foot.velocity_w - from).norm(), gate);
+            let own = slip(velocity, wide);
+            let fit = majority.map_or(own, |m| math::max(own, slip(m, gate)));
             let confidence = foot.evidence * fit;
             let trusted = confidence >= s.least_confidence;
             if let Some(slot) = state.confidence.get_mut(i) {
@@ -407,49 +365,6 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
     }
 }
 
-/// The velocity on which more than half of all feet agree, if they do.
-fn consensus<T: Scalar, const F: usize>(
-    seen: &[Seen<T>; F],
-    settings: &Settings<T>,
-) -> Option<Vector3<T>> {
-    let standing = || seen.iter().filter(|foot| foot.evidence > T::HALF);
-    let count = standing().count();
-    if 2 * count <= F {
-        return None;
-    }
-    let sum: Vector3<T> = standing().fold(Vector3::zeros(), |sum, foot| sum + foot.velocity_w);
-    let mean = sum / T::of(count as f64);
-    let agree = standing().all(|foot| (foot.velocity_w - mean).norm() < settings.slip_gate);
-    agree.then_some(mean)
-}
-
-/// Angular velocity, world axes, that the feet in contact miss in the gyroscope's: with it, they would all stand.
-///
-/// With d_i from the middle of these feet and V_i the velocity that foot i gives the body, δ × d_i = V_i − V̄ in the sense
-/// of least squares: (Σ |d|² 1 − d dᵀ + λ 1) δ = Σ d × (V_i − V̄). Two feet say nothing about the axis through them, and λ
-/// leaves it at zero.
-fn turn_of_feet<T: Scalar, const F: usize>(seen: &[Seen<T>; F], confidence: &[T; F]) -> Vector3<T> {
-    let standing = || {
-        let feet = seen.iter().zip(confidence);
-        feet.filter(|(_, c)| **c > T::HALF).map(|(foot, _)| foot)
-    };
-    let share = T::ONE / T::of(standing().count().max(1) as f64);
-    let zero = (Vector3::zeros(), Vector3::zeros());
-    let (arm, velocity) = standing().fold(zero, |(arm, velocity), foot| {
-        (arm + foot.arm_w * share, velocity + foot.velocity_w * share)
-    });
-    let mut square = Matrix3::from_diagonal_element(T::of(0.01));
-    let mut moment = Vector3::zeros();
-    for foot in standing() {
-        let d = foot.arm_w - arm;
-        square += Matrix3::from_diagonal_element(d.norm_squared()) - d * d.transpose();
-        moment += d.cross(&(foot.velocity_w - velocity));
-    }
-    square
-        .try_inverse()
-        .map_or_else(Vector3::zeros, |inverse| inverse * moment)
-}
-
 fn gravity<T: Scalar>() -> Vector3<T> {
     Vector3::from(GRAVITY.map(T::of))
 }
@@ -460,8 +375,8 @@ fn is_finite<T: Scalar>(x: &Vector3<T>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Estimator, Foot, State};
-    use crate::{Sample, Settings};
+    use super::{Estimator, State};
+    use crate::{Foot, Sample, Settings};
     use a1_model::{A1, FEET};
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Transform};

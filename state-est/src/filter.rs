@@ -36,6 +36,15 @@ impl<T: Scalar, const S: usize> Filter<T, S> {
         self.mean.get(row).copied().unwrap_or_else(Vector3::zeros)
     }
 
+    /// Variance of a state along one axis.
+    pub(crate) fn variance(&self, row: usize) -> T {
+        self.covariance
+            .get(row)
+            .and_then(|r| r.get(row))
+            .copied()
+            .unwrap_or(T::ZERO)
+    }
+
     /// Ballistics over `dt` with acceleration `a`; `accelerometer` is its standard deviation.
     pub(crate) fn predict(&mut self, a: &Vector3<T>, accelerometer: T, dt: T) {
         let v = self.get(VELOCITY);

@@ -13,7 +13,7 @@ pub struct Settings<T> {
     pub foot_position: T,
     /// Standard deviation of the speed of a foot that stands, m/s.
     pub foot_speed: T,
-    /// Foot speed at which a foot in contact is believed by half, m/s.
+    /// Foot speed at which a foot in contact is believed by half, m/s; more while the filter is not sure of its own velocity.
     pub slip_gate: T,
     /// Confidence below which a foot is no anchor.
     pub least_confidence: T,
@@ -26,7 +26,7 @@ pub struct Settings<T> {
     pub bias_gain: T,
     /// Largest bias that is believed, rad/s.
     pub max_bias: T,
-    /// Range of the accelerometer, m/s²: larger values are a fault.
+    /// Range of the accelerometer, m/s²: larger values are a fault. Also the standard deviation of a specific force that was not measured.
     pub max_specific_force: T,
     /// Range of the gyroscope, rad/s.
     pub max_angular_velocity: T,
