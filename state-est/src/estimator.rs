@@ -106,6 +106,32 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
         self
     }
 
+    /// From now on the middle of the feet is at `middle_w`, m, and the base heads along `heading`, rad about the vertical: the world is another one,
+    /// as at the start of a plan for a robot that begins it where the last one has left it. Tilt, motion, biases and what is known of them stay.
+    ///
+    /// The heading is the direction of the base's x axis, seen from above. False, and nothing changes, unless every foot stands and the numbers are finite.
+    #[must_use]
+    pub fn stand_at(&mut self, middle_w: &Vector3<T>, heading: T) -> bool {
+        let known = is_finite(middle_w) && heading.is_finite_number();
+        if !known || F == 0 || self.anchored.contains(&false) {
+            return false;
+        }
+        let ahead = self.rot_wb * Vector3::x();
+        let turn = heading - math::atan2(ahead.y, ahead.x);
+        let turned = so3::exp(&(Vector3::z() * turn));
+        let feet = self.filter.mean.iter().skip(FEET);
+        let sum = feet.fold(Vector3::zeros(), |sum, foot| sum + foot);
+        let shift = middle_w - turned * (sum / T::of(F as f64));
+        for (row, x) in self.filter.mean.iter_mut().enumerate() {
+            *x = turned * *x;
+            if row != VELOCITY {
+                *x += shift;
+            }
+        }
+        self.rot_wb = turned * self.rot_wb;
+        true
+    }
+
     fn is_finite(&self) -> bool {
         let vectors = [&self.bias_b, &self.force_b, &self.rate_b];
         self.filter.is_finite()

@@ -7,3 +7,4 @@ mod faults;
 mod kalman;
 mod legs;
 mod level;
+mod place;

@@ -90,6 +90,11 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         }
     }
 
+    /// As [`State::stand_at`].
+    pub(super) fn stand_at(&mut self, middle_w: &Vector3<f64>, heading: f64) -> bool {
+        self.state.stand_at(middle_w, heading)
+    }
+
     /// One millisecond: samples the true motion with noise and estimates.
     pub(super) fn step<M: Tree<f64, N>>(
         &mut self,

@@ -43,6 +43,8 @@ pub struct ClosedLoop<R, M, const N: usize, const F: usize, const C: usize, cons
     pub sensors: Sensors<R, N, F, C, E>,
     /// What its commands reach.
     pub drive: Drive<N>,
+    /// Time of the next tick on the machine's clock, s.
+    pub now: f64,
 }
 
 impl<
@@ -62,25 +64,48 @@ impl<
         &mut self,
         (hold, end): (f64, f64),
         recorder: &mut impl Recorder<M, N, F, C>,
+        progress: impl FnMut(f64, Phase),
+    ) -> Result<(), String> {
+        self.begin(-hold);
+        self.go_on((0.0, end), recorder, progress)
+    }
+
+    /// Before the first tick, at time `now` on the machine's clock, s: the sensors have seen the robot rest.
+    pub fn begin(&mut self, now: f64) {
+        self.now = now;
+        self.sensors.begin(now, &self.world);
+    }
+
+    /// Runs on from [`ClosedLoop::now`], through a jump that begins at `start` on the machine's clock, to `end` of it, s. `recorder` and `progress` hear
+    /// times of the jump.
+    ///
+    /// # Errors
+    /// What the simulator says.
+    pub fn go_on(
+        &mut self,
+        (start, end): (f64, f64),
+        recorder: &mut impl Recorder<M, N, F, C>,
         mut progress: impl FnMut(f64, Phase),
     ) -> Result<(), String> {
-        self.sensors.begin(-hold, &self.world);
+        let first = self.now;
         for k in 0_u64.. {
-            let t = k as f64 * PERIOD - hold;
+            self.now = k as f64 * PERIOD + first;
+            let (now, t) = (self.now, self.now - start);
             if t > end {
                 break;
             }
             let felt = self.drive.take_felt();
-            let mut told = self.sensors.measure(t, &self.world, &felt);
+            let mut told = self.sensors.measure(now, &self.world, &felt);
             if let Some(told) = &mut told {
                 recorder.tell(k, told);
             }
-            let tick = self.machine.tick(t, told.as_ref());
-            self.drive.send(k, t, self.machine.command());
+            let tick = self.machine.tick(now, told.as_ref());
+            self.drive.send(k, now, self.machine.command());
             recorder.ticked(t, &tick, &self.machine, &self.world);
             for i in 0..RATIO {
                 let parts = (&mut self.machine, &mut self.world, &mut self.sensors);
-                let step = self.drive.step(parts, t, i)?;
+                let mut step = self.drive.step(parts, now, i)?;
+                step.time -= start;
                 recorder.stepped(&step, &self.machine, &self.world);
             }
             if k.is_multiple_of(10) {

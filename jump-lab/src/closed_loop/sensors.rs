@@ -6,7 +6,8 @@ use crate::lab::{Disturbance, Encoders, FootSensors, Ground, Interface, Link};
 use crate::noise::Noise;
 use jump_control::Measurement;
 use jump_machine::Observation;
-use rbd_core::{Configuration, Tangent, Tree};
+use nalgebra::Vector3;
+use rbd_core::{Configuration, Tangent, Transform, Tree};
 use state_est::{Foot, Status};
 
 /// The feet of a robot in a world of `C` contacts.
@@ -45,6 +46,8 @@ pub struct Sensors<R, const N: usize, const F: usize, const C: usize, const E: u
     feet: Feet<N, F, C>,
     observer: Observer<N, F, E>,
     link: Link<Observation<f64, N, F>>,
+    /// Pose of the simulator's world in the machine's.
+    world: Transform<f64>,
     /// Largest error of the estimated base's place and of its orientation since the start: m, rad.
     pub worst: [f64; 2],
 }
@@ -67,8 +70,26 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
             observer,
             robot,
             feet,
+            world: Transform::IDENTITY,
             worst: [0.0; 2],
         }
+    }
+
+    /// The robot, which stands, begins anew where it is: the machine is told that the middle of its feet is at `middle_w` and that its base heads along
+    /// `heading`, rad, as [`state_est::State::stand_at`] has it, in a world in which the simulator's has the pose `world`. False where a foot does not stand.
+    #[must_use]
+    pub fn stand_at(
+        &mut self,
+        middle_w: &Vector3<f64>,
+        heading: f64,
+        world: Transform<f64>,
+    ) -> bool {
+        let stands = self.observer.stand_at(middle_w, heading);
+        if stands {
+            self.world = world;
+            self.worst = [0.0; 2];
+        }
+        stands
     }
 
     /// Joint positions and speeds as the encoders say now.
@@ -107,8 +128,9 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
         let estimate = self
             .observer
             .step(&self.robot, &q, v, &legs, &mut self.noise);
-        let turn = so3::log(&(estimate.base.rotation * q.base.rotation.inverse()));
-        let place = (estimate.base.translation - q.base.translation).norm();
+        let base = self.world.compose(&q.base);
+        let turn = so3::log(&(estimate.base.rotation * base.rotation.inverse()));
+        let place = (estimate.base.translation - base.translation).norm();
         self.worst = [self.worst[0].max(place), self.worst[1].max(turn.norm())];
         let lost = estimate.status == Status::Lost;
         let measured = Measurement {

@@ -218,6 +218,7 @@ fn run_told(
         sensors: Sensors::<_, _, _, _, { FEET + 2 }>::new(ROBOT, feet, &setting),
         drive: Drive::new(disturbance, (interface, seed), (&LIMITS, motors), &BUDGETS),
         world: plant(task, sim, disturbance, &start)?,
+        now: 0.0,
     };
     let weight = control::mass(&robot) * GRAVITY;
     let mut keeper = Keeper {

@@ -2,21 +2,20 @@
 
 use super::log::Sample;
 use super::measure::Measure;
-use super::plant::plant;
+use super::series::run_all;
 use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
 use crate::Sim;
 use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::lab::{Disturbance, Interface};
 use crate::verdict::{Hardware, Tick as HardwareTick};
 use jump_control::{Fault, Phase, Plan, sample};
-use jump_machine::{Jump, Machine, Settings, Tick, Work};
+use jump_machine::{Machine, Tick, Work};
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
-use jump_planner::stored::Stored;
 use jump_planner::task::Task;
 use landing::Outcome;
 use nalgebra::Vector3;
-use rbd_core::Model;
+use rbd_core::{Model, Transform};
 use state_est::Foot;
 
 /// Time of standing still before the jump, s.
@@ -238,6 +237,7 @@ pub fn closed<'m>(
         sensors: Sensors::new(robot, feet, &setting),
         drive: Drive::new(disturbance, commanded, limits, &robot.budgets),
         world,
+        now: 0.0,
     }
 }
 
@@ -262,18 +262,20 @@ pub fn feet(robot: &Quadruped) -> Feet<JOINTS, FOOT_COUNT, OWNERS> {
 }
 
 /// May change what the controller is told in a millisecond.
-type Tamper<'a> = dyn FnMut(u64, &mut Observed) + 'a;
+pub(super) type Tamper<'a> = dyn FnMut(u64, &mut Observed) + 'a;
 /// Sees the landing's memory.
-type Watch<'a> = dyn FnMut(&landing::Workspace<f64, 12, 4>) + 'a;
+pub(super) type Watch<'a> = dyn FnMut(&landing::Workspace<f64, 12, 4>) + 'a;
 
 /// What is kept of a run.
-struct Keeper<'a, 'p> {
-    run: Run,
-    plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
+pub(super) struct Keeper<'a, 'p> {
+    pub(super) run: Run,
+    pub(super) plan: &'a Plan<'p, f64, JOINTS, FOOT_COUNT>,
     /// Node of the plan's last sample.
-    node: usize,
-    tamper: &'a mut Tamper<'a>,
-    watch: &'a mut Watch<'a>,
+    pub(super) node: usize,
+    /// Pose of the simulator's world in that of the plan.
+    pub(super) frame: Transform<f64>,
+    pub(super) tamper: &'a mut Tamper<'a>,
+    pub(super) watch: &'a mut Watch<'a>,
 }
 
 impl<'m> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_COUNT, OWNERS>
@@ -299,11 +301,11 @@ impl<'m> Recorder<Machine<'m, f64, Quadruped, JOINTS, FOOT_COUNT>, JOINTS, FOOT_
         let planned = sample(self.plan, t, self.node);
         self.node = planned.node;
         let robot = &self.run.robot;
-        let sample = Sample {
+        let record = record(robot, world, tick.phase, self.plan, &planned, t);
+        self.run.samples.push(Sample {
             commanded_forces_w,
-            ..record(robot, world, tick.phase, self.plan, &planned, t)
-        };
-        self.run.samples.push(sample);
+            ..record.seen_in(&self.frame)
+        });
     }
 
     fn stepped(
@@ -329,52 +331,9 @@ pub fn run_watched(
     mut progress: impl FnMut(f64, Phase),
     mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
-    run_told(
-        (task, reference, trial),
-        (&mut tamper, &mut watch),
-        &mut progress,
-    )
-}
-
-/// [`run_watched`], compiled once and here: robot, simulators and controllers are large.
-fn run_told<'a>(
-    (task, reference, trial): (&'a Task, &'a Reference, Trial<'_>),
-    (tamper, watch): (&'a mut Tamper<'a>, &'a mut Watch<'a>),
-    progress: &mut dyn FnMut(f64, Phase),
-) -> Result<Run, String> {
-    let robot = task.robot;
-    let (drives, build) = (robot.drives(), robot.build(&task.start));
-    let mut settings = Settings::new(&build, robot.feet, drives, task.start.joints);
-    for measure in trial.without {
-        measure.leave(&mut settings);
-    }
-    let stored = Stored::read(&reference.bytes).map_err(|error| error.to_string())?;
-    let jump = Jump::stored(&stored).map_err(|error| error.to_string())?;
-    let hold = HOLD.max(settings.least_hold(&jump.plan));
-    let mut workspace = jump_machine::Workspace::new();
-    let mut machine = Machine::<_, _, JOINTS, FOOT_COUNT>::new(&robot, settings, &mut workspace);
-    let armed = machine.arm(jump, 0.0);
-    armed.map_err(|refusal| refusal.to_string())?;
-    let mut closed = closed(
-        (robot, feet(&robot)),
-        machine,
-        plant(trial.sim, task, &trial.disturbance)?,
-        &trial,
-    );
-    let mut keeper = Keeper {
-        run: Run::new(task, stored.checksum(), closed.world.plant().tick()),
-        plan: &jump.plan,
-        node: 0,
-        tamper,
-        watch,
-    };
-    let end = reference.touchdown + SETTLE + 0.5;
-    closed.run((hold, end), &mut keeper, progress)?;
-    let mut run = keeper.run;
-    run.final_phase = closed.machine.phase();
-    run.fault = closed.machine.fault();
-    run.estimate_errors = closed.sensors.worst;
-    Ok(run)
+    let watched = (&mut tamper as &mut Tamper<'_>, &mut watch as &mut Watch<'_>);
+    let runs = run_all(&[(task, reference)], &trial, watched, &mut progress)?;
+    runs.into_iter().next().ok_or_else(|| "no jump".to_owned())
 }
 
 /// A sample of a world at time `t` of the plan.

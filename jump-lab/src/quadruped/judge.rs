@@ -38,7 +38,7 @@ fn between(a: &Rotation3<f64>, b: &Rotation3<f64>) -> f64 {
 }
 
 /// Middle of the feet, world axes.
-fn middle_of_feet(
+pub(super) fn middle_of_feet(
     robot: &Quadruped,
     base: &Transform<f64>,
     joints: &[f64; JOINTS],

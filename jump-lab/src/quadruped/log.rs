@@ -6,6 +6,7 @@ use jump_control::Phase;
 use jump_planner::robot::Quadruped;
 use jump_planner::stored::joint_name;
 use nalgebra::{UnitQuaternion, Vector3};
+use rbd_core::Transform;
 
 /// One sample.
 #[derive(Clone, Debug)]
@@ -44,6 +45,19 @@ pub struct Sample {
     pub planned_forces_w: [Vector3<f64>; FOOT_COUNT],
     /// What the landing's quadratic program commanded in this millisecond; zero where there was none.
     pub commanded_forces_w: [Vector3<f64>; FOOT_COUNT],
+}
+
+impl Sample {
+    /// The same, seen in a world in which the one that it was taken in has this pose; what was planned and commanded is the plan's already.
+    pub(super) fn seen_in(mut self, world: &Transform<f64>) -> Self {
+        let turned = &world.rotation;
+        self.position = world.point(&self.position);
+        self.com = world.point(&self.com);
+        self.orientation = so3::quat::from_rotation(turned) * self.orientation;
+        self.velocity_w = turned * self.velocity_w;
+        self.forces_w = self.forces_w.map(|force| turned * force);
+        self
+    }
 }
 
 /// Short names of the feet: the places of their legs.

@@ -112,4 +112,18 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     on.call("Estimator::step missing", input, |(estimator, state)| {
         estimator.step(model, state, None, T::of(1e-3))
     });
+    // It stands still, so that every foot is an anchor.
+    let calm = Sample {
+        specific_force_i: Vector3::z() * T::of(9.81),
+        angular_velocity_i: Vector3::zeros(),
+        joints: q.joints,
+        joint_velocities: [T::ZERO; 12],
+        evidence: [T::ONE; 4],
+    };
+    let mut state = State::new(&estimator, model, q);
+    let _ = estimator.step(model, &mut state, Some(&calm), T::of(1e-3));
+    let place = (&mut state, Vector3::repeat(T::HALF));
+    on.call("State::stand_at", place, |(state, middle_w)| {
+        state.stand_at(&middle_w, T::HALF)
+    });
 }

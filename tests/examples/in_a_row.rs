@@ -1,0 +1,110 @@
+//! Ten jumps in a row in the lab: `cargo run --release -p saltus-tests --example in_a_row -- [SEEDS] [FIRST] [TASK...]`, and with MuJoCo
+//! `cargo xtask mujoco run --release -p saltus-tests --features mujoco --example in_a_row -- [SEEDS] [FIRST] [TASK...]`.
+//!
+//! A row for each of SEEDS (20) labs from seed FIRST (1) on: the same robot, motors, sensors and ground for ten jumps, the TASKs (lateral, spin-90,
+//! diagonal, forward-60 and barrel-roll of A1) over and over. Each jump begins where the last one has ended. Then how many robots fell, and how many
+//! jumps were on target.
+#![allow(missing_docs, reason = "a program")]
+
+use core::ops::ControlFlow;
+use jump_lab::Sim;
+use jump_lab::lab::{Disturbance, Lab};
+use jump_lab::quadruped::execute::Trial;
+use jump_lab::quadruped::{Planned, run_in_a_row};
+use jump_planner::task::Task;
+use jump_planner::{Options, plan};
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+
+/// Jumps of a row.
+const JUMPS: usize = 10;
+/// Tasks, where none are named.
+const TASKS: [&str; 5] = [
+    "a1/lateral",
+    "a1/spin-90",
+    "a1/diagonal",
+    "a1/forward-60",
+    "a1/barrel-roll",
+];
+
+/// The bytes of the plan of a task.
+fn bytes(name: &str) -> Result<Vec<u8>, String> {
+    let task = Task::load(name).map_err(|error| error.to_string())?;
+    let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()))?;
+    match found.answer {
+        None => Ok(found.bytes),
+        Some(answer) => Err(format!("{name}: {}: {}", answer.status, answer.because)),
+    }
+}
+
+/// The jumps of a row, made anew from the bytes of their plans.
+fn jumps(plans: &[(String, Vec<u8>)]) -> Result<Vec<Planned>, String> {
+    let again = plans.iter().cycle().take(JUMPS);
+    again
+        .map(|(name, bytes)| {
+            let robot = Task::load(name).map_err(|error| error.to_string())?.robot;
+            Planned::open(&robot, bytes, Task::load)
+        })
+        .collect()
+}
+
+fn main() -> Result<(), String> {
+    let mut words = std::env::args().skip(1);
+    let mut number = |default: u64| match words.next() {
+        None => Ok(default),
+        Some(text) => text
+            .parse::<u64>()
+            .map_err(|error| format!("{text}: {error}: give SEEDS and FIRST as numbers")),
+    };
+    let (seeds, first) = (number(20)?, number(1)?);
+    let mut names: Vec<String> = words.collect();
+    if names.is_empty() {
+        names = TASKS.map(str::to_owned).to_vec();
+    }
+    let sim = if cfg!(feature = "mujoco") {
+        Sim::MUJOCO
+    } else {
+        Sim::Native
+    };
+    let plans: Result<Vec<_>, String> = names
+        .into_iter()
+        .map(|name| bytes(&name).map(|bytes| (name, bytes)))
+        .collect();
+    let jumps = jumps(&plans?)?;
+    let rows: Result<Vec<_>, String> = (first..first + seeds)
+        .into_par_iter()
+        .map(|seed| {
+            let trial = Trial {
+                disturbance: Disturbance::draw(Lab::A1, seed),
+                seed,
+                ..Trial::nominal(sim)
+            };
+            let runs = run_in_a_row(&jumps, &trial)?;
+            let judged = jumps.iter().zip(&runs).map(|(jump, run)| jump.judge(run));
+            let end = runs.last().map(|run| (run.final_phase, run.fault));
+            Ok((seed, judged.collect::<Vec<_>>(), end))
+        })
+        .collect();
+    let (mut stood, mut on_target) = (0, 0);
+    for (seed, judged, end) in rows? {
+        let stands = judged.len() == JUMPS && judged.iter().all(|jump| jump.verdict.stands());
+        let hit = judged
+            .iter()
+            .filter(|jump| jump.verdict.on_target())
+            .count();
+        let outcomes: Vec<&str> = judged.iter().map(|jump| jump.verdict.outcome()).collect();
+        let end = if stands {
+            "stands".to_owned()
+        } else {
+            format!("NO: {end:?}")
+        };
+        println!("{seed:6}  {hit:2}  {}  {end}", outcomes.join(" "));
+        stood += usize::from(stands);
+        on_target += hit;
+    }
+    println!(
+        "{}, seeds from {first}: {stood} of {seeds} rows of {JUMPS} jumps without a fall, {on_target} of {} jumps on target",
+        sim.name(),
+        seeds as usize * JUMPS
+    );
+    Ok(())
+}
