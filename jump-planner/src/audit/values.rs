@@ -1,6 +1,6 @@
 //! Whether the numbers of a stored plan are those of this robot, node by node: what a container cannot know of itself.
 
-use super::{motion, state};
+use super::{BEYOND, motion, state};
 use crate::robot::{JOINTS, LEGS, Quadruped};
 use crate::stored::{Stored, joint_name};
 use crate::whole_body::POSED;
@@ -9,8 +9,6 @@ use jump_control::container::{Header, PlanNode, PlanPhase, write};
 use nalgebra::Vector3;
 use rbd_core::{JointLimits, Model, Tangent};
 
-/// How far a joint may be beyond a limit, as a share of it or rad: solvers stop within their tolerance, and plans are in single precision.
-const BEYOND: f64 = 0.01;
 /// How far a stored foot may be from where the joints put it, m, and its velocity from theirs, m/s.
 const FEET: [f64; 2] = [1e-4, 1e-3];
 /// Times that differ by less are the same, s: sums of single-precision durations.
@@ -71,11 +69,17 @@ fn header(robot: &Quadruped, header: &Header<'_, JOINTS>, weight: f64) -> Result
     let posing = f64::from(header.touchdown) - POSED;
     must(near(header.posing, posing), "posing")?;
     let limits: &[JointLimits<f64>; JOINTS] = Model::limits(robot);
-    let inside = limits.iter().zip(header.landing_joints).all(|(limit, q)| {
-        let q = f64::from(q);
-        limit.lower - BEYOND <= q && q <= limit.upper + BEYOND
-    });
+    let inside = limits
+        .iter()
+        .zip(header.landing_joints)
+        .all(|(limit, q)| in_range(limit, f64::from(q)));
     must(inside, "landing posture")
+}
+
+/// Whether a joint's position is one that the audit lets pass: plans keep limits in the middle of an interval, and a node is between two of those.
+fn in_range(limit: &JointLimits<f64>, q: f64) -> bool {
+    let beyond = BEYOND * (limit.upper - limit.lower);
+    limit.lower - beyond <= q && q <= limit.upper + beyond
 }
 
 /// What is wrong with the phase of a node: it must be the one that lasts then.
@@ -111,11 +115,7 @@ fn joints(robot: &Quadruped, node: &PlanNode<JOINTS, LEGS>, share: f64) -> Optio
         let [q, v, torque] = [node.joints[i], node.joint_velocities[i], node.torques[i]];
         let [q, v, torque] = [q, v, torque].map(f64::from);
         let checks = [
-            (
-                limit.lower - BEYOND <= q && q <= limit.upper + BEYOND,
-                "position",
-                q,
-            ),
+            (in_range(limit, q), "position", q),
             (v.abs() <= (1.0 + BEYOND) * limit.speed, "speed", v),
             (
                 torque.abs() <= (share + BEYOND) * limit.effort,
