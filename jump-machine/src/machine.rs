@@ -287,9 +287,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let speeds = &measured.joint_velocities;
         let mut command =
             s.pd.command_at(&self.limbs, &self.wanted, speeds, &reference);
-        if phase == Phase::Flight {
+        let since = t + s.lookahead - jump.plan.takeoff;
+        if since >= T::ZERO && matches!(phase, Phase::Stance | Phase::Flight) {
             let up_b = measured.base.rotation.inverse() * Vector3::z();
-            let (since, limbs) = (t - jump.plan.takeoff, (&self.limbs, &up_b));
+            let limbs = (&self.limbs, &up_b);
             let foot_forces = &measured.foot_forces;
             s.unloading.apply(since, limbs, foot_forces, &mut command);
         }

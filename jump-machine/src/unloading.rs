@@ -1,7 +1,8 @@
-//! Feet that leave the ground: at the take-off they let go, and those that the ground does not let go are pulled up.
+//! Feet that leave the ground: at the take-off they let go, those that the ground does not let go are pulled up, and only then do legs swing.
 //!
 //! Soft ground springs back after the plan's last node, and a foot that is late drags. Joints that hold their targets then push the body with
-//! what the ground gives, for as long as it takes; a body that turns by that is not on its plan any more.
+//! what the ground gives, for as long as it takes; a body that turns by that is not on its plan any more. So does a leg that begins to swing with its
+//! foot in the ground: what turns it in the air presses here, and the angular momentum that the swing would have taken from the body comes from outside.
 
 use jump_control::JointCommand;
 use nalgebra::Vector3;
@@ -33,7 +34,7 @@ impl<T: Scalar> Unloading<T> {
         }
     }
 
-    /// Changes a command of `since` seconds after the take-off. `up_b` is upwards in base axes, `foot_forces` are what the feet feel.
+    /// Changes a command of `since` seconds after the take-off: a loaded foot's leg is pulled up instead of what it was to do. `up_b` is upwards in base axes, `foot_forces` are what the feet feel.
     pub fn apply<const N: usize, const F: usize>(
         &self,
         since: T,
@@ -46,6 +47,11 @@ impl<T: Scalar> Unloading<T> {
         }
         for (end, force) in limbs.ends.iter().zip(foot_forces) {
             if *force > self.loaded {
+                for (j, _) in end.columns() {
+                    if let Some(torque) = command.feed_forward.get_mut(j) {
+                        *torque = T::ZERO;
+                    }
+                }
                 end.add_tr_mul(&(up_b * self.pull), &mut command.feed_forward);
             }
         }
@@ -67,6 +73,10 @@ mod tests {
     use nalgebra::Vector3;
     use rbd_core::{Configuration, Limbs};
 
+    /// The plan's torque of every joint.
+    const SWING: f64 = 3.0;
+
+    /// The command, and with what force it pulls each foot up beside the plan's torques, where they are left.
     fn applied(since: f64, foot_forces: &[f64; 4]) -> (JointCommand<f64, 12>, [f64; 4]) {
         let q = Configuration {
             joints: [
@@ -76,6 +86,7 @@ mod tests {
         };
         let limbs = Limbs::new(&A1, &q, &FEET.map(|foot| foot.frame));
         let mut command = JointCommand::damp(2.0);
+        command.feed_forward = [SWING; 12];
         command.gains = [JointGains {
             stiffness: 60.0,
             damping: 1.5,
@@ -88,17 +99,18 @@ mod tests {
             let mut unit = [0.0; 12];
             limbs.ends[foot].add_tr_mul(&Vector3::z(), &mut unit);
             let (mut with, mut size) = (0.0, 0.0);
+            let swings = command.feed_forward[leg.clone()] == [SWING; 3];
             for j in leg {
                 with += command.feed_forward[j] * unit[j];
                 size += unit[j] * unit[j];
             }
-            with / size
+            if swings { 0.0 } else { with / size }
         });
         (command, pulls)
     }
 
     #[test]
-    fn feet_that_feel_the_ground_are_pulled_up_and_no_others() {
+    fn feet_that_feel_the_ground_are_pulled_up_instead_of_swung_and_no_others() {
         let (_, pulls) = applied(0.03, &[0.0, 7.9, 8.1, 300.0]);
         for (pull, wanted) in pulls.iter().zip([0.0, 0.0, 135.0, 135.0]) {
             assert!((pull - wanted).abs() < 1e-9, "{pulls:?}");

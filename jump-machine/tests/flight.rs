@@ -399,3 +399,53 @@ fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
         .ends
         .map(|end| end.position)
 }
+
+/// The plan's torques of the flight come a lookahead early, and not to legs whose feet are on the ground still: those are pulled up first.
+#[test]
+fn legs_swing_when_their_feet_have_let_go() {
+    let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
+    let mut nodes = nodes(0.0);
+    for node in nodes.iter_mut().filter(|node| node.time >= TAKEOFF) {
+        node.torques = [5.0; 12];
+    }
+    let mut workspace = Workspace::new();
+    let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
+    machine.arm(jump(&nodes), 0.0).unwrap();
+    let mut heard = flying(
+        Transform::new(Rotation3::identity(), Vector3::z() * 0.35),
+        Vector3::z() * 2.5,
+        Vector3::zeros(),
+    );
+    heard.measured.foot_forces = [0.0, 0.0, 100.0, 100.0];
+    let q = heard.measured.configuration();
+    let limbs = Limbs::new(&A1Geared, &q, &feet());
+    let mut pulled = [0.0; 12];
+    for end in &limbs.ends {
+        end.add_tr_mul(&(Vector3::z() * settings.unloading.pull), &mut pulled);
+    }
+    let from = TAKEOFF - settings.lookahead;
+    let (mut swung, mut others) = (0, 0);
+    for k in -500..=240 {
+        let t = f64::from(k) * 1e-3;
+        machine.tick(t, Some(&heard));
+        machine.joint_tick(&crouch(), &[0.0; 12], 1e-4);
+        let ordered = &machine.command().feed_forward;
+        let early = t < from - 1e-9;
+        if early && machine.phase() != Phase::Stance {
+            continue;
+        }
+        for (j, ordered) in ordered.iter().enumerate() {
+            let wanted = match j {
+                _ if early => 0.0,
+                0..6 => 5.0,
+                _ => pulled[j],
+            };
+            assert!(
+                (ordered - wanted).abs() < 1e-9,
+                "{t}, joint {j}: {ordered}, {wanted}"
+            );
+        }
+        if early { others += 1 } else { swung += 1 }
+    }
+    assert!(swung > 40 && others > 150, "{swung}, {others}");
+}
