@@ -77,8 +77,8 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
     /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
     /// 0.4 m, with which `saltus run` executes; `saltus verdicts` measures them.
     ///
-    /// Period, age, silence and lookahead are the computers' and links', the same for all robots: 1 kHz, 10 ms, 5 ms, 1 ms. The
-    /// drives' 10 kN m/s build up a torque in a time that is theirs as well, so the rate scales as a torque. All other times are the
+    /// Period, age, silence and lookahead are the computers' and links', the same for all robots: 1 kHz, 10 ms, 5 ms, 1 ms. So is the
+    /// time for which a leg lets go, the drives'. Their 10 kN m/s build up a torque in a time that is theirs as well, so the rate scales as a torque. All other times are the
     /// body's.
     ///
     /// `standing` are joint positions for legs without ground while no jump is armed.

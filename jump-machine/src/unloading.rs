@@ -9,12 +9,15 @@ use nalgebra::Vector3;
 use rbd_core::{Build, Limbs};
 use so3::{Scalar, math};
 
-/// How feet leave the ground.
+/// How feet leave the ground. Times are since the first torques of the flight, which a machine gives [`lookahead`](crate::Settings::lookahead) before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unloading<T> {
-    /// Time over which the joints' gains come back after the take-off, s.
+    /// Time for which the leg of a foot that is on the ground still does not swing, s: what the drives need to let go. Much longer would leave joints that
+    /// were to be braked to their stops.
+    pub letting_go: T,
+    /// Time over which the joints' gains come back, s.
     pub easing: T,
-    /// Time after the take-off during which feet are pulled up, s.
+    /// Time during which feet are pulled up, s.
     pub lasting: T,
     /// Normal force from which on a foot is on the ground still, N.
     pub loaded: T,
@@ -23,10 +26,12 @@ pub struct Unloading<T> {
 }
 
 impl<T: Scalar> Unloading<T> {
-    /// For a robot of this size, by [dynamic similarity](rbd_core::similarity) from that of a robot of 13.741 kg with legs of 0.4 m.
+    /// For a robot of this size, by [dynamic similarity](rbd_core::similarity) from that of a robot of 13.741 kg with legs of 0.4 m. How long drives need
+    /// is theirs.
     #[must_use]
     pub fn new(build: &Build<T>) -> Self {
         Self {
+            letting_go: T::of(0.0015),
             easing: build.time(0.02),
             lasting: build.time(0.05),
             loaded: build.force(8.0),
@@ -34,7 +39,7 @@ impl<T: Scalar> Unloading<T> {
         }
     }
 
-    /// Changes a command of `since` seconds after the take-off: a loaded foot's leg is pulled up instead of what it was to do. `up_b` is upwards in base axes, `foot_forces` are what the feet feel.
+    /// Changes a command of `since` seconds after the first torques of the flight. `up_b` is upwards in base axes, `foot_forces` are what the feet feel.
     pub fn apply<const N: usize, const F: usize>(
         &self,
         since: T,
@@ -47,7 +52,8 @@ impl<T: Scalar> Unloading<T> {
         }
         for (end, force) in limbs.ends.iter().zip(foot_forces) {
             if *force > self.loaded {
-                for (j, _) in end.columns() {
+                let swinging = end.columns().filter(|_| since < self.letting_go);
+                for (j, _) in swinging {
                     if let Some(torque) = command.feed_forward.get_mut(j) {
                         *torque = T::ZERO;
                     }
@@ -76,7 +82,7 @@ mod tests {
     /// The plan's torque of every joint.
     const SWING: f64 = 3.0;
 
-    /// The command, and with what force it pulls each foot up beside the plan's torques, where they are left.
+    /// The command, and with what force its torques pull each foot up.
     fn applied(since: f64, foot_forces: &[f64; 4]) -> (JointCommand<f64, 12>, [f64; 4]) {
         let q = Configuration {
             joints: [
@@ -99,24 +105,33 @@ mod tests {
             let mut unit = [0.0; 12];
             limbs.ends[foot].add_tr_mul(&Vector3::z(), &mut unit);
             let (mut with, mut size) = (0.0, 0.0);
-            let swings = command.feed_forward[leg.clone()] == [SWING; 3];
             for j in leg {
                 with += command.feed_forward[j] * unit[j];
                 size += unit[j] * unit[j];
             }
-            if swings { 0.0 } else { with / size }
+            with / size
         });
         (command, pulls)
     }
 
     #[test]
-    fn feet_that_feel_the_ground_are_pulled_up_instead_of_swung_and_no_others() {
-        let (_, pulls) = applied(0.03, &[0.0, 7.9, 8.1, 300.0]);
-        for (pull, wanted) in pulls.iter().zip([0.0, 0.0, 135.0, 135.0]) {
-            assert!((pull - wanted).abs() < 1e-9, "{pulls:?}");
+    fn feet_that_feel_the_ground_are_pulled_up_at_first_instead_of_swung_and_no_others() {
+        // What the swing does alone, in the same measure.
+        let swing = applied(0.06, &[300.0; 4]).1;
+        for (since, swings) in [(0.0, 0.0), (0.0014, 0.0), (0.0016, 1.0), (0.03, 1.0)] {
+            let pulls = applied(since, &[0.0, 7.9, 8.1, 300.0]).1;
+            let wanted = [
+                swing[0],
+                swing[1],
+                135.0 + swings * swing[2],
+                135.0 + swings * swing[3],
+            ];
+            for (pull, wanted) in pulls.iter().zip(wanted) {
+                assert!((pull - wanted).abs() < 1e-9, "{since}: {pulls:?}");
+            }
         }
-        assert_eq!(applied(0.051, &[300.0; 4]).1, [0.0; 4]);
-        assert_eq!(applied(0.03, &[f64::NAN; 4]).1, [0.0; 4]);
+        assert_eq!(applied(0.051, &[300.0; 4]).1, swing);
+        assert_eq!(applied(0.03, &[f64::NAN; 4]).1, swing);
     }
 
     #[test]

@@ -400,7 +400,7 @@ fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
         .map(|end| end.position)
 }
 
-/// The plan's torques of the flight come a lookahead early, and not to legs whose feet are on the ground still: those are pulled up first.
+/// The plan's torques of the flight come a lookahead early, and not at once to legs whose feet are on the ground still: those are only pulled up at first.
 #[test]
 fn legs_swing_when_their_feet_have_let_go() {
     let settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
@@ -424,6 +424,7 @@ fn legs_swing_when_their_feet_have_let_go() {
         end.add_tr_mul(&(Vector3::z() * settings.unloading.pull), &mut pulled);
     }
     let from = TAKEOFF - settings.lookahead;
+    let lifted = from + settings.unloading.letting_go;
     let (mut swung, mut others) = (0, 0);
     for k in -500..=240 {
         let t = f64::from(k) * 1e-3;
@@ -438,7 +439,8 @@ fn legs_swing_when_their_feet_have_let_go() {
             let wanted = match j {
                 _ if early => 0.0,
                 0..6 => 5.0,
-                _ => pulled[j],
+                _ if t < lifted => pulled[j],
+                _ => 5.0 + pulled[j],
             };
             assert!(
                 (ordered - wanted).abs() < 1e-9,

@@ -98,6 +98,7 @@ impl Size {
             &mut s.max_age,
             &mut s.max_silence,
             &mut s.lookahead,
+            &mut s.unloading.letting_go,
             &mut s.detector.confirm,
             &mut s.detector.patience,
             &mut s.detector.observer.time_constant,
