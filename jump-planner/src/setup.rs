@@ -32,9 +32,12 @@ const EDGE_MARGIN: f64 = 0.12;
 const ONTO_SHARE: f64 = 0.5;
 /// The same where a plan is made again because a foot met it.
 const ONTO_MOST: f64 = 0.8;
-/// The way that is left to them, in widths of the smoothed edge at least: the ground that they stand on is then a 400th of the box's height too
-/// high for them. With much more they cannot lift off, since no foot is over it an instant later.
-const ONTO_WIDTHS: f64 = 3.0;
+/// At most this share of the way from the edge to the feet that land is taken from them, off a box: with half of it legs swing over an edge that is
+/// hardly there, with four fifths feet cannot come down.
+const OFF_SHARE: f64 = 0.65;
+/// The way that is left to feet that stand or land, in widths of the smoothed edge at least: the ground under them is then a 400th of the box's height
+/// too high. With much more, feet that stand before a box cannot lift off, since none is over it an instant later.
+const WIDTHS: f64 = 3.0;
 /// Least width of a smoothed edge, m.
 const NARROWEST: f64 = 1e-3;
 /// Height over the ground that feet keep on their way onto a box, m.
@@ -52,7 +55,8 @@ const LEAST_FORCE: f64 = 0.04;
 const RELEASE: f64 = 3e4;
 /// Speed at which planned Coulomb friction of the joints fades, rad/s.
 pub const FRICTION_SMOOTHING: f64 = 0.3;
-/// How far from its goal the base may be at the touchdown: m, and rad.
+/// How far from its goal the base may be at the touchdown: m, and rad. What a plan needs of it is decided by the task's
+/// [`goal`](crate::task::file::WeightsTable::goal) weight: at a robot's limit all, otherwise millimetres.
 pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 
 /// What the problem borrows, and the guess that comes with it.
@@ -294,30 +298,32 @@ impl<'a> Setup<'a> {
 ///
 /// A box to jump onto is nearer by `rise` as well: what the audit finds in the ground is then often a foot in its edge, which no height keeps out.
 ///
-/// Off a box, landing feet are taken to be below their hips, but stand outside. In `a1/lateral-down` the smoothed ground is 3.7 cm above the
-/// floor there, so that no plan meets the goal: feet go over it by the whole of [`GOAL_TOLERANCE`], and farther from the box, which is what
-/// carries more jumps over its edge in the lab (`ARCHITECTURE.md`, 2026-11-26).
+/// Feet land where [`Quadruped::landing_feet`](crate::robot::Quadruped::landing_feet) has them, farther apart than they stand.
 fn cautious(task: &Task, rise: f64) -> Option<Edge<f64>> {
     let mut edge = task.problem.edge?;
     let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
-    let turn = heading_matrix(task.heading);
-    let feet = task.problem.feet.map(|foot| foot.pos_wf);
-    let landed = feet.map(|foot| across(task.goal + turn * foot));
-    let stand = feet
-        .map(across)
-        .into_iter()
-        .fold(f64::NEG_INFINITY, f64::max);
-    let land = landed.into_iter().fold(f64::INFINITY, f64::min);
     if edge.drop < 0.0 {
-        let way = -stand.min(0.0);
+        let feet = task.problem.feet.map(|foot| across(foot.pos_wf));
+        let way = -feet.into_iter().fold(f64::NEG_INFINITY, f64::max).min(0.0);
         let first = EDGE_MARGIN.min(ONTO_SHARE * way);
-        let most = (ONTO_MOST * way).min(way - ONTO_WIDTHS * NARROWEST);
+        let most = (ONTO_MOST * way).min(way - WIDTHS * NARROWEST);
         let taken = (first + rise).min(most.max(first));
         edge.distance -= taken;
         // Feet at the edge itself are no jump, but a width is positive.
-        edge.width = edge.width.min(((way - taken) / ONTO_WIDTHS).max(NARROWEST));
+        edge.width = edge.width.min(((way - taken) / WIDTHS).max(NARROWEST));
     } else {
-        edge.distance += EDGE_MARGIN.min((land - 2.0 * edge.width).max(0.0));
+        let (end, turn) = (
+            task.start.base.translation + task.goal,
+            heading_matrix(task.heading),
+        );
+        let feet = task
+            .robot
+            .landing_feet()
+            .map(|foot| across(end + turn * foot));
+        let way = feet.into_iter().fold(f64::INFINITY, f64::min).max(0.0);
+        let taken = EDGE_MARGIN.min(OFF_SHARE * way);
+        edge.distance += taken;
+        edge.width = edge.width.min(((way - taken) / WIDTHS).max(NARROWEST));
     }
     Some(edge)
 }

@@ -1,6 +1,7 @@
 //! Where a quadruped's legs stand.
 
 use super::{JOINTS, LEGS, Quadruped};
+use crate::FOOT_COUNT;
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 use rbd_core::{
     Axes, CentroidalMap, Configuration, Force, Frame, FrameJacobian, Kinematics, Model, Posture,
@@ -148,16 +149,20 @@ impl Quadruped {
             base: Transform::IDENTITY,
             joints: near.joints,
         };
+        let q = self.place_feet(q, &self.landing_feet())?;
+        Ok(self.within_limits(q)?.joints)
+    }
+
+    /// Feet in the pre-landing posture, in base axes from the base's origin, m.
+    pub(crate) fn landing_feet(&self) -> [Vector3<f64>; FOOT_COUNT] {
         let width = LANDING_WIDTH * self.leg_length;
-        let targets = self.hips.map(|hip| {
+        self.hips.map(|hip| {
             Vector3::new(
                 hip.x,
                 hip.y + width * hip.y.signum(),
                 hip.z - LANDING_LEG * self.leg_length,
             )
-        });
-        let q = self.place_feet(q, &targets)?;
-        Ok(self.within_limits(q)?.joints)
+        })
     }
 
     fn within_limits(&self, q: State) -> Result<State, String> {

@@ -190,7 +190,7 @@ pub struct WeightsTable {
     pub position: f64,
     /// Whole body: torques, (N m)⁻².
     pub torque: f64,
-    /// Whole body: distance from the goal, m⁻² and rad⁻².
+    /// Whole body: distance from the goal, m⁻² and rad⁻². An end a centimetre off costs 0.3, of the 3 to 100 that plans of A1 cost.
     pub goal: f64,
 }
 
@@ -202,7 +202,7 @@ impl Default for WeightsTable {
             rotation: 1.0,
             position: 1.0,
             torque: 1e-4,
-            goal: 10.0,
+            goal: 3000.0,
         }
     }
 }
