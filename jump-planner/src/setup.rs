@@ -374,7 +374,7 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{EDGE_MARGIN, Setup, cautious};
+    use super::{EDGE_MARGIN, OFF_SHARE, Setup, cautious};
     use crate::task::Task;
     use crate::tightening::Tightening;
     use nalgebra::Vector3;
@@ -389,10 +389,11 @@ mod tests {
 
     #[test]
     fn edges_are_moved_away_from_feet_in_the_air_and_not_into_others() {
-        assert!((moved(0.5, 0.3, 0.0) - EDGE_MARGIN).abs() < 1e-12);
-        // The right feet land 0.13 m right of the goal, the edge is 0.18 m left of the start.
+        assert!((moved(0.6, 0.3, 0.0) - EDGE_MARGIN).abs() < 1e-12);
+        // The right feet land 0.17 m right of the goal, the edge is 0.18 m left of the start.
         let near = moved(0.4, 0.3, 0.0);
-        assert!(near > 0.01 && near < 0.04, "{near}");
+        assert!(near > 0.02 && near < 0.04, "{near}");
+        assert!((moved(0.5, 0.3, 0.0) - near - 0.1 * OFF_SHARE).abs() < 1e-12);
         assert_eq!(moved(0.32, 0.3, 0.0), 0.0);
         // Onto a box: towards the left feet, 0.05 m before it, and not as far as they are.
         let onto = moved(0.5, -0.3, 0.0);
@@ -400,6 +401,21 @@ mod tests {
         // Nearer where a foot met it; off a box that is no remedy.
         assert!((moved(0.5, -0.3, 0.005) - onto + 0.005).abs() < 1e-12);
         assert_eq!(moved(0.4, 0.3, 0.005), near);
+    }
+
+    #[test]
+    fn the_ground_off_a_box_is_low_where_feet_land() {
+        let mut task = Task::load("a1/lateral-down").unwrap();
+        for aside in [0.36, 0.4, 0.5, 0.8] {
+            task.goal.y = aside;
+            let cautious = cautious(&task, 0.0).unwrap();
+            let feet = task.robot.landing_feet().map(|foot| foot + task.goal);
+            let most = feet.map(|foot| cautious.ground(&foot).height + cautious.drop);
+            assert!(
+                most.iter().all(|m| *m < cautious.drop / 350.0),
+                "{aside}: {most:?}"
+            );
+        }
     }
 
     #[test]
