@@ -7,6 +7,7 @@ use jump_planner::task::{SrbPlan, Task};
 use jump_planner::whole_body::WholeBodyPlan;
 use jump_planner::{Options, Step, plan, replan};
 use ocp_solver::{Progress, Status};
+use rbd_core::{JointLimits, Model};
 
 #[test]
 fn a_task_near_another_is_planned_in_fewer_iterations_and_to_the_same_cost() {
@@ -60,13 +61,24 @@ fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
     assert!(out.bytes.is_empty());
 }
 
-/// What the planner calls solved is not damaged for who opens it: one of its knees is beyond its limit at a node, by 0.6 % of its range, since plans keep limits
-/// in the middle of intervals.
+/// What the planner calls solved is not damaged for who opens it. Where torques cost less than usually, one of its knees is beyond its limit at a node, by 0.6 %
+/// of its range, since plans keep limits in the middle of intervals.
 #[test]
 fn what_passes_the_audit_is_opened_again() {
-    let task = Task::load("a1/double-barrel-roll").unwrap();
+    let mut task = Task::load("a1/double-barrel-roll").unwrap();
+    task.weights.torque = 3e-5;
     let out = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(())).unwrap();
     assert!(out.audit.unwrap().is_a_motion());
     let stored = open_for(&out.bytes, &task.robot).unwrap();
+    let limits = task.robot.limits();
+    let beyond = |(limit, q): (&JointLimits<f64>, f32)| {
+        let q = f64::from(q);
+        (limit.lower - q).max(q - limit.upper)
+    };
+    let joints = stored
+        .nodes()
+        .flat_map(|node| limits.iter().zip(node.joints));
+    let most = joints.map(beyond).fold(f64::NEG_INFINITY, f64::max);
+    assert!(most > 0.01, "no joint is beyond its limit: {most}");
     check_values(&task.robot, &stored).unwrap();
 }
