@@ -302,29 +302,26 @@ impl<'a> Setup<'a> {
 fn cautious(task: &Task, rise: f64) -> Option<Edge<f64>> {
     let mut edge = task.problem.edge?;
     let across = |place: Vector3<f64>| edge.sign * place[edge.axis] - edge.distance;
-    if edge.drop < 0.0 {
+    let (way, taken) = if edge.drop < 0.0 {
         let feet = task.problem.feet.map(|foot| across(foot.pos_wf));
         let way = -feet.into_iter().fold(f64::NEG_INFINITY, f64::max).min(0.0);
         let first = EDGE_MARGIN.min(ONTO_SHARE * way);
         let most = (ONTO_MOST * way).min(way - WIDTHS * NARROWEST);
         let taken = (first + rise).min(most.max(first));
         edge.distance -= taken;
-        // Feet at the edge itself are no jump, but a width is positive.
-        edge.width = edge.width.min(((way - taken) / WIDTHS).max(NARROWEST));
+        (way, taken)
     } else {
-        let (end, turn) = (
-            task.start.base.translation + task.goal,
-            heading_matrix(task.heading),
-        );
-        let feet = task
-            .robot
-            .landing_feet()
-            .map(|foot| across(end + turn * foot));
+        let end = task.start.base.translation + task.goal;
+        let turn = heading_matrix(task.heading);
+        let feet = task.robot.landing_feet();
+        let feet = feet.map(|foot| across(end + turn * foot));
         let way = feet.into_iter().fold(f64::INFINITY, f64::min).max(0.0);
         let taken = EDGE_MARGIN.min(OFF_SHARE * way);
         edge.distance += taken;
-        edge.width = edge.width.min(((way - taken) / WIDTHS).max(NARROWEST));
-    }
+        (way, taken)
+    };
+    // Feet at the edge itself are no jump, but a width is positive.
+    edge.width = edge.width.min(((way - taken) / WIDTHS).max(NARROWEST));
     Some(edge)
 }
 

@@ -1,7 +1,6 @@
 //! Where a quadruped's legs stand.
 
 use super::{JOINTS, LEGS, Quadruped};
-use crate::FOOT_COUNT;
 use nalgebra::{Matrix3, Matrix6, Matrix6x3, Vector3, Vector6};
 use rbd_core::{
     Axes, CentroidalMap, Configuration, Force, Frame, FrameJacobian, Kinematics, Model, Posture,
@@ -154,7 +153,7 @@ impl Quadruped {
     }
 
     /// Feet in the pre-landing posture, in base axes from the base's origin, m.
-    pub(crate) fn landing_feet(&self) -> [Vector3<f64>; FOOT_COUNT] {
+    pub(crate) fn landing_feet(&self) -> [Vector3<f64>; LEGS] {
         let width = LANDING_WIDTH * self.leg_length;
         self.hips.map(|hip| {
             Vector3::new(
