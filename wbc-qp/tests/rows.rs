@@ -1,7 +1,10 @@
 //! Rows of the user in both programs: what they keep, how they give way, and what the report says of it.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{M, N, VELOCITY_ROWS, config, crouch, crouched, each, oracle, snapshot};
+use crate::common::{
+    M, N, VELOCITY_ROWS, config, crouch, crouched, each, least_without_limits, oracle, snapshot,
+    unknowns,
+};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES};
 use proptest::prelude::*;
 use wbc_qp::{
@@ -81,12 +84,7 @@ fn a_range_is_kept_named_and_optimal() {
         assert_eq!(answer.yielded, Yielded::Nothing);
         let reached = s.com().reached(&answer.acceleration)[2];
         assert!((reached - high).abs() < 1e-7, "{reached} {high}");
-        let unit = s.centroidal.mass * 0.981;
-        let z = core::array::from_fn(|i| match i {
-            0..N => answer.acceleration.joints[i],
-            _ => answer.forces[i - N] / unit,
-        });
-        let cost = qp.problem().cost(&z);
+        let cost = qp.problem().cost(&unknowns(&s, &answer));
         assert!((cost - least).abs() < 1e-6 * (1.0 + least.abs()));
         let row = Limited {
             limit: Limit::Row(2),
@@ -253,14 +251,22 @@ fn tasks_yield_before_limits() {
     });
 }
 
-/// Each thing that can limit a tick is named when it does, and without it the cost would be lower.
+/// Each thing that can limit a tick is named when it does, and without it the cost would be lower; where nothing is named, costs alone
+/// decide. In a few of these states a sole's cone limits a step up already.
 #[test]
 fn the_report_names_torque_friction_and_motion() {
     each(config(4, 25), &crouches(), |s| {
         let mut qp = Box::new(Strict::new());
         begin(&mut qp, &s, [0.0, 0.0, 1.0]);
         let free = qp.solve().unwrap();
-        assert!(report(&qp, &free).is_empty(), "{:?}", report(&qp, &free));
+        let least = least_without_limits(&qp.problem());
+        let above = (qp.problem().cost(&unknowns(&s, &free)) - least) / (1.0 + least.abs());
+        let names = report(&qp, &free);
+        assert!(
+            above > -1e-6 && (above < 1e-6 || !names.is_empty()),
+            "{above:e} {names:?}"
+        );
+        assert!(above > 1e-9 || names.is_empty(), "{above:e} {names:?}");
 
         // A knee that gives half of what it gave.
         let knee = 3;

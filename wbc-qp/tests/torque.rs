@@ -1,7 +1,7 @@
 //! The torque program against the equations of motion, its limits, and Clarabel.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{M, N, Verdict, config, crouch, each, oracle, snapshot};
+use crate::common::{M, N, Verdict, config, crouch, each, oracle, snapshot, unknowns};
 use core::cell::{Cell, RefCell};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use proptest::prelude::*;
@@ -113,15 +113,7 @@ fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
         let wanted = oracle(&qp.problem());
         let a = qp.solve().unwrap();
         if a.yielded == Yielded::Nothing {
-            let mut z = [0.0; V];
-            let unit = s.centroidal.mass * 0.981;
-            for (i, x) in z.iter_mut().enumerate() {
-                *x = if i < N {
-                    a.acceleration.joints[i]
-                } else {
-                    a.forces[i - N] / unit
-                };
-            }
+            let z: [f64; V] = unknowns(&s, &a);
             let (cost, wanted) = (qp.problem().cost(&z), wanted.cost().unwrap());
             assert!(
                 (cost - wanted).abs() < 1e-6 * (1.0 + wanted.abs()),
@@ -143,9 +135,11 @@ fn costs_are_those_of_clarabel_and_what_yields_is_infeasible() {
     );
 }
 
-/// As the tasks' weight grows, the weighed solution tends to the one that holds them.
+/// As the tasks' weight grows, the weighed solution tends to the one that holds them. There is none in a few of these states, where torques
+/// do not allow what is held: the tasks yield there, and only there.
 #[test]
 fn weights_tend_to_strict_priority() {
+    let held = Cell::new(0);
     each(config(10, 3), &crouch(0.1, 0.3), |(q, v)| {
         let s = snapshot(&q, &v);
         let solve = |weight: Option<f64>| {
@@ -168,14 +162,18 @@ fn weights_tend_to_strict_priority() {
                 [-1.0, 1.0].map(|x| x * MOTORS[i].torque)
             }))
             .unwrap();
+            let verdict = oracle(&qp.problem());
             let answer = qp.solve().unwrap();
-            assert_eq!(answer.yielded, Yielded::Nothing);
-            answer.torques
+            let is_possible = verdict != Verdict::Infeasible;
+            assert_eq!(answer.yielded == Yielded::Nothing, is_possible);
+            assert!(is_possible || (weight.is_none() && answer.yielded == Yielded::Tasks));
+            is_possible.then_some(answer.torques)
         };
-        let held = solve(None);
+        let Some(strict) = solve(None) else { return };
+        held.set(held.get() + 1);
         let gap = |weight| {
-            let torques = solve(Some(weight));
-            let pairs = torques.iter().zip(&held);
+            let torques = solve(Some(weight)).unwrap();
+            let pairs = torques.iter().zip(&strict);
             pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
         };
         let gaps = [1e2, 1e4, 1e6].map(gap);
@@ -184,6 +182,7 @@ fn weights_tend_to_strict_priority() {
             "{gaps:?}"
         );
     });
+    assert!(held.get() >= 7, "{}", held.get());
 }
 
 /// A program of four levels.
@@ -275,18 +274,47 @@ fn strictly(tasks: &Tasks, qp: &mut Levels) -> TorqueAnswer<f64, N, K> {
     strict
 }
 
+/// What the levels cost, the posture last.
+fn costs(tasks: &Tasks, a: &TorqueAnswer<f64, N, K>) -> [f64; 4] {
+    let miss = |task: &Task<f64, N, 3>, wanted: &[f64; 3]| -> f64 {
+        let now = task.reached(&a.acceleration);
+        0.5 * now
+            .iter()
+            .zip(wanted)
+            .map(|(a, b)| (a - b) * (a - b))
+            .sum::<f64>()
+    };
+    let [joints, forces] = efforts(a);
+    [
+        miss(&tasks.com, &UP),
+        1e-3 * miss(&tasks.push, &DOWN) + miss(&tasks.trunk, &TILT),
+        miss(&tasks.turn, &SPIN),
+        joints + 1e-3 * forces,
+    ]
+}
+
+/// ½ Σ q̈², ½ Σ f².
+fn efforts(a: &TorqueAnswer<f64, N, K>) -> [f64; 2] {
+    [&a.acceleration.joints[..], &a.forces[..]].map(|x| 0.5 * x.iter().map(|x| x * x).sum::<f64>())
+}
+
 /// All levels at once, each with w times the next one's weight.
-fn weighed(tasks: &Tasks, qp: &mut Levels, w: f64) -> [f64; N] {
+fn weighed(tasks: &Tasks, qp: &mut Levels, w: f64) -> TorqueAnswer<f64, N, K> {
     qp.minimise(&tasks.com, &UP, &[w * w * w; 3]);
     qp.minimise(&tasks.push, &DOWN, &[1e-3 * w * w; 3]);
     qp.minimise(&tasks.trunk, &TILT, &[w * w; 3]);
     qp.minimise(&tasks.turn, &SPIN, &[w; 3]);
     posture(qp);
-    qp.solve().unwrap().torques
+    qp.solve().unwrap()
 }
 
 /// Four levels of strict priority, the second against the first: each level's cost is Clarabel's least, no level spoils
 /// one before it, and weights that grow by the same factor from level to level tend to the same torques.
+///
+/// What the weighed optimum is, is a law in each state: not dearer by its weights than the strict one, which is a point of its program, so
+/// that it is within 1/w of the others' costs of the first level; and not better than the strict one in that level but by what little cost
+/// on everything makes of it. How fast torques follow is none: where levels compete for the same ones, a factor of ten in w takes half
+/// of the way in some states and a quarter in others.
 #[test]
 fn levels_are_optimal_one_after_the_other() {
     let sums = RefCell::new([0.0; 3]);
@@ -294,15 +322,28 @@ fn levels_are_optimal_one_after_the_other() {
         let s = snapshot(&q, &v);
         let (tasks, mut qp) = levels(&s);
         let strict = strictly(&tasks, &mut qp);
+        let wanted = costs(&tasks, &strict);
         for (sum, w) in sums.borrow_mut().iter_mut().zip([1e1, 1e2, 1e3]) {
             let (tasks, mut qp) = levels(&s);
-            let pairs = weighed(&tasks, &mut qp, w).into_iter().zip(strict.torques);
+            let answer = weighed(&tasks, &mut qp, w);
+            let found = costs(&tasks, &answer);
+            let total = |c: &[f64; 4]| c[0] + (c[1] + (c[2] + c[3] / w) / w) / w;
+            assert!(
+                total(&found) <= total(&wanted) * (1.0 + 1e-6),
+                "{w}: {found:?} {wanted:?}"
+            );
+            let [joints, forces] = efforts(&answer);
+            let little = 1e-5 * joints + 1e-8 * forces;
+            assert!(
+                wanted[0] <= found[0] + little + 1e-6,
+                "{w}: {found:?} {wanted:?} {little}"
+            );
+            let pairs = answer.torques.iter().zip(&strict.torques);
             *sum += pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
         }
     });
     let sums = sums.into_inner();
-    // Where levels compete for the same torques, the way is long: the last factor must be a thousand to see most of it.
-    assert!(sums[1] < sums[0] && sums[2] < 0.5 * sums[1], "{sums:?}");
+    assert!(sums[1] < sums[0] && sums[2] < sums[1], "{sums:?}");
 }
 
 /// A held task that limits make impossible yields, is reported, and everything harder stays.

@@ -13,7 +13,7 @@ use proptest::array::{uniform, uniform3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use rbd_core::{Configuration, Motion, Tangent, Transform};
-use wbc_qp::{Snapshot, anchored};
+use wbc_qp::{Snapshot, TorqueAnswer, anchored};
 
 pub const N: usize = 23;
 /// Rows of iCub's programs on two soles, where a test does not need others: a solver is compiled for each size. Those of the soles, their
@@ -195,4 +195,35 @@ pub fn oracle<const V: usize, const M: usize>(
         }
         _ => Verdict::Unsure,
     }
+}
+
+/// The unknowns of a torque program at an answer, without slack.
+pub fn unknowns<const K: usize, const V: usize>(
+    s: &Snapshot<f64, N>,
+    answer: &TorqueAnswer<f64, N, K>,
+) -> [f64; V] {
+    let unit = s.centroidal.mass * 0.981;
+    core::array::from_fn(|i| match i {
+        0..N => answer.acceleration.joints[i],
+        _ => answer.forces[i - N] / unit,
+    })
+}
+
+/// The least cost that a program would have without its limits, by Clarabel.
+pub fn least_without_limits<const V: usize, const M: usize>(
+    problem: &dense_qp::Problem<'_, f64, V, M>,
+) -> f64 {
+    let (mut lower, mut upper) = ([f64::NEG_INFINITY; M], [f64::INFINITY; M]);
+    for i in (0..M).filter(|i| problem.row_lower[*i] == problem.row_upper[*i]) {
+        (lower[i], upper[i]) = (problem.row_lower[i], problem.row_upper[i]);
+    }
+    let (low, high) = ([f64::NEG_INFINITY; V], [f64::INFINITY; V]);
+    let free = dense_qp::Problem {
+        row_lower: &lower,
+        row_upper: &upper,
+        lower: Some(&low),
+        upper: Some(&high),
+        ..*problem
+    };
+    oracle(&free).cost().unwrap()
 }
