@@ -183,6 +183,17 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.free <= cancellation_tolerance::<T>() * terms
     }
 
+    /// |d₂|² of a candidate whatever its share of |d|², if it is more than round-off of d; returns whether it is.
+    pub(crate) fn insist(&self, c: &mut Candidate<T, N>) -> bool {
+        let free = span(&c.d, self.len, self.dim);
+        c.free = dot(free, free);
+        let is_more = c.free > cancellation_tolerance::<T>() * c.whole;
+        if !is_more {
+            c.free = T::ZERO;
+        }
+        is_more
+    }
+
     /// Most that |d|² can be of a row whose entries over the free variables are at most 1, once the equalities are taken out of it.
     pub(crate) fn most(&self) -> T {
         self.square * T::of(self.dim as f64)

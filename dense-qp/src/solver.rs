@@ -20,7 +20,7 @@ use crate::kernels::{at, dot, max_abs, put, square_scaled};
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use exchange::Pass;
 use gauge::{NOISE, SETTLED};
-use proof::Ray;
+use proof::{Ray, has_fallen};
 
 /// Solves from scratch.
 ///
@@ -80,6 +80,8 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     most: u32,
     /// Rows of which it was in doubt whether they depend on the active ones, with none to leave for them.
     doubts: u32,
+    /// Whether corrections of the point have not confirmed a contradiction, so that the row that seems to be one enters.
+    insists: bool,
     /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
     worth: T,
     /// Σ|λₖeₖ| over the active rows: what their distances eₖ from their limits are worth.
@@ -89,6 +91,9 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
+
+/// Corrections of the point by which a contradiction that no proof confirms may turn out to be none.
+const UNCONFIRMED: u32 = 4;
 
 /// State of a row that is eliminated; ±1 when it is active on a side, 0 otherwise.
 const EQUALITY: i8 = 2;
@@ -106,6 +111,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             iterations: 0,
             steps: 0,
             doubts: 0,
+            insists: false,
             most: settings.max_steps.min(Workspace::<T, N, M>::STEPS),
             worth: T::ZERO,
             toll: T::ZERO,
@@ -225,6 +231,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             if self.has_pulling() {
                 return Ok(Status::Limit);
             }
+            self.insists = stalls >= UNCONFIRMED;
             let pass = match core::mem::take(&mut seeds) {
                 Some(seeds) => self.start(seeds),
                 None => {
@@ -236,7 +243,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 Pass::Feasible => {}
                 // A contradiction that the data do not confirm comes from round-off in x: correct
                 // x and look again.
-                Pass::Stop(Status::Numerical) if stalls < 4 => {
+                Pass::Stop(Status::Numerical) if stalls < UNCONFIRMED => {
                     stalls += 1;
                     self.evaluate_gradient();
                     continue;
@@ -248,7 +255,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 return Ok(Status::Numerical);
             }
             if self.w.factor.proximal {
-                match self.ray_step() {
+                match self.ray_step(&mut cost) {
                     Ray::Endless => return Ok(self.come_back()),
                     Ray::Moved => {
                         self.w.previous = self.w.x;
@@ -272,7 +279,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             }
             if self.w.factor.proximal {
                 let now = self.p.cost(&self.w.x);
-                if now < cost - T::of(8.0) * T::EPSILON * self.worth {
+                if has_fallen(now, cost, self.worth) {
                     (cost, stalls) = (now, 0);
                 }
             }

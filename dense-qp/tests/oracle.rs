@@ -6,10 +6,12 @@
     reason = "tests"
 )]
 
-use crate::common::oracle::clarabel;
-use crate::common::{Draw, Qp, each};
+use crate::common::oracle::{Oracle, clarabel};
+use crate::common::{Draw, Qp, each, largest_term, worth_of_misses};
 use clarabel::solver::SolverStatus;
-use dense_qp::{Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
+use dense_qp::{
+    Settings, Solution, Status, Workspace, infeasibility, kkt_residual, solve, solve_warm,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -66,6 +68,23 @@ fn generate<const N: usize, const M: usize>(kind: Kind, r: &mut Draw) -> Box<Qp<
     q
 }
 
+/// Conditions of optimality to 1e-8, or to the round-off of their terms as [`Settings`] promises it: a singular H may leave x near 10⁶, where
+/// a row or a gradient is not known to 1e-8 by anyone.
+fn assert_optimal<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    s: &Solution<'_, f64, N, M>,
+    label: &str,
+) {
+    let (x, rows, bounds) = (s.x, s.row_multipliers, s.bound_multipliers);
+    let again = kkt_residual(&q.problem(), x, rows, bounds);
+    let most = 1e-8 + 1024.0 * f64::EPSILON * largest_term(q, x, rows, bounds);
+    assert!(
+        s.residual.max() <= most && again.max() <= most,
+        "{label}: {:?} {again:?} {most:e}",
+        s.residual
+    );
+}
+
 /// Warm from the answer: the same point at once.
 fn assert_remembered<const N: usize, const M: usize>(
     kind: Kind,
@@ -76,8 +95,7 @@ fn assert_remembered<const N: usize, const M: usize>(
 ) {
     let again = solve_warm(&q.problem(), &Settings::default(), w).unwrap();
     assert_eq!(again.status, Status::Solved, "{label} warm");
-    let residual = again.residual;
-    assert!(residual.max() <= 1e-8, "{label} warm: {residual:?}");
+    assert_optimal(q, &again, &format!("{label} warm"));
     if kind == Kind::Regular || kind == Kind::Equalities {
         let iterations = again.iterations;
         assert!(iterations <= 3, "{label} warm {iterations}");
@@ -104,14 +122,8 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
                     "{label} against {:?}",
                     truth.status
                 );
-                assert!(s.residual.max() <= 1e-8, "{label}: {:?}", s.residual);
-                let cost = p.cost(s.x);
-                let scale = 1.0 + cost.abs();
-                assert!(
-                    (cost - truth.cost).abs() <= 2e-6 * scale,
-                    "{label}: {cost} {}",
-                    truth.cost
-                );
+                assert_optimal(&q, &s, &label);
+                assert_costs(&q, &s, &truth, &label);
                 if kind == Kind::Regular {
                     let off =
                         s.x.iter()
@@ -138,7 +150,7 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
             }
             // The oracle gave up: our answer carries its own proof.
             other => match s.status {
-                Status::Solved => assert!(s.residual.max() <= 1e-8, "{label}: {:?}", s.residual),
+                Status::Solved => assert_optimal(&q, &s, &label),
                 Status::Unbounded => assert_unbounded(&q, &s, &label),
                 Status::Infeasible => {
                     let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
@@ -151,6 +163,25 @@ fn check<const N: usize, const M: usize>(kind: Kind, seed: u64, count: u64) {
             },
         }
     });
+}
+
+/// No point of the oracle's is cheaper by more than what it misses limits by is worth: where rows are nearly dependent, its 1e-9 of a row
+/// times a multiplier of 10⁶ is. Nor is its optimum dearer, unless it says itself that it has not found it.
+fn assert_costs<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    s: &Solution<'_, f64, N, M>,
+    truth: &Oracle,
+    label: &str,
+) {
+    let cost = q.problem().cost(s.x);
+    let x = core::array::from_fn(|i| truth.x[i]);
+    let excess = cost - q.problem().cost(&x);
+    let misses = worth_of_misses(q, &x, s.row_multipliers, s.bound_multipliers);
+    let slack = 2e-6 * (1.0 + cost.abs());
+    assert!(
+        excess <= slack + misses && (excess >= -slack || truth.status != SolverStatus::Solved),
+        "{label}: {cost}, {excess:e}, {misses:e}"
+    );
 }
 
 /// x is feasible, and the ray is a direction of recession without curvature that lowers the cost.

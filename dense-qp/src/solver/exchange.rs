@@ -127,7 +127,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (t, blocking) = self.first_zero(full);
             if full <= t {
                 if !full.is_finite_number() {
-                    return Some(self.conflict(id, side));
+                    let status = self.conflict(id, side);
+                    if status == Status::Infeasible || !self.is_independent_after_all() {
+                        return Some(status);
+                    }
+                    continue;
                 }
                 self.advance(full);
                 self.enter(id, side, lambda + full);
@@ -155,6 +159,13 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         }
         self.doubts += 1;
         self.doubts <= 2
+    }
+
+    /// Whether a candidate that was taken for one that depends on the active rows, though nothing confirms that they contradict it, enters
+    /// with what they leave of it: only where the search would otherwise end without an answer.
+    fn is_independent_after_all(&mut self) -> bool {
+        let w = &mut *self.w;
+        self.insists && w.candidate.free <= T::ZERO && w.basis.insist(&mut w.candidate)
     }
 
     /// How far the entering multiplier may grow until the first of the others reaches zero, and which, if that is below `full`; from r

@@ -151,7 +151,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let w = &mut *self.w;
         let rows = self.p.hessian.iter().zip(self.p.gradient);
         for (out, (h, g)) in w.step.iter_mut().zip(rows) {
-            *out = dot_sizes(h, &w.x) + math::abs(*g);
+            // At the origin as well lengths count from the distance by which rows may be missed.
+            *out = dot_sizes(h, &w.x) + math::abs(*g) + self.s.feasibility * max_abs(h);
         }
         for k in 0..w.basis.len {
             let (id, f) = (at(&w.id, k), math::abs(at(&w.lambda, k)));

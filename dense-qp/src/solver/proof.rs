@@ -22,7 +22,45 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             set_multiplier(w, row, if side > 0 { y } else { -y });
         }
         set_multiplier(w, id, if side > 0 { T::ONE } else { -T::ONE });
+        if self.prove() == Status::Infeasible {
+            return Status::Infeasible;
+        }
+        self.refine();
         self.prove()
+    }
+
+    /// Takes out of the sum of a proof that was not confirmed what round-off of r has left there, as far as the active rows span it: far out,
+    /// in f32, it is enough to leave room for a feasible point.
+    fn refine(&mut self) {
+        let w = &mut *self.w;
+        for k in 0..w.elimination.rank {
+            let id = at(&w.elimination.id, k);
+            set_multiplier(w, id, T::ZERO);
+        }
+        w.gradient = w.bound_multipliers;
+        for (i, y) in w.row_multipliers.iter().enumerate() {
+            if *y != T::ZERO {
+                self.p.add_row(i, *y, &mut w.gradient);
+            }
+        }
+        let candidate = w.candidate.d;
+        w.gradient_coordinates();
+        self.answer();
+        self.w.candidate.d = candidate;
+        for k in 0..self.w.basis.len {
+            let (id, side, r) = (at(&self.w.id, k), at(&self.w.side, k), at(&self.w.vec_b, k));
+            let y = math::max(signed(side, self.multiplier(id)) - r, T::ZERO);
+            set_multiplier(self.w, id, signed(side, y));
+        }
+    }
+
+    /// The multiplier of a row or bound in a proof.
+    fn multiplier(&self, id: usize) -> T {
+        if id < M {
+            at(&self.w.row_multipliers, id)
+        } else {
+            at(&self.w.bound_multipliers, id - M)
+        }
     }
 
     /// A dependent equality that the earlier ones contradict.
@@ -78,12 +116,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
     /// |y| max|a| of a row's multiplier.
     fn force_of(&mut self, i: usize) -> T {
-        let y = if i < M {
-            at(&self.w.row_multipliers, i)
-        } else {
-            at(&self.w.bound_multipliers, i - M)
-        };
-        math::abs(y) / scale_inverse::<T, N, M>(self.p, self.w, i)
+        math::abs(self.multiplier(i)) / scale_inverse::<T, N, M>(self.p, self.w, i)
     }
 
     /// Whether the caller's own numbers confirm the multipliers as a proof: with c = Aᵀy + μ, every feasible x has cᵀx ≤ support, so
@@ -143,7 +176,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
     /// Along the last proximal step: goes on to where the cost is least or the first limit stops it, which is far where the curvature
     /// is small beside the proximal weight. Without curvature and limits the cost has no minimum.
-    pub(super) fn ray_step(&mut self) -> Ray {
+    /// `cost` is that of the last step by which it fell by more than round-off.
+    pub(super) fn ray_step(&mut self, cost: &mut T) -> Ray {
         let w = &mut *self.w;
         let mut length = T::ZERO;
         for (before, x) in w.previous.iter_mut().zip(&w.x) {
@@ -154,9 +188,16 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             return Ray::Stays;
         }
         scale_direction(&mut w.previous, length);
+        // A correction of a variable that the equalities hold is no rate: they would take it back after every step.
+        if w.elimination.rank > 0 {
+            w.elimination.complete(&mut w.previous, &mut w.vec_a);
+        }
         let mut course = self.course();
+        if course.is_ascent() {
+            return self.follow_fall(&course, length, cost);
+        }
         // The next proximal step gets there as well.
-        if course.is_ascent() || course.minimum() <= length {
+        if course.minimum() <= length {
             return Ray::Stays;
         }
         // A step also corrects what the last one left across the ray: curvature and limits of such a share are not the ray's.
@@ -181,6 +222,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let reach = math::min(course.minimum(), limit);
         // A limit that only seems to come nearer is no place to go to: x would lose its digits on the way.
         let is_seeming = reach == limit && limit < self.first_limit(length);
+        if reach == T::INFINITY && !is_refined {
+            return self.follow_fall(&course, length, cost);
+        }
         if course.is_ascent() || is_seeming || !(reach > T::ZERO && reach < T::INFINITY) {
             if is_refined {
                 // It has lent its place to the direction's.
@@ -188,6 +232,27 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             }
             return Ray::Stays;
         }
+        self.go(reach)
+    }
+
+    /// Along a last proximal step whose slope or curvature is lost in round-off, if the cost has fallen all the same: as far as it falls at
+    /// the least, whatever curvature round-off may hide. Steps alone would creep there, in f32 by dozens.
+    fn follow_fall(&mut self, course: &Course<T>, length: T, cost: &mut T) -> Ray {
+        let reach = -course.slope / math::max(course.curvature, course.curvature_noise);
+        if !(reach > length && reach < T::INFINITY) {
+            return Ray::Stays;
+        }
+        let now = self.p.cost(&self.w.x);
+        if !has_fallen(now, *cost, self.worth) {
+            return Ray::Stays;
+        }
+        *cost = now;
+        let limit = self.first_limit(length);
+        self.go(math::min(reach, limit))
+    }
+
+    /// Moves x along the direction in `previous`.
+    fn go(&mut self, reach: T) -> Ray {
         let w = &mut *self.w;
         sub_scaled(&mut w.x, -reach, &w.previous);
         self.evaluate_gradient();
@@ -311,6 +376,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         };
         self.is_descent() && self.p.hessian.iter().all(straight) && (0..M + N).all(clear)
     }
+}
+
+/// Whether the cost has fallen by more than round-off of its terms.
+pub(super) fn has_fallen<T: Scalar>(now: T, before: T, terms: T) -> bool {
+    now < before - T::of(8.0) * T::EPSILON * terms
 }
 
 /// d ← d/length, without entries that are only what round-off leaves where bounds and rows hold x: each would look like a rate.

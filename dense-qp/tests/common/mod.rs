@@ -234,3 +234,63 @@ pub fn definite<const N: usize, const M: usize>(
         q
     })
 }
+
+/// Limits of rows, then of variables, with their multipliers and values at x.
+fn limited<'a, const N: usize, const M: usize>(
+    q: &'a Qp<f64, N, M>,
+    x: &'a [f64; N],
+    rows: &'a [f64; M],
+    bounds: &'a [f64; N],
+) -> impl Iterator<Item = (f64, f64, [f64; 2])> {
+    let rows =
+        q.a.iter()
+            .map(|a| dot(a, x))
+            .zip(rows)
+            .zip(q.l.iter().zip(&q.u));
+    let bounds = x.iter().copied().zip(bounds).zip(q.lb.iter().zip(&q.ub));
+    rows.chain(bounds).map(|((v, y), (l, u))| (v, *y, [*l, *u]))
+}
+
+/// What it is worth by these multipliers that x misses limits. They are those of an optimum: no point is cheaper by more.
+pub fn worth_of_misses<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    x: &[f64; N],
+    rows: &[f64; M],
+    bounds: &[f64; N],
+) -> f64 {
+    let misses = limited(q, x, rows, bounds).map(|(v, y, [l, u])| {
+        // An infinite limit has no multiplier.
+        if y > 0.0 {
+            y * (v - u).max(0.0)
+        } else if y < 0.0 {
+            -y * (l - v).max(0.0)
+        } else {
+            0.0
+        }
+    });
+    misses.sum()
+}
+
+/// The largest of the terms whose differences are the conditions of optimality: of a gradient's entry, of a row, and of a row times its
+/// multiplier. What round-off leaves of a condition is measured by them.
+pub fn largest_term<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    x: &[f64; N],
+    rows: &[f64; M],
+    bounds: &[f64; N],
+) -> f64 {
+    let sizes = |a: &[f64; N]| a.iter().zip(x).map(|(a, x)| (a * x).abs()).sum::<f64>();
+    let mut most: f64 = 0.0;
+    for i in 0..N {
+        let pulls = q.a.iter().zip(rows).map(|(a, y)| (a[i] * y).abs());
+        let gradient = sizes(&q.h[i]) + q.g[i].abs() + bounds[i].abs() + pulls.sum::<f64>();
+        most = most
+            .max(gradient)
+            .max(x[i].abs() * bounds[i].abs().max(1.0));
+    }
+    let rows =
+        q.a.iter()
+            .zip(rows)
+            .map(|(a, y)| sizes(a) * y.abs().max(1.0));
+    rows.fold(most, f64::max)
+}
