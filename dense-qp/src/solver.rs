@@ -80,7 +80,7 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     most: u32,
     /// Rows of which it was in doubt whether they depend on the active ones, with none to leave for them.
     doubts: u32,
-    /// Whether corrections of the point have not confirmed a contradiction, so that the row that seems to be one enters.
+    /// Whether no correction of the point has confirmed a contradiction, so that the row that seems to be one enters.
     insists: bool,
     /// Σ|xᵢ|(|Hx|ᵢ + |g|ᵢ), the terms of the cost, at the last gradient.
     worth: T,
@@ -91,9 +91,6 @@ struct Search<'a, 'p, 'w, T, const N: usize, const M: usize> {
     /// Largest violation of any row in its own units, at the last look and measure of drift.
     primal: T,
 }
-
-/// Corrections of the point by which a contradiction that no proof confirms may turn out to be none.
-const UNCONFIRMED: u32 = 4;
 
 /// State of a row that is eliminated; ±1 when it is active on a side, 0 otherwise.
 const EQUALITY: i8 = 2;
@@ -231,7 +228,6 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             if self.has_pulling() {
                 return Ok(Status::Limit);
             }
-            self.insists = stalls >= UNCONFIRMED;
             let pass = match core::mem::take(&mut seeds) {
                 Some(seeds) => self.start(seeds),
                 None => {
@@ -243,7 +239,8 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 Pass::Feasible => {}
                 // A contradiction that the data do not confirm comes from round-off in x: correct
                 // x and look again.
-                Pass::Stop(Status::Numerical) if stalls < UNCONFIRMED => {
+                Pass::Stop(Status::Numerical) if stalls < 4 || !self.insists => {
+                    self.insists = stalls >= 4;
                     stalls += 1;
                     self.evaluate_gradient();
                     continue;
