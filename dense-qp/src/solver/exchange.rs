@@ -127,9 +127,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let (t, blocking) = self.first_zero(full);
             if full <= t {
                 if !full.is_finite_number() {
-                    let status = self.conflict(id, side);
-                    if status == Status::Infeasible || !self.is_independent_after_all() {
-                        return Some(status);
+                    let status = self.refuse(id, side);
+                    if status.is_some() {
+                        return status;
                     }
                     continue;
                 }
@@ -161,11 +161,15 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         self.doubts <= 2
     }
 
-    /// Whether a candidate that was taken for one that depends on the active rows, though nothing confirms that they contradict it, enters
-    /// with what they leave of it: only where the search would otherwise end without an answer.
-    fn is_independent_after_all(&mut self) -> bool {
+    /// What comes of a row that depends on the active ones and contradicts them. Though nothing confirms that, the search would end here: where
+    /// it would for good, the row enters with what the active ones leave of it, and there is no status.
+    #[inline(never)]
+    fn refuse(&mut self, id: usize, side: i8) -> Option<Status> {
+        let status = self.conflict(id, side);
         let w = &mut *self.w;
-        self.insists && w.candidate.free <= T::ZERO && w.basis.insist(&mut w.candidate)
+        let enters =
+            self.insists && w.candidate.free <= T::ZERO && w.basis.insist(&mut w.candidate);
+        (status == Status::Infeasible || !enters).then_some(status)
     }
 
     /// How far the entering multiplier may grow until the first of the others reaches zero, and which, if that is below `full`; from r
