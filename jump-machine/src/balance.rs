@@ -13,7 +13,8 @@
 //! Two witnesses tell the φ_i: the joints, by f_i = J_i⁻ᵀ r_i with r = g(q) − τ, and the foot sensors. A gain that all motors, or all
 //! sensors, have in common drops out. What is left is Coulomb friction of the joints, which hides some of the offset, and biases of the
 //! sensors. In A1's lab, where offsets are 11 and 5 mm (standard deviation, x and y), the joints are wrong by 3.6 and 2.3 mm, the sensors
-//! by 2.9 and 2.1 mm and their mean by 2.4 and 2.0 mm (40 samples): they err apart and about as much, so the mean is the estimate.
+//! by 2.9 and 2.1 mm and their mean by 2.4 and 2.0 mm (40 samples): they err apart and about as much, so the mean is the estimate. So it is of
+//! Σ φ_i / m g − 1, by how much the robot is heavier, where a common gain does not drop out: those of motors and of sensors have nothing to do with each other.
 
 use landing::solve_damped;
 use nalgebra::Vector3;
@@ -21,6 +22,15 @@ use rbd_core::Limbs;
 use so3::{Scalar, math};
 
 use crate::Centring;
+
+/// What a standing robot is beside its model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<T: Scalar> {
+    /// δ, base axes, m.
+    pub(crate) offset_b: Vector3<T>,
+    /// By what share it is heavier.
+    pub(crate) heavier: T,
+}
 
 /// Sums of what joints and foot sensors of a standing robot feel.
 #[derive(Clone, Copy, Debug)]
@@ -55,16 +65,16 @@ impl<T: Scalar, const N: usize, const F: usize> Balance<T, N, F> {
         self.count += T::ONE;
     }
 
-    /// δ, base axes, m, of a robot with these `limbs` whose model weighs `weight`, N, with its centre of mass at `com_b`.
+    /// Where the centre of mass of a robot with these `limbs` is, and by how much it is heavier, whose model weighs `weight`, N, with its centre of mass at `com_b`.
     ///
     /// None where it is not believed: no witness carries about this weight on feet whose middle is within [`Centring::most`], or two that
     /// do contradict each other.
-    pub(crate) fn offset(
+    pub(crate) fn found(
         &self,
         (limbs, up_b): (&Limbs<T, N, F>, &Vector3<T>),
         (weight, com_b): (T, &Vector3<T>),
         limits: &Centring<T>,
-    ) -> Option<Vector3<T>> {
+    ) -> Option<Found<T>> {
         let joints = limbs.ends.each_ref().map(|end| {
             let force_b = solve_damped(end, T::ZERO, &end.mul(&self.felt));
             force_b.dot(up_b)
@@ -76,18 +86,21 @@ impl<T: Scalar, const N: usize, const F: usize> Balance<T, N, F> {
                 total += *normal;
             }
             let way: Vector3<T> = sum / total - com_b;
-            let offset = way - up_b * way.dot(up_b);
+            let offset_b = way - up_b * way.dot(up_b);
             let heavier = total / (self.count * weight) - T::ONE;
             // Also false for NaN.
             let sound = math::abs(heavier) <= limits.heavier
-                && offset.norm_squared() <= limits.most * limits.most;
-            sound.then_some(offset)
+                && offset_b.norm_squared() <= limits.most * limits.most;
+            sound.then_some(Found { offset_b, heavier })
         });
         match (felt, sensed) {
             (Some(felt), Some(sensed)) => {
-                let apart = (felt - sensed).norm_squared();
+                let apart = (felt.offset_b - sensed.offset_b).norm_squared();
                 let agree = apart <= limits.agreement * limits.agreement;
-                agree.then_some((felt + sensed) * T::HALF)
+                agree.then_some(Found {
+                    offset_b: (felt.offset_b + sensed.offset_b) * T::HALF,
+                    heavier: (felt.heavier + sensed.heavier) * T::HALF,
+                })
             }
             (felt, sensed) => felt.or(sensed),
         }

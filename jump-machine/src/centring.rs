@@ -27,6 +27,10 @@ pub struct Centring<T> {
     pub agreement: T,
     /// Largest share by which joints or sensors may feel another weight than the model's.
     pub heavier: T,
+    /// Largest load that it may carry, over the model's mass; zero is none.
+    pub most_load: T,
+    /// Height of a load over the origin of the base, m.
+    pub load_height: T,
     /// Tikhonov term on the way of a foot, m²: keeps stretched legs from large motions.
     pub damping: T,
 }
@@ -42,6 +46,8 @@ impl<T: Scalar> Centring<T> {
             most: build.length(0.04),
             agreement: build.length(0.02),
             heavier: T::of(0.35),
+            most_load: T::of(0.25),
+            load_height: build.length(0.04),
             damping: build.area(1e-4),
         }
     }
@@ -79,6 +85,8 @@ fn move_foot<T: Scalar, const N: usize>(
 pub(crate) struct Centred<T: Scalar, const N: usize> {
     /// How far it is from the model's, base axes, m; none before it is known, zero where that is not believed.
     pub(crate) offset_b: Option<Vector3<T>>,
+    /// What it carries, over the model's mass.
+    pub(crate) load: T,
     /// Joint displacements, rad.
     pub(crate) joints: [T; N],
     /// The foot for which they are computed next.
@@ -90,6 +98,7 @@ impl<T: Scalar, const N: usize> Centred<T, N> {
     pub(crate) const fn new() -> Self {
         Self {
             offset_b: None,
+            load: T::ZERO,
             joints: [T::ZERO; N],
             next: 0,
         }

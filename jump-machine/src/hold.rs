@@ -1,8 +1,8 @@
-//! The hold before the jump: the robot weighs itself, finds its centre of mass, and computes the push-off's gains.
+//! The hold before the jump: the robot weighs itself, finds its centre of mass and what it carries, and computes the push-off's gains.
 
 use nalgebra::Vector3;
 use rbd_core::{GRAVITY, Tree, center_of_mass};
-use so3::Scalar;
+use so3::{Scalar, math};
 
 use crate::regulator::NODES_PER_TICK;
 use crate::{Jump, Machine, Observation};
@@ -32,10 +32,11 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let (body, plan) = ((self.model, &s.regulator), &jump.plan);
         let regulator = &mut self.workspace.regulator;
         let legs = (&s.pd.feet, &mut self.wanted);
-        regulator.advance(body, plan, legs, NODES_PER_TICK);
+        let load_height = s.centring.load_height;
+        regulator.advance(body, plan, legs, load_height, NODES_PER_TICK);
     }
 
-    /// Once: where the centre of mass is.
+    /// Once: where the centre of mass is, and what is carried.
     fn locate(&mut self) {
         if self.centred.offset_b.is_some() {
             return;
@@ -51,11 +52,16 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let standing = (&self.limbs, &up_b);
         let found = self
             .balance
-            .offset(standing, (weight, &com_b), &self.settings.centring);
-        let offset_b = found.unwrap_or_else(Vector3::zeros);
+            .found(standing, (weight, &com_b), &self.settings.centring);
+        let (offset_b, heavier) = found.map_or((Vector3::zeros(), T::ZERO), |found| {
+            (found.offset_b, found.heavier)
+        });
         for foot in &mut self.level_feet {
             *foot += offset_b;
         }
         self.centred.offset_b = Some(offset_b);
+        // A robot that is lighter than its model carries nothing.
+        let most = self.settings.centring.most_load;
+        self.centred.load = math::clamp(heavier, T::ZERO, most);
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, LimbEnd, Tangent, Tree, integrate};
 use so3::{Scalar, math};
 
-use crate::{Jump, Machine};
+use crate::{Jump, Load, Machine};
 
 /// Nodes by which the plan was less far when the oldest measurement was made, for the search only.
 const BEHIND: usize = 3;
@@ -74,12 +74,20 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let rot_bw = self.limbs.posture.base().rotation.inverse();
         let then = t - measured.age;
         let was = jump.plan.node_at(then, node.saturating_sub(BEHIND));
+        let load = Load {
+            share: self.centred.load,
+            height: s.centring.load_height,
+        };
         let changes = self.workspace.regulator.forces(
             (self.model, &s.regulator),
             &jump.plan,
             [(node, t), (was, then)],
             velocity,
-            (&self.limbs, &self.centred.offset_b.unwrap_or_default()),
+            (
+                &self.limbs,
+                &self.centred.offset_b.unwrap_or_default(),
+                &load,
+            ),
             (&rot_planned, &forces_w),
         );
         for (end, change) in self.limbs.ends.iter().zip(&changes) {

@@ -17,6 +17,8 @@ pub enum Measure {
     Weighing,
     /// Finding the centre of mass while the robot waits, and a trunk that is moved until it is where the plan has it.
     Centring,
+    /// Telling what a load turns from what it weighs, in the push-off.
+    Load,
     /// Rotor inertia and joint friction in the plan's torques.
     Drives,
     /// Plan forces that keep to a share of friction, torque and speed.
@@ -37,9 +39,10 @@ pub enum Measure {
 
 impl Measure {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Weighing,
         Self::Centring,
+        Self::Load,
         Self::Drives,
         Self::Margins,
         Self::Lookahead,
@@ -56,6 +59,7 @@ impl Measure {
         match self {
             Self::Weighing => "weighing",
             Self::Centring => "centring",
+            Self::Load => "load",
             Self::Drives => "drives",
             Self::Margins => "margins",
             Self::Lookahead => "lookahead",
@@ -77,6 +81,7 @@ impl Measure {
             Self::Centring => {
                 "Finding the centre of mass while the robot waits, and moving it to where the plan has it"
             }
+            Self::Load => "Telling what a load turns from what it weighs, in the push-off",
             Self::Drives => "Rotor inertia and joint friction in the plan's torques",
             Self::Margins => "Plan forces that keep to a share of friction, torque and speed",
             Self::Lookahead => {
@@ -129,6 +134,7 @@ impl Measure {
         match self {
             Self::Weighing => settings.max_payload = 0.0,
             Self::Centring => settings.centring.most = 0.0,
+            Self::Load => settings.centring.most_load = 0.0,
             Self::Lookahead => settings.lookahead = 0.0,
             // No time before touchdown is that long after it.
             Self::Posture => {

@@ -1,7 +1,7 @@
 //! Stances in equilibrium, made with inverse dynamics: what stands still must be seen as it is.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use super::Balance;
+use super::{Balance, Found};
 use crate::Centring;
 use a1_model::{A1Geared, BUILD, FEET};
 use landing::solve_damped;
@@ -100,7 +100,7 @@ fn stand(lean: &Vector3<f64>, offset_b: &Vector3<f64>, squeeze: f64) -> Stance {
 }
 
 impl Stance {
-    fn offset(&self, felt: &[f64; 12], sensed: &[f64; 4], most: f64) -> Option<Vector3<f64>> {
+    fn found(&self, felt: &[f64; 12], sensed: &[f64; 4], most: f64) -> Option<Found<f64>> {
         let mut balance = Balance::new();
         for _ in 0..3 {
             balance.add(felt, sensed);
@@ -112,7 +112,7 @@ impl Stance {
             most,
             ..Centring::new(&BUILD)
         };
-        balance.offset(
+        balance.found(
             (&self.limbs, &self.up_b),
             (self.weight, &self.com_b),
             &limits,
@@ -124,7 +124,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
     /// Either witness alone, and both, see the offset across the vertical exactly; gains that all motors or all sensors have in common,
-    /// and feet that push against each other, change nothing.
+    /// and feet that push against each other, change nothing of that. The weight is the mean of what they say.
     #[test]
     fn what_stands_still_is_seen_as_it_is(
         roll in -0.2..0.2, pitch in -0.2..0.2, yaw in -3.0..3.0,
@@ -135,9 +135,12 @@ proptest! {
         let stance = stand(&Vector3::new(roll, pitch, yaw), &offset_b, squeeze);
         let across = offset_b - stance.up_b * offset_b.dot(&stance.up_b);
         let (felt, sensed) = (stance.felt.map(|x| gain * x), stance.sensed.map(|x| x / gain));
-        for (felt, sensed) in [(felt, sensed), (felt, [0.0; 4]), ([0.0; 12], sensed)] {
-            let found = stance.offset(&felt, &sensed, 0.04).unwrap();
-            prop_assert!((found - across).norm() < 1e-9, "{found} {across}");
+        let both = 0.5 * (gain + 1.0 / gain);
+        let seen = [(felt, sensed, both), (felt, [0.0; 4], gain), ([0.0; 12], sensed, 1.0 / gain)];
+        for (felt, sensed, weighs) in seen {
+            let found = stance.found(&felt, &sensed, 0.04).unwrap();
+            prop_assert!((found.offset_b - across).norm() < 1e-9, "{found:?} {across}");
+            prop_assert!(f64::abs(1.0 + found.heavier - weighs) < 1e-9, "{found:?} {weighs}");
         }
     }
 }
@@ -147,22 +150,22 @@ fn what_cannot_be_is_not_believed() {
     let offset_b = Vector3::new(0.01, -0.005, 0.0);
     let stance = stand(&Vector3::new(0.05, -0.03, 0.2), &offset_b, 5.0);
     let (felt, sensed) = (&stance.felt, &stance.sensed);
-    assert!(stance.offset(felt, sensed, 0.04).is_some());
+    assert!(stance.found(felt, sensed, 0.04).is_some());
     // It is switched off, or the offset is implausible.
-    assert_eq!(stance.offset(felt, sensed, 0.0), None);
-    assert_eq!(stance.offset(felt, sensed, 0.01), None);
+    assert!(stance.found(felt, sensed, 0.0).is_none());
+    assert!(stance.found(felt, sensed, 0.01).is_none());
     // It hangs, and was never measured.
     let half = (felt.map(|x| 0.5 * x), sensed.map(|x| 0.5 * x));
-    assert_eq!(stance.offset(&half.0, &half.1, 0.04), None);
-    assert_eq!(stance.offset(&[f64::NAN; 12], sensed, 0.04), None);
+    assert!(stance.found(&half.0, &half.1, 0.04).is_none());
+    assert!(stance.found(&[f64::NAN; 12], sensed, 0.04).is_none());
     // Sensors that contradict the joints: neither is believed. A dead one makes the middle of the feet impossible, and the joints are believed alone.
     let mut drifted = *sensed;
     drifted[0] -= 7.5;
     drifted[3] += 7.5;
-    assert_eq!(stance.offset(felt, &drifted, 0.04), None);
+    assert!(stance.found(felt, &drifted, 0.04).is_none());
     let mut dead = *sensed;
     dead[2] = 0.0;
-    let found = stance.offset(felt, &dead, 0.04).unwrap();
+    let found = stance.found(felt, &dead, 0.04).unwrap();
     let across = offset_b - stance.up_b * offset_b.dot(&stance.up_b);
-    assert!((found - across).norm() < 1e-9);
+    assert!((found.offset_b - across).norm() < 1e-9);
 }

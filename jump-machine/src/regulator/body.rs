@@ -19,15 +19,17 @@ pub(super) struct Body<T: Scalar, const F: usize> {
     /// Forces of the ground on the feet, and the feet seen from the centre of mass, world axes.
     pub(super) forces_w: [Vector3<T>; F],
     arms_w: [Vector3<T>; F],
+    /// What is carried, seen from the centre of mass, world axes.
+    load_w: Vector3<T>,
 }
 
 impl<T: Scalar, const F: usize> Body<T, F> {
-    /// The body of `node`; `limbs` is memory for its legs.
+    /// The body of `node`, that would carry loads so high over the base's origin; `limbs` is memory for its legs.
     pub(super) fn new<M: Tree<T, N>, const N: usize>(
         model: &M,
         node: &Node<T, N, F>,
         feet: &[Frame<T>; F],
-        limbs: &mut Limbs<T, N, F>,
+        (limbs, load_height): (&mut Limbs<T, N, F>, T),
     ) -> Self {
         let q = Configuration {
             base: node.base,
@@ -54,11 +56,12 @@ impl<T: Scalar, const F: usize> Body<T, F> {
                 .ends
                 .each_ref()
                 .map(|end| node.base.point(&end.position) - map.com_w),
+            load_w: node.base.point(&(Vector3::z() * load_height)) - map.com_w,
         }
     }
 
-    /// A, with which an error goes on for `dt` if nothing answers it:
-    /// δċ = δv, δθ̇ = I⁻¹ (δL + L × δθ), δv̇ = 0, δL̇ = F × δc.
+    /// How an error goes on for `dt` if nothing answers it:
+    /// δċ = δv, δθ̇ = I⁻¹ (δL + L × δθ), δv̇ = 0, δL̇ = F × δc + p Σ (r_i − l) × f_i, of a robot that carries p at l ([`Load`](crate::Load)).
     ///
     /// The body turns with ω = I⁻¹ (L − L_legs), and a rotation δθ of it turns I and the momentum L_legs of its legs; what is left of both is
     /// L × δθ. The feet stand where they stand, so a body that is aside has the planned force F on another arm.
@@ -69,11 +72,16 @@ impl<T: Scalar, const F: usize> Body<T, F> {
         let turned = one + turning + turning * turning * T::HALF;
         let turns = (one + turning * T::HALF) * self.inverse_inertia_w * dt;
         let total: Vector3<T> = self.forces_w.iter().sum();
+        let legs = self.arms_w.iter().zip(&self.forces_w);
+        let loaded: Vector3<T> = legs
+            .map(|(arm, force)| (arm - self.load_w).cross(force))
+            .sum();
         Drift {
             dt,
             turned,
             turns,
             pushed: so3::hat(&total) * dt,
+            loaded: loaded * dt,
         }
     }
 

@@ -6,16 +6,17 @@
 //! the angular momentum about the centre of mass, world axes, measured less planned:
 //!
 //! ```text
-//! δċ = δv    δθ̇ = I⁻¹ (δL + L × δθ)    δv̇ = Σ δf_i / m    δL̇ = F × δc + Σ r_i × δf_i
+//! δċ = δv    δθ̇ = I⁻¹ (δL + L × δθ)    δv̇ = Σ δf_i / m    δL̇ = F × δc + Σ r_i × δf_i + p Σ (r_i − l) × f_i
 //! ```
 //!
-//! where r_i are the planned places of the feet seen from the centre of mass and F = Σ f_i. The cost is Σ (error/σ)² at touchdown, with a flight
+//! where r_i are the planned places of the feet seen from the centre of mass and F = Σ f_i. The last term is known beforehand: it is what a robot that
+//! carries p of its mass at l is turned by ([`Load`]). The cost is Σ (error/σ)² at touchdown, with a flight
 //! without feedback until there, and at take-off, and Σ (error/σ)² + Σ (δf_i/σ_i)² over the push-off ([`Weights`]). A foot's σ_i is a share of its planned
 //! force, so a foot that the plan does not push with is given none.
 //!
 //! Riccati's recursion runs backwards over the nodes once, a few in every tick of the hold ([`NODES_PER_TICK`]): all of them at once take longer than
-//! the joint loop waits for a tick. What is kept of it are the six rows Λ of the cost-to-go S that belong to the momenta; with the costates
-//! (λ_v, λ_L) = Λ x the best change of a foot's force is
+//! the joint loop waits for a tick. What is kept of it are the six rows Λ of the cost-to-go that belong to the momenta; with the costates
+//! (λ_v, λ_L) = Λ (x, p) the best change of a foot's force is
 //!
 //! ```text
 //! δf_i = −σ_i² (λ_v / m + λ_L × r_i)
@@ -41,6 +42,8 @@ use so3::{Scalar, math};
 
 pub use weights::Weights;
 
+use crate::Load;
+
 use body::Body;
 use cost_to_go::{ANGULAR, CostToGo, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY, stack};
 
@@ -57,10 +60,12 @@ pub const NODES_PER_TICK: usize = 2;
 
 /// Place, velocity and angular momentum of a plan's centre of mass, in single precision, as plans are stored.
 type State = [[f32; 3]; 3];
+/// Errors, and the load.
+const COLUMNS: usize = ERRORS + 1;
 /// Λ by rows.
-type Gain = [[f32; ERRORS]; MOMENTA];
+type Gain = [[f32; COLUMNS]; MOMENTA];
 
-/// The gains of one jump, and the motion that they are for: 27.7 kB, and the recursion that computes them.
+/// The gains of one jump, and the motion that they are for: 29.4 kB, and the recursion that computes them.
 ///
 /// Armed is what [`Regulator::begin`] was called for and [`Regulator::advance`] has not yet gone through; a push-off may begin when
 /// [`Regulator::is_ready`].
@@ -83,7 +88,7 @@ impl<T: Scalar> Regulator<T> {
     pub const fn new() -> Self {
         Self {
             states: [[[0.0; 3]; 3]; STATES],
-            gains: [[[0.0; ERRORS]; MOMENTA]; GAINS],
+            gains: [[[0.0; COLUMNS]; MOMENTA]; GAINS],
             every: [NonZeroUsize::MIN; 2],
             nodes: 0,
             cost: CostToGo::ZERO,
@@ -127,13 +132,14 @@ impl<T: Scalar> Regulator<T> {
         self.left == 0
     }
 
-    /// Goes on with the recursion, for the plan, model and weights with which it was begun: over at most so many nodes. `limbs` is memory for the legs of a
-    /// node.
+    /// Goes on with the recursion, for the plan, model, weights and height of loads with which it was begun: over at most so many nodes. `limbs` is memory for
+    /// the legs of a node.
     pub fn advance<M: Tree<T, N>, const N: usize, const F: usize>(
         &mut self,
         (model, weights): (&M, &Weights<T>),
         plan: &Plan<'_, T, N, F>,
         (feet, limbs): (&[Frame<T>; F], &mut Limbs<T, N, F>),
+        load_height: T,
         most: usize,
     ) {
         for _ in 0..most {
@@ -143,7 +149,7 @@ impl<T: Scalar> Regulator<T> {
             let (Some(node), Some(next)) = (plan.node(i), plan.time(i + 1)) else {
                 return;
             };
-            let body = Body::new(model, &node, feet, limbs);
+            let body = Body::new(model, &node, feet, (limbs, load_height));
             if node.time < plan.touchdown {
                 self.cost.before(&body.drift(next - node.time));
             }
@@ -192,8 +198,10 @@ impl<T: Scalar> Regulator<T> {
             .get_mut(left / gain)
             .filter(|_| left.is_multiple_of(gain.get()))
         {
-            for (to, row) in to.iter_mut().zip(self.cost.costate()) {
-                *to = row.map(single);
+            for (to, (of_errors, of_load)) in to.iter_mut().zip(self.cost.costate()) {
+                for (to, x) in to.iter_mut().zip(of_errors.iter().chain([&of_load])) {
+                    *to = single(*x);
+                }
             }
         }
     }
@@ -202,23 +210,25 @@ impl<T: Scalar> Regulator<T> {
     ///
     /// `moments` of the plan, each the node before it and the time, s: now, when `limbs` are as they are, and when `velocity` was. The
     /// planned rotation is that of now, and `planned_w` are the planned forces, world axes. The centre of mass is `offset_b` from the
-    /// model's, base axes, m. Zero from the take-off on.
+    /// model's, base axes, m, and what the robot carries raises it. Zero from the take-off on.
     pub fn forces<M: Tree<T, N>, const N: usize, const F: usize>(
         &self,
         (model, weights): (&M, &Weights<T>),
         plan: &Plan<'_, T, N, F>,
         moments: [(usize, T); 2],
         velocity: &Tangent<T, N>,
-        (limbs, offset_b): (&Limbs<T, N, F>, &Vector3<T>),
+        (limbs, offset_b, load): (&Limbs<T, N, F>, &Vector3<T>, &Load<T>),
         (planned_rot_wb, planned_w): (&Rotation3<T>, &[Vector3<T>; F]),
     ) -> [Vector3<T>; F] {
         let mut changes = [Vector3::zeros(); F];
         let base = limbs.posture.base();
         let mut now = centroidal_state(model, &limbs.posture, velocity);
+        // A trunk that is as high as planned is right.
+        let raised_b = load.raises(&(base.rotation.inverse() * (now.com_w - base.translation)));
         now.com_w += base.rotation * offset_b;
-        now.com_velocity_w += base.rotation * velocity.base.angular.cross(offset_b);
+        now.com_velocity_w += base.rotation * velocity.base.angular.cross(&(offset_b + raised_b));
         let turned = base.rotation * planned_rot_wb.inverse();
-        let Some(costate) = self.costate(plan, moments, &turned, &now) else {
+        let Some(costate) = self.costate(plan, moments, &turned, (&now, load.share)) else {
             return changes;
         };
         let [x, y, z, roll, pitch, yaw] = costate.into();
@@ -233,13 +243,13 @@ impl<T: Scalar> Regulator<T> {
         changes
     }
 
-    /// Λ x; none outside the push-off.
+    /// Λ (x, p); none outside the push-off.
     fn costate<const N: usize, const F: usize>(
         &self,
         plan: &Plan<'_, T, N, F>,
         [(node, time), (was, then)]: [(usize, T); 2],
         turned: &Rotation3<T>,
-        now: &CentroidalState<T>,
+        (now, load): (&CentroidalState<T>, T),
     ) -> Option<SVector<T, MOMENTA>> {
         // Also false for NaN.
         let pushes = node < self.nodes && time >= plan.time(node)?;
@@ -259,7 +269,8 @@ impl<T: Scalar> Regulator<T> {
         let rotation = so3::log(turned);
         let velocity = now.com_velocity_w - at(there, 1)?;
         let angular = now.momentum_w.angular - at(there, 2)?;
-        let error = stack([place, rotation, velocity, angular]);
+        let error: SVector<T, ERRORS> = stack([place, rotation, velocity, angular]);
+        let error = error.push(load);
         // Gains are counted from the last interval, over which its own is held: it is the one for which the end matters most.
         match self.nodes.checked_sub(node + 2) {
             Some(left) => {
@@ -347,8 +358,8 @@ fn vector<T: Scalar>(kept: &[f32; 3]) -> Vector3<T> {
     Vector3::from(kept.map(|x| T::of(f64::from(x))))
 }
 
-/// Λ x of a gain that was kept in single precision.
-fn product<T: Scalar>(gain: &Gain, error: &SVector<T, ERRORS>) -> SVector<T, MOMENTA> {
+/// Λ (x, p) of a gain that was kept in single precision.
+fn product<T: Scalar>(gain: &Gain, error: &SVector<T, COLUMNS>) -> SVector<T, MOMENTA> {
     SVector::from(gain.map(|row| {
         let terms = row.iter().zip(error);
         terms.fold(T::ZERO, |sum, (gain, error)| {

@@ -4,17 +4,20 @@
 use a1_model::{A1, BUILD, FEET};
 use jump_control::{Node, Plan, Torques};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use rbd_core::{Configuration, Frame, Limbs, Motion, Tangent, Transform, Tree};
+use rbd_core::{Configuration, Frame, Limbs, Motion, Tangent, Transform, Tree, center_of_mass};
 use so3::Scalar;
 
 use super::body::Body;
 use super::cost_to_go::{ANGULAR, Drift, ERRORS, MOMENTA, PLACE, ROTATION, VELOCITY};
-use super::{NODES_PER_TICK, Regulator, Weights, product};
+use super::{COLUMNS, NODES_PER_TICK, Regulator, Weights, product};
+use crate::Load;
 
 const NODES: usize = 8;
 const DT: f64 = 0.005;
 /// Node of the take-off.
 const TAKEOFF: usize = 3;
+/// Height of loads, m.
+const LOAD_HEIGHT: f64 = 0.07;
 /// Forces of all feet at all nodes before it.
 const INPUTS: usize = 12 * TAKEOFF;
 
@@ -85,8 +88,8 @@ impl Dense {
         }
     }
 
-    /// The first node's best forces for the error x there.
-    fn forces(weights: &Weights<f64>, x: &SVector<f64, ERRORS>) -> [Vector3<f64>; 4] {
+    /// The first node's best forces for the error x there, of a robot that carries `load`.
+    fn forces(weights: &Weights<f64>, x: &SVector<f64, ERRORS>, load: f64) -> [Vector3<f64>; 4] {
         let mut dense = Self {
             normal: SMatrix::zeros(),
             side: SVector::zeros(),
@@ -94,7 +97,7 @@ impl Dense {
             forced: SMatrix::zeros(),
         };
         for (i, node) in nodes::<f64>().iter().enumerate() {
-            let body = Body::new(&A1, node, &feet(), &mut { Limbs::ZERO });
+            let body = body(node);
             let inverse = &body.inverse_inertia_w;
             if i == TAKEOFF {
                 dense.add_errors(&weights.takeoff, inverse, 1.0);
@@ -111,6 +114,8 @@ impl Dense {
             }
             let a = whole(&body.drift(DT));
             (dense.free, dense.forced) = (a * dense.free, a * dense.forced);
+            let mut angular = dense.free.fixed_rows_mut::<3>(ANGULAR);
+            angular += loaded(node) * load * DT;
         }
         let u = dense.normal.cholesky().unwrap().solve(&dense.side);
         core::array::from_fn(|foot| u.fixed_rows::<3>(3 * foot).into())
@@ -146,6 +151,32 @@ impl Dense {
     }
 }
 
+fn configuration(node: &Node<f64, 12, 4>) -> Configuration<f64, 12> {
+    Configuration {
+        base: node.base,
+        joints: node.joints,
+    }
+}
+
+fn body(node: &Node<f64, 12, 4>) -> Body<f64, 4> {
+    let limbs = (&mut { Limbs::ZERO }, LOAD_HEIGHT);
+    Body::new(&A1, node, &feet(), limbs)
+}
+
+/// How fast the angular momentum of a node's robot grows beyond the plan's with a load of its own mass, whose acceleration is that of the whole: forces are
+/// twice as large, and one half of them is what the load pushes back with.
+fn loaded(node: &Node<f64, 12, 4>) -> Vector3<f64> {
+    let limbs = Limbs::new(&A1, &configuration(node), &feet());
+    let com_w = center_of_mass(&A1, &limbs.posture).position_w;
+    let load_w = node.base.point(&Vector3::new(0.0, 0.0, LOAD_HEIGHT));
+    let (mut planned, mut total) = (Vector3::zeros(), Vector3::zeros());
+    for (end, force) in limbs.ends.iter().zip(&node.forces_w) {
+        planned += (node.base.point(&end.position) - com_w).cross(force);
+        total += force;
+    }
+    2.0 * planned - (load_w - com_w).cross(&total) - planned
+}
+
 /// A as one matrix.
 fn whole(drift: &Drift<f64>) -> SMatrix<f64, ERRORS, ERRORS> {
     let mut a = SMatrix::<f64, ERRORS, ERRORS>::identity();
@@ -172,7 +203,8 @@ where
     regulator.begin(plan, &weights);
     let mut times = 0;
     while !regulator.is_ready() {
-        regulator.advance((&A1, &weights), plan, (&feet(), &mut { Limbs::ZERO }), most);
+        let legs = (&feet(), &mut { Limbs::ZERO });
+        regulator.advance((&A1, &weights), plan, legs, T::of(LOAD_HEIGHT), most);
         times += 1;
     }
     times
@@ -189,11 +221,14 @@ fn prepared() -> Regulator<f64> {
 fn riccatis_recursion_solves_the_dense_problem() {
     let (weights, regulator) = (Weights::new(&BUILD), prepared());
     let nodes = nodes::<f64>();
-    let body = Body::new(&A1, &nodes[0], &feet(), &mut { Limbs::ZERO });
-    for k in 0..ERRORS {
-        let x = SVector::from_fn(|row, _| if row == k { 0.02 } else { 0.003 * row as f64 });
-        let lambda = product(&regulator.gains[TAKEOFF - 1], &x);
-        let dense = Dense::forces(&weights, &x);
+    let body = body(&nodes[0]);
+    // The last one is the load.
+    for k in 0..COLUMNS {
+        let of = |row: usize| if row == k { 0.1 } else { 0.003 * row as f64 };
+        let x: SVector<f64, ERRORS> = SVector::from_fn(|row, _| of(row));
+        let load = of(ERRORS);
+        let lambda = product(&regulator.gains[TAKEOFF - 1], &x.push(load));
+        let dense = Dense::forces(&weights, &x, load);
         for (foot, wanted) in dense.iter().enumerate() {
             let slope = Vector3::from_fn(|axis, _| body.push(foot, axis).dot(&lambda));
             let per_cost = weights.per_cost(nodes[0].forces_w[foot].z);
@@ -221,7 +256,8 @@ fn a_recursion_in_parts_is_the_recursion_at_once() {
     for most in 1..NODES {
         let mut regulator = Regulator::new();
         regulator.begin(&plan, &weights);
-        regulator.advance((&A1, &weights), &plan, (&feet(), &mut { Limbs::ZERO }), 2);
+        let legs = (&feet(), &mut { Limbs::ZERO });
+        regulator.advance((&A1, &weights), &plan, legs, LOAD_HEIGHT, 2);
         assert!(!regulator.is_ready());
         let times = prepare(&mut regulator, &plan, most);
         assert_eq!(times, (NODES - 1).div_ceil(most));
@@ -232,6 +268,14 @@ fn a_recursion_in_parts_is_the_recursion_at_once() {
 
 /// Forces that are wanted at `time` of the plan for a robot that is there but turned and moved.
 fn wanted<T: Scalar>(time: f64, turned: [f64; 3], faster: [f64; 3]) -> [Vector3<T>; 4]
+where
+    A1: Tree<T, 12>,
+{
+    carrying(0.0, time, turned, faster)
+}
+
+/// The same for one that carries this share of its mass.
+fn carrying<T: Scalar>(load: f64, time: f64, turned: [f64; 3], faster: [f64; 3]) -> [Vector3<T>; 4]
 where
     A1: Tree<T, 12>,
 {
@@ -259,12 +303,16 @@ where
     };
     let limbs = Limbs::new(&A1, &q, &feet());
     let moments = [(node, time); 2];
+    let load = Load {
+        share: T::of(load),
+        height: T::of(LOAD_HEIGHT),
+    };
     regulator.forces(
         (&A1, &weights),
         &plan,
         moments,
         &velocity,
-        (&limbs, &Vector3::zeros()),
+        (&limbs, &Vector3::zeros(), &load),
         (&here.base.rotation, &here.forces_w),
     )
 }
@@ -299,6 +347,40 @@ fn errors_are_answered_against_their_sense_by_the_feet_that_push() {
     let rear = wanted::<f64>(DT * 2.0, [0.0; 3], [0.0, 0.0, 0.1]);
     assert_eq!(rear[..2], [Vector3::zeros(); 2]);
     assert!(rear[2].z < -1.0 && rear[3].z < -1.0, "{rear:?}");
+}
+
+/// What turns a robot that carries something is answered before it is seen: its feet push the way back, beside what answers the speed of its centre of mass.
+#[test]
+fn a_load_is_answered_beforehand() {
+    let (nodes, at) = (nodes::<f64>(), [0.0; 3]);
+    let raised = |share| {
+        let load = Load {
+            share,
+            height: LOAD_HEIGHT,
+        };
+        let limbs = Limbs::new(&A1, &configuration(&nodes[0]), &feet::<f64>());
+        let com_w = center_of_mass(&A1, &limbs.posture).position_w;
+        let base = nodes[0].base;
+        let raised_b = load.raises(&(base.rotation.inverse() * (com_w - base.translation)));
+        base.rotation * nodes[0].base_velocity.angular.cross(&raised_b)
+    };
+    let moment = |forces: &[Vector3<f64>; 4]| {
+        let limbs = Limbs::new(&A1, &configuration(&nodes[0]), &feet::<f64>());
+        let com_w = center_of_mass(&A1, &limbs.posture).position_w;
+        let legs = limbs.ends.iter().zip(forces);
+        let arms = legs.map(|(end, f)| (nodes[0].base.point(&end.position) - com_w).cross(f));
+        arms.sum::<Vector3<f64>>()
+    };
+    let with = carrying::<f64>(0.1, 0.0, at, (-raised(0.1)).into());
+    let turned = loaded(&nodes[0]) * 0.1;
+    assert!(turned.norm() > 0.5, "{turned}");
+    // Here more than all of it: the last interval has two feet, which can do less.
+    let answer = -moment(&with).dot(&turned) / turned.norm_squared();
+    assert!((0.5..2.0).contains(&answer), "{answer}");
+    let single = carrying::<f32>(0.1, 0.0, at, (-raised(0.1)).into());
+    for (one, two) in with.iter().zip(&single) {
+        assert!((one - two.map(f64::from)).norm() < 0.1, "{one} {two}");
+    }
 }
 
 #[test]
