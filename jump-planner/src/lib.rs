@@ -15,6 +15,8 @@ pub mod robot;
 pub mod scene;
 mod search;
 mod setup;
+
+mod stops;
 pub mod stored;
 pub mod task;
 pub mod terrain;

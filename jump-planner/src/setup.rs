@@ -1,12 +1,16 @@
 //! The whole-body problem of a task along a motion of the rigid body: the geared A1 on rolling ball feet, with margins.
 
+use core::f64::consts::FRAC_PI_8;
+
 use super::reference::heading_matrix;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
+use crate::stops::keep_away;
 use crate::tightening::Tightening;
 use crate::track::Track;
 use nalgebra::Vector3;
 use rbd_core::Transform;
+use so3::math;
 use srb_opt::Edge;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
 
@@ -222,7 +226,9 @@ impl<'a> Setup<'a> {
         let task = self.task;
         let rigid = &task.problem;
         let build = task.robot.build(&task.start);
-        let cone = CONE_SHARE * rigid.friction / task.limits.friction_share;
+        // A regular octagon: forces keep to the planned share of friction whichever way they point, not along the axes alone.
+        let octagon = rigid.friction / math::cos(FRAC_PI_8);
+        let cone = octagon.min(CONE_SHARE * rigid.friction / task.limits.friction_share);
         let mut problem = Problem {
             robot: Robot::on_free_base(&task.robot),
             feet: core::array::from_fn(|i| Foot {
@@ -273,14 +279,10 @@ impl<'a> Setup<'a> {
                 None => limit.speed *= speed_share,
             }
         }
-        for limit in robot.limits.iter_mut().skip(BASE) {
+        let ends = problem.start.q.iter().zip(&problem.goal.q).skip(BASE);
+        for (limit, (start, goal)) in robot.limits.iter_mut().skip(BASE).zip(ends) {
             limit.effort *= 1.0 - drawn.torque;
-            let inset = drawn.position * (limit.upper - limit.lower);
-            // An inset of nothing leaves infinite ranges alone.
-            if inset > 0.0 && inset.is_finite() {
-                limit.lower += inset;
-                limit.upper -= inset;
-            }
+            keep_away(limit, drawn.position, [*start, *goal]);
         }
         problem
     }

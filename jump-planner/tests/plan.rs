@@ -61,12 +61,10 @@ fn what_the_observer_ends_is_cancelled_whatever_was_found_before() {
     assert!(out.bytes.is_empty());
 }
 
-/// What the planner calls solved is not damaged for who opens it. Where torques cost less than usually, one of its knees is beyond its limit at a node, by 0.6 %
-/// of its range, since plans keep limits in the middle of intervals.
+/// What the planner calls solved is not damaged for who opens it, and its knees, which go to their stops without a margin, leave what a lab takes.
 #[test]
-fn what_passes_the_audit_is_opened_again() {
-    let mut task = Task::load("a1/double-barrel-roll").unwrap();
-    task.weights.torque = 3e-5;
+fn what_passes_the_audit_is_opened_again_and_its_joints_keep_away_from_their_stops() {
+    let task = Task::load("a1/double-barrel-roll").unwrap();
     let out = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(())).unwrap();
     assert!(out.audit.unwrap().is_a_motion());
     let stored = open_for(&out.bytes, &task.robot).unwrap();
@@ -79,6 +77,7 @@ fn what_passes_the_audit_is_opened_again() {
         .nodes()
         .flat_map(|node| limits.iter().zip(node.joints));
     let most = joints.map(beyond).fold(f64::NEG_INFINITY, f64::max);
-    assert!(most > 0.01, "no joint is beyond its limit: {most}");
+    // Nodes are between the middles of intervals, where margins are kept: 0.1 rad.
+    assert!(most < -0.08, "a joint is near its stop: {most}");
     check_values(&task.robot, &stored).unwrap();
 }

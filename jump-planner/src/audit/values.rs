@@ -153,3 +153,25 @@ fn feet(robot: &Quadruped, node: &PlanNode<JOINTS, LEGS>) -> Option<String> {
             .then(|| format!("{what} of foot {} is not that of its leg", robot.place(leg)))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{BEYOND, in_range};
+    use rbd_core::JointLimits;
+
+    #[test]
+    fn joints_may_be_as_far_beyond_their_limits_as_the_audit_allows() {
+        let (lower, upper) = (-2.7, -0.9);
+        let limit = JointLimits {
+            lower,
+            upper,
+            ..JointLimits::NONE
+        };
+        let beyond = BEYOND * (upper - lower);
+        for (share, passes) in [(0.0, true), (0.9, true), (1.1, false)] {
+            assert_eq!(in_range(&limit, upper + share * beyond), passes, "{share}");
+            assert_eq!(in_range(&limit, lower - share * beyond), passes, "{share}");
+        }
+        assert!(!in_range(&limit, f64::NAN));
+    }
+}
