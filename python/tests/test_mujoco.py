@@ -49,7 +49,7 @@ def test_a_study_is_the_same_on_one_core_and_on_two(lateral: saltus.Plan) -> Non
     assert one.seeds == [12323649364400974661, 7095607484609012044]
     assert one.outcomes == ["target", "target"]
     assert one.feet_error == pytest.approx([0.025582, 0.019421], abs=1e-3)
-    assert one.rotation_error == pytest.approx([1.8136, 1.8033], abs=0.1)
+    assert one.rotation_error == pytest.approx([1.8200, 1.6775], abs=0.1)
     # Any sample can be looked at.
     record = saltus.run(lateral, sim="mujoco", seed=one.seeds[1])
     assert record.outcome == one.outcomes[1]

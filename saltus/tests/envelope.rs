@@ -110,6 +110,7 @@ fn the_study_without_each_measure_is_one_table() {
             "nothing",
             "weighing",
             "centring",
+            "load",
             "drives",
             "margins",
             "lookahead",
