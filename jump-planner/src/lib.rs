@@ -15,7 +15,6 @@ pub mod robot;
 pub mod scene;
 mod search;
 mod setup;
-
 mod stops;
 pub mod stored;
 pub mod task;

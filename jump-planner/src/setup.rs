@@ -403,6 +403,27 @@ mod tests {
     }
 
     #[test]
+    fn forces_keep_to_the_planned_share_of_friction_whichever_way_they_point() {
+        let mut task = Task::load("a1/lateral").unwrap();
+        let srb = task.guess().unwrap();
+        let planned = task.problem.friction;
+        let friction = |task: &Task| {
+            let setup = Setup::new(task, &srb, 4.0).unwrap();
+            setup.problem(&Tightening::default()).friction
+        };
+        // The eight sides of a regular octagon are as far out along the axes as between them.
+        let octagon = friction(&task);
+        assert!((octagon.axes - planned).abs() < 1e-12);
+        assert!((octagon.diagonals.unwrap() - planned).abs() < 1e-12);
+        // A task that uses all of it keeps its corners, too, within the cone.
+        task.problem.friction = planned / task.limits.friction_share;
+        task.limits.friction_share = 1.0;
+        let all = friction(&task);
+        let corner = all.axes / so3::math::cos(core::f64::consts::FRAC_PI_8);
+        assert!(corner < 0.96 * task.problem.friction, "{corner}");
+    }
+
+    #[test]
     fn the_ground_off_a_box_is_low_where_feet_land() {
         let mut task = Task::load("a1/lateral-down").unwrap();
         for aside in [0.36, 0.4, 0.5, 0.8] {

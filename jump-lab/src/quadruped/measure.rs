@@ -188,10 +188,15 @@ fn forget_drives(robot: &Quadruped, nodes: &mut [Node]) {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::{Measure, forget_drives};
-    use crate::quadruped::{JOINTS, Node, State};
+    use crate::Sim;
+    use crate::lab::{Lab, PlantArgument};
+    use crate::quadruped::execute::{Trial, run_watched};
+    use crate::quadruped::log::Sample;
+    use crate::quadruped::{JOINTS, Node, Planned, State};
     use a1_model::{A1, a1};
     use jump_planner::Velocity;
     use jump_planner::robot::Quadruped;
+    use jump_planner::task::Task;
     use jump_planner::whole_body::FRICTION_SMOOTHING;
     use rbd_core::{Posture, joint_friction, rnea};
 
@@ -201,6 +206,31 @@ mod tests {
             assert_eq!(measure.name().parse(), Ok(measure));
         }
         assert!("weight".parse::<Measure>().is_err());
+    }
+
+    /// Along the ground, m, at the planned touchdown of two backflips.
+    fn lands(plant: &str, without: &[Measure]) -> f64 {
+        const PLAN: &[u8] = include_bytes!("../../../firmware/probe/plans/a1-double-backflip.bin");
+        let planned = Planned::open(&Quadruped::a1().unwrap(), PLAN, Task::load).unwrap();
+        let plant: PlantArgument = plant.parse().unwrap();
+        let trial = Trial {
+            disturbance: PlantArgument::plant(Some(&plant), Lab::A1, 0),
+            without,
+            ..Trial::nominal(Sim::Native)
+        };
+        let (task, reference) = (&planned.task, &planned.reference);
+        let run = run_watched(task, reference, trial, |_, _| {}, |_, _| {}, |_| {}).unwrap();
+        let before = |sample: &&Sample| sample.time < reference.touchdown - 0.01;
+        run.samples.iter().rfind(before).unwrap().position.x
+    }
+
+    /// Without the measure its weight turns it too much, and its centre of mass is not where its speed is regulated.
+    #[test]
+    fn a_load_on_the_trunk_is_carried_nearly_to_where_nothing_is() {
+        let (nothing, load) = (lands("", &[]), "payload=1.5@0,0,0.04");
+        let [with, without] =
+            [&[][..], &[Measure::Load]].map(|measures| (lands(load, measures) - nothing).abs());
+        assert!(with < 0.5 * without, "{with} {without}");
     }
 
     /// What is left are the torques of a robot without rotors and friction, by inverse dynamics.

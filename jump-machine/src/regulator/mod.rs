@@ -223,7 +223,7 @@ impl<T: Scalar> Regulator<T> {
         let mut changes = [Vector3::zeros(); F];
         let base = limbs.posture.base();
         let mut now = centroidal_state(model, &limbs.posture, velocity);
-        // A trunk that is as high as planned is right.
+        // The trunk is to be as high as planned, not the centre of mass; what flies is the latter.
         let raised_b = load.raises(&(base.rotation.inverse() * (now.com_w - base.translation)));
         now.com_w += base.rotation * offset_b;
         now.com_velocity_w += base.rotation * velocity.base.angular.cross(&(offset_b + raised_b));
