@@ -1,5 +1,6 @@
-//! The hold before the jump: the robot weighs itself, finds its centre of mass and what it carries, and computes the push-off's gains.
+//! The hold before the jump: the robot gathers its legs to where its plan begins, weighs itself, finds its centre of mass and what it carries, and computes the push-off's gains.
 
+use jump_control::{MinimumJerk, Reference};
 use nalgebra::Vector3;
 use rbd_core::{GRAVITY, Tree, center_of_mass};
 use so3::{Scalar, math};
@@ -8,6 +9,20 @@ use crate::regulator::NODES_PER_TICK;
 use crate::{Jump, Machine, Observation};
 
 impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T, M, N, F> {
+    /// Takes the joints at time `t` of the plan from where they are in the first tick of the hold to where the plan begins: at once, feet would hop.
+    pub(crate) fn gather(&mut self, t: T, joints: &[T; N], reference: &mut Reference<T, N>) {
+        let (since, way) = self.gathering.get_or_insert((
+            t,
+            MinimumJerk {
+                from: *joints,
+                velocity: [T::ZERO; N],
+                to: reference.joints,
+                duration: self.settings.gathering,
+            },
+        ));
+        (reference.joints, reference.joint_velocities) = way.at(t - *since);
+    }
+
     /// A tick of the hold at time `t` of the plan, whose torques are `planned`. While the trunk moves no gains are computed: a tick has no time for both.
     #[inline(always)]
     pub(crate) fn hold(

@@ -1,7 +1,7 @@
 //! The machine: memory, and one method per rate.
 
 use jump_control::{
-    Fault, JointCommand, JointGains, Measurement, PayloadEstimate, Phase, Plan, sample,
+    Fault, JointCommand, JointGains, Measurement, MinimumJerk, PayloadEstimate, Phase, Plan, sample,
 };
 use landing::{DetectorState, Landing, Outcome, PreLanding, Target, Turning};
 use nalgebra::Vector3;
@@ -51,6 +51,8 @@ pub struct Machine<'a, T: Scalar, M, const N: usize, const F: usize> {
     pub(crate) payload: PayloadEstimate<T>,
     pub(crate) balance: Balance<T, N, F>,
     pub(crate) centred: Centred<T, N>,
+    /// The way to where the plan begins, from a time of the plan on, s; none before the first tick of the hold.
+    pub(crate) gathering: Option<(T, MinimumJerk<T, N>)>,
     /// When the plan begins, on the clock of `tick`.
     start: T,
     /// Node of the plan's last sample.
@@ -90,6 +92,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
             payload: PayloadEstimate::new(),
             balance: Balance::new(),
             centred: Centred::new(),
+            gathering: None,
             start: T::ZERO,
             node: 0,
             shaping: T::ZERO,
@@ -119,6 +122,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         self.payload = PayloadEstimate::new();
         self.balance = Balance::new();
         self.centred = Centred::new();
+        self.gathering = None;
         self.supervisor.armed();
         Ok(())
     }
@@ -240,7 +244,10 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         let phase = self.supervisor.phase;
         let levelled = phase == Phase::PreLanding && t > jump.plan.touchdown - s.levelling;
         match phase {
-            Phase::Hold => self.hold(jump, t, inputs, &reference.torques),
+            Phase::Hold => {
+                self.gather(t, &measured.joints, &mut reference);
+                self.hold(jump, t, inputs, &reference.torques);
+            }
             Phase::Flight => {
                 if let Some(turning) = turning(&jump.plan, moment, measured) {
                     self.shaping = s.inertia_shaping.share(self.shaping, &turning, dt);

@@ -19,7 +19,9 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub max_silence: T,
     /// How far ahead of now the plan's torques are sampled, s: what holding over a tick and the slew limit delay them by.
     pub lookahead: T,
-    /// Time for which a robot that was given a jump comes to rest on the plan's torques, s: one that still sways seems to lean on other feet.
+    /// Time in which a robot that was given a jump moves from where it stands to where the plan begins, s.
+    pub gathering: T,
+    /// Time for which it then comes to rest on the plan's torques, s: one that still sways seems to lean on other feet.
     pub calming: T,
     /// Time during which the robot weighs itself and finds its centre of mass, before its trunk moves, s.
     pub weighing: T,
@@ -66,12 +68,13 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
 }
 
 impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
-    /// Least time for which a robot holds before the start of a plan, s: it comes to rest, weighs itself and computes the push-off's gains, then it moves its trunk.
+    /// Least time for which a robot holds before the start of a plan, s: it gathers its legs, comes to rest, weighs itself and computes the push-off's gains, then it moves its trunk.
     #[must_use]
     pub fn least_hold(&self, plan: &Plan<'_, T, N, F>) -> T {
         let ticks = u32::try_from(Regulator::ticks(plan) + 1).unwrap_or(u32::MAX);
         let gains = T::of(f64::from(ticks)) * self.period;
-        math::max(self.calming + self.weighing, gains) + self.centring.before()
+        let weighed = self.gathering + self.calming + self.weighing;
+        math::max(weighed, gains) + self.centring.before()
     }
 
     /// Settings for a robot of this size, by [dynamic similarity](rbd_core::similarity) from those of a robot of 13.741 kg with legs of
@@ -95,6 +98,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             max_age: of(0.010),
             max_silence: of(0.005),
             lookahead: of(0.001),
+            gathering: build.time(0.3),
             calming: build.time(0.4),
             weighing: build.time(0.15),
             max_payload: of(0.35),

@@ -85,18 +85,54 @@ fn run(
     last
 }
 
+/// Where the joints are when it is armed, the command begins; where the plan begins, it ends, and nothing moves faster than a minimum jerk does.
+#[test]
+fn legs_gather_to_where_the_plan_begins_without_a_jolt() {
+    let (mut workspace, nodes) = (Workspace::new(), nodes());
+    let mut m = machine(&mut workspace);
+    let mut ground = inputs();
+    let ways = core::array::from_fn::<f64, 12, _>(|i| 0.02 * (i as f64 - 5.5));
+    for (joint, way) in ground.measured.joints.iter_mut().zip(&ways) {
+        *joint -= way;
+    }
+    let settings =
+        Settings::<f64, 12, 4>::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch());
+    let gathering = (settings.gathering * 1e3).round() as i32;
+    run(&mut m, -1300, -1200, &ground);
+    m.arm(jump(&nodes), 0.0).unwrap();
+    let mut last = ground.measured.joints;
+    // Then the trunk begins to move.
+    for k in -1200..-250 {
+        run(&mut m, k, k + 1, &ground);
+        let command = m.command();
+        for (i, way) in ways.iter().enumerate() {
+            let (step, now) = (command.position[i] - last[i], command.position[i]);
+            let fastest = 1.875 * way.abs() / settings.gathering + 1e-9;
+            assert!(
+                step * way >= 0.0 && step.abs() <= fastest * 1e-3,
+                "{k}: {step}"
+            );
+            assert!(command.velocity[i] * way >= 0.0 && command.velocity[i].abs() <= fastest);
+            if k >= -1200 + gathering {
+                assert!((now - crouch::<f64>()[i]).abs() < 1e-12, "{k}: {now}");
+            }
+        }
+        last = command.position;
+    }
+}
+
 #[test]
 fn a_jump_goes_through_its_phases_and_another_may_follow() {
     let (mut workspace, nodes) = (Workspace::new(), nodes());
     let mut m = machine(&mut workspace);
     let (ground, air) = (inputs(), in_air());
     assert_eq!(
-        run(&mut m, -1100, -1000, &ground).unwrap().phase,
+        run(&mut m, -1300, -1200, &ground).unwrap().phase,
         Phase::Stand
     );
     m.arm(jump(&nodes), 0.0).unwrap();
     assert_eq!(m.arm(jump(&nodes), 0.0), Err(Refusal::NotStanding));
-    assert_eq!(run(&mut m, -1000, 0, &ground).unwrap().phase, Phase::Hold);
+    assert_eq!(run(&mut m, -1200, 0, &ground).unwrap().phase, Phase::Hold);
     assert_eq!(run(&mut m, 0, 200, &ground).unwrap().phase, Phase::Stance);
     assert_eq!(run(&mut m, 200, 350, &air).unwrap().phase, Phase::Flight);
     let waiting = run(&mut m, 350, 360, &air).unwrap();
@@ -111,9 +147,9 @@ fn a_jump_goes_through_its_phases_and_another_may_follow() {
         Work::Landing(landing::Outcome::Solved(_))
     ));
     assert_eq!(run(&mut m, 370, 700, &ground).unwrap().phase, Phase::Stand);
-    m.arm(jump(&nodes), 1.6).unwrap();
+    m.arm(jump(&nodes), 1.9).unwrap();
     assert_eq!(
-        run(&mut m, 700, 1601, &ground).unwrap().phase,
+        run(&mut m, 700, 1901, &ground).unwrap().phase,
         Phase::Stance
     );
 }
@@ -158,14 +194,14 @@ fn a_late_plan_and_a_plan_for_another_posture_are_refused_and_the_robot_stands_o
     let (mut workspace, nodes) = (Workspace::new(), nodes());
     let mut m = machine(&mut workspace);
     run(&mut m, 0, 100, &inputs());
-    for start in [0.05, 0.85, f64::NAN, f64::INFINITY] {
+    for start in [0.05, 1.15, f64::NAN, f64::INFINITY] {
         assert_eq!(m.arm(jump(&nodes), start), Err(Refusal::TooLate));
         assert_eq!(m.phase(), Phase::Stand);
     }
     let mut elsewhere = nodes;
     elsewhere[0].joints[7] += 0.2;
-    m.arm(jump(&elsewhere), 1.0).unwrap();
-    let tick = run(&mut m, 100, 1002, &inputs()).unwrap();
+    m.arm(jump(&elsewhere), 1.3).unwrap();
+    let tick = run(&mut m, 100, 1302, &inputs()).unwrap();
     assert_eq!(
         (tick.phase, tick.refusal),
         (Phase::Stand, Some(Refusal::Posture(7)))

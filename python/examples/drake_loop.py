@@ -19,7 +19,7 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 
 import saltus
 
-HOLD, SETTLE, STEP, PERIOD = 0.9, 2.0, 2.5e-4, 1e-3
+HOLD, SETTLE, STEP, PERIOD = 1.2, 2.0, 2.5e-4, 1e-3
 GRAVITY = np.array([0.0, 0.0, -9.81])
 A1 = Path(__file__).parents[2] / "models/a1.urdf"
 

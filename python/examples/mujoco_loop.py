@@ -11,7 +11,7 @@ import numpy as np
 
 import saltus
 
-HOLD, SETTLE = 0.9, 2.0
+HOLD, SETTLE = 1.2, 2.0
 A1 = Path(__file__).parents[2] / "models/a1.urdf"
 
 

@@ -17,7 +17,7 @@
 enum { JOINTS = 12, FEET = 4, RATIO = 10 };
 
 /* Times, s: standing before the machine is armed, from then to the start, and from the touchdown to the verdict. */
-static const double STANDS = 1.0, HOLDS = 0.9, SETTLES = 2.0;
+static const double STANDS = 1.0, HOLDS = 1.2, SETTLES = 2.0;
 /* Force at which a foot is certainly loaded, N. */
 static const double LOADED = 15.0;
 static const double DEGREE = 3.14159265358979323846 / 180.0;

@@ -166,10 +166,10 @@ static void refusals(void) {
     begin();
     expect("a start of no number", saltus_a1_machine_arm(machine, plan_begin, length, NAN, NULL), SALTUS_STATUS_TOO_LATE);
     expect("a start too near", saltus_a1_machine_arm(machine, plan_begin, length, clock_now + 0.1, NULL), SALTUS_STATUS_TOO_LATE);
-    expect("arm", saltus_a1_machine_arm(machine, plan_begin, length, clock_now + 0.9, NULL), SALTUS_STATUS_OK);
-    expect("arm again", saltus_a1_machine_arm(machine, plan_begin, length, clock_now + 0.9, NULL), SALTUS_STATUS_NOT_STANDING);
+    expect("arm", saltus_a1_machine_arm(machine, plan_begin, length, clock_now + 1.2, NULL), SALTUS_STATUS_OK);
+    expect("arm again", saltus_a1_machine_arm(machine, plan_begin, length, clock_now + 1.2, NULL), SALTUS_STATUS_NOT_STANDING);
     seen.joints[7] += 0.2;
-    while (clock_now < 0.91) {
+    while (clock_now < 1.21) {
         clock_now += 1e-3;
         expect("hold", saltus_a1_machine_tick(machine, clock_now, &seen, &tick), SALTUS_STATUS_OK);
     }
@@ -235,11 +235,11 @@ static void walk(void) {
     double tau[12];
     begin();
     unsigned long since = begin_cost();
-    SaltusStatus status = saltus_a1_machine_arm(machine, plan_begin, length, 0.9, NULL);
+    SaltusStatus status = saltus_a1_machine_arm(machine, plan_begin, length, 1.2, NULL);
     end_cost(&arm, since);
     expect("arm", status, SALTUS_STATUS_OK);
     print_cost("A1", "arm", arm);
-    for (int k = 1; clock_now < 0.9 + about.touchdown + 0.2; ++k) {
+    for (int k = 1; clock_now < 1.2 + about.touchdown + 0.2; ++k) {
         clock_now = 1e-3 * k;
         Cost cost = {0, 0};
         since = begin_cost();

@@ -157,7 +157,7 @@ pub extern "C" fn saltus_a1_machine_init(
 }
 
 /// Gives a standing robot a plan that begins at `start`, s, on the clock of `saltus_a1_machine_tick`; until then it holds the plan's first
-/// node. The start must be at least 0.15 s after the last tick, and more ticks than half of the plan's nodes: in these the gains of the push-off are
+/// node. The start must be at least 1.1 s after the last tick, and more ticks than half of the plan's nodes: in these the gains of the push-off are
 /// computed. Where that shows only at the start, since ticks were missed or none had told the time, the robot goes on standing and the tick's refusal is `TooLate`. The plan is what `saltus plan` writes as `plan.bin`; version,
 /// checksum, robot and every number of it are looked at, which takes as long as thirty ticks for 624 nodes. It is followed where it is: its bytes must
 /// stay there, unchanged, until the machine has another plan or is initialised anew. If the status is not `Ok`, nothing changes; a culprit

@@ -19,7 +19,7 @@ use rbd_core::{Model, Transform};
 use state_est::Foot;
 
 /// Time of standing still before the jump, s.
-pub const HOLD: f64 = 0.9;
+pub const HOLD: f64 = 1.2;
 /// Time after touchdown at which the robot must stand, s.
 pub const SETTLE: f64 = 2.0;
 /// Force at which a foot is certainly loaded, N.

@@ -20,7 +20,7 @@ using controller_interface::return_type;
 constexpr std::array<const char *, FEET> LEGS = {"FL", "FR", "RL", "RR"};
 constexpr std::array<const char *, 3> KINDS = {"hip", "thigh", "calf"};
 // Time from arming to the start, force at which a foot is certainly loaded, and damping where nothing else is commanded: s, N, N m s/rad.
-constexpr double HOLDS = 0.9, LOADED = 15.0, DAMPING = 2.0;
+constexpr double HOLDS = 1.2, LOADED = 15.0, DAMPING = 2.0;
 
 std::string joint(std::size_t i) {
     return std::string(LEGS[i / 3]) + "_" + KINDS[i % 3] + "_joint";

@@ -106,7 +106,7 @@ struct Beside {
         std::memcpy(seen.angular_velocity_b, found.angular_velocity_b, sizeof seen.angular_velocity_b);
         saltus_a1_machine_tick(machine, now, &seen, &tick);
         if (arms) {
-            saltus_a1_machine_arm(machine, plan.data(), plan.size(), now + 0.9, nullptr);
+            saltus_a1_machine_arm(machine, plan.data(), plan.size(), now + 1.2, nullptr);
         }
     }
 };
@@ -146,7 +146,7 @@ int main(int count, char **words) {
     hold("activate", controller.on_activate(state) == CallbackReturn::SUCCESS);
     beside.begin();
     int visited[SALTUS_PHASE_ABORT + 1] = {0};
-    for (int k = 1; 1e-3 * k < 0.9 + beside.about.touchdown + 0.2; ++k) {
+    for (int k = 1; 1e-3 * k < 1.2 + beside.about.touchdown + 0.2; ++k) {
         const double now = 1e-3 * k;
         hold("update", controller.update(rclcpp::Time(now), period) == return_type::OK);
         beside.update(now, k == 1);

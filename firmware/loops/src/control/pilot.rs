@@ -21,7 +21,7 @@ const LOADED: f64 = 15.0;
 /// Age at which the estimator is to coast, s.
 const LATE: f64 = 0.002;
 
-/// Estimator, machine and clock. The robot stands; when the operator wants the jump, it begins after 0.9 s.
+/// Estimator, machine and clock. The robot stands; when the operator wants the jump, it begins after 1.2 s.
 #[derive(Debug)]
 pub struct Pilot<T: Planned>
 where

@@ -16,7 +16,7 @@ use crate::{Label, Numbers, Real, Recorder};
 
 const SUBJECT: &str = "a1-jump";
 /// Time of standing before the jump, s.
-pub const HOLD: f64 = 0.9;
+pub const HOLD: f64 = 1.2;
 /// Time after the planned touchdown at which the run ends, s.
 const SETTLE: f64 = 0.8;
 /// Balls that touch the ground: feet and knees.
