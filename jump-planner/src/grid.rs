@@ -82,7 +82,7 @@ impl<'a> Grid<'a> {
 
     /// On the intervals of an earlier plan, from its motion and multipliers.
     pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Result<Self, String> {
-        let setup = Setup::on(task, srb, &kept.intervals, kept.lengths)?;
+        let setup = Setup::on(task, srb, &kept.intervals, (kept.lengths, kept.lift))?;
         let mut grid = Self::of(task, Timing::Given, setup);
         grid.stages.clone_from(&kept.stages);
         grid.torque_share = kept.torque_share;
@@ -98,6 +98,7 @@ impl<'a> Grid<'a> {
             contacts: self.setup.phases.iter().map(|p| p.contacts).collect(),
             intervals: self.setup.phases.iter().map(|p| p.intervals).collect(),
             lengths: self.setup.lengths,
+            lift: self.setup.lift,
             stages: self.stages,
             torque_share: self.torque_share,
             drawn,

@@ -19,6 +19,8 @@ pub struct Kept {
     pub(crate) intervals: Vec<usize>,
     /// Length of the intervals over the usual one.
     pub(crate) lengths: f64,
+    /// Height over the ground that feet keep on their way, m.
+    pub(crate) lift: f64,
     /// Nodes of the whole body's plan.
     pub(crate) stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
     /// Share of the torque limits.

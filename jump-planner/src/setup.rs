@@ -44,8 +44,10 @@ const OFF_SHARE: f64 = 0.65;
 const WIDTHS: f64 = 3.0;
 /// Least width of a smoothed edge, m.
 const NARROWEST: f64 = 1e-3;
-/// Height over the ground that feet keep on their way onto a box, m.
-const ONTO_RISE: f64 = 0.03;
+/// Height over the ground that feet keep on their way, m: ground that gives way would catch what hovers.
+const LIFT: f64 = 0.01;
+/// The same onto a box.
+const ONTO_LIFT: f64 = 0.03;
 /// Share of the round friction cone that the edges of a foot's pyramid may reach: between nodes forces leave it by up to 2 % of the
 /// largest.
 const CONE_SHARE: f64 = 0.95;
@@ -79,6 +81,8 @@ pub(crate) struct Setup<'a> {
     landing_intervals: usize,
     /// Length of the intervals over the usual one.
     pub(crate) lengths: f64,
+    /// Height over the ground that feet keep on their way, m.
+    pub(crate) lift: f64,
 }
 
 fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
@@ -120,15 +124,23 @@ impl<'a> Setup<'a> {
                 dt: duration / intervals,
             });
         }
-        Self::along(task, srb, phases, lengths)
+        // On long intervals begins the search for a jump that has no room for it.
+        let lift = if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
+            ONTO_LIFT
+        } else if lengths > 1.0 {
+            0.0
+        } else {
+            LIFT
+        };
+        Self::along(task, srb, phases, (lengths, lift))
     }
 
-    /// On as many intervals as there were in every phase, of so many usual lengths.
+    /// On as many intervals as there were in every phase, of so many usual lengths, with feet that keep so high, m.
     pub(crate) fn on(
         task: &'a Task,
         srb: &'a SrbPlan,
         intervals: &[usize],
-        lengths: f64,
+        (lengths, lift): (f64, f64),
     ) -> Result<Self, String> {
         let phases = task.problem.used_phases().iter();
         let phases = phases.zip(durations(srb)).zip(intervals);
@@ -137,7 +149,7 @@ impl<'a> Setup<'a> {
             intervals: *intervals,
             dt: duration / *intervals as f64,
         });
-        Self::along(task, srb, phases.collect(), lengths)
+        Self::along(task, srb, phases.collect(), (lengths, lift))
     }
 
     /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.
@@ -149,7 +161,7 @@ impl<'a> Setup<'a> {
         };
         let phases = self.phases.iter().map(shorter).collect();
         let lengths = self.lengths / parts as f64;
-        let mut split = Self::along(self.task, self.srb, phases, lengths)?;
+        let mut split = Self::along(self.task, self.srb, phases, (lengths, self.lift))?;
         split.landing_intervals = parts * self.landing_intervals;
         for (phase, duration) in split.phases.iter_mut().zip(durations) {
             phase.dt = duration / phase.intervals as f64;
@@ -157,12 +169,12 @@ impl<'a> Setup<'a> {
         Ok(split)
     }
 
-    /// Along the motion of the rigid body, on the intervals of these phases, of so many usual lengths.
+    /// Along the motion of the rigid body, on the intervals of these phases, of so many usual lengths, with feet that keep so high, m.
     fn along(
         task: &'a Task,
         srb: &'a SrbPlan,
         phases: Vec<Phase<f64, FOOT_COUNT>>,
-        lengths: f64,
+        (lengths, lift): (f64, f64),
     ) -> Result<Self, String> {
         let rigid = &task.problem;
         let landing_joints = task.robot.landing_joints(&task.start)?;
@@ -203,6 +215,7 @@ impl<'a> Setup<'a> {
             goal: pose(&goal, &landing_joints),
             landing_intervals: (POSED / (lengths * FLIGHT_DT)).ceil() as usize,
             lengths,
+            lift,
         })
     }
 
@@ -239,12 +252,7 @@ impl<'a> Setup<'a> {
             clearances: &self.clearances,
             // A foot that grazes the edge of a box turns the robot over.
             swing_height: task.robot.foot_radius,
-            swing_rise: self.rise(drawn)
-                + if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
-                    ONTO_RISE
-                } else {
-                    0.0
-                },
+            swing_rise: self.rise(drawn) + self.lift,
             edge: cautious(task, self.rise(drawn)),
             phases: &self.phases,
             reference: &self.reference,

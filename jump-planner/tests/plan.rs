@@ -5,7 +5,7 @@ use jump_planner::audit::check_values;
 use jump_planner::stored::open_for;
 use jump_planner::task::{SrbPlan, Task};
 use jump_planner::whole_body::WholeBodyPlan;
-use jump_planner::{Options, Step, plan, replan};
+use jump_planner::{Options, Step, plan, replan, state};
 use ocp_solver::{Progress, Status};
 use rbd_core::{JointLimits, Model};
 
@@ -80,4 +80,34 @@ fn what_passes_the_audit_is_opened_again_and_its_joints_keep_away_from_their_sto
     // Nodes are between the middles of intervals, where margins are kept: 0.1 rad.
     assert!(most < -0.08, "a joint is near its stop: {most}");
     check_values(&task.robot, &stored).unwrap();
+}
+
+/// What hovers a millimetre over the ground when it should be away is caught by ground that gives way, and turns the robot: feet go up at half a metre a
+/// second at least, until they are a centimetre high.
+#[test]
+fn feet_leave_the_ground_at_once() {
+    let go = |_, _: Option<&Progress<f64>>| ControlFlow::Continue(());
+    let task = Task::load("a1/lateral-down").unwrap();
+    let found = plan(&task, &Options::default(), go).unwrap();
+    let stored = open_for(&found.bytes, &task.robot).unwrap();
+    let takeoff = f64::from(stored.header().takeoff);
+    let nodes = stored.nodes().map(|node| node.node());
+    let leaving: Vec<_> = nodes
+        .filter(|node| node.time > takeoff + 1e-6 && node.time < takeoff + 0.03)
+        .collect();
+    assert!(leaving.len() > 4);
+    for node in leaving {
+        let (q, _) = state(&node);
+        let poses = task.robot.poses(&q);
+        for foot in &task.robot.feet {
+            let height = poses.frame(foot).translation.z - task.robot.foot_radius;
+            let least = (0.5 * (node.time - takeoff)).min(0.01);
+            // Rows hold in the middle of intervals.
+            assert!(
+                height > least - 1e-3,
+                "{:.4} s: {height}",
+                node.time - takeoff
+            );
+        }
+    }
 }
