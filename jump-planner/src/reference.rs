@@ -25,6 +25,7 @@ const POSING_SHARE: f64 = 0.5;
 const FRICTION_SMOOTHING: f64 = 0.1;
 
 /// The reference and its margins.
+#[derive(Clone)]
 pub struct Reference {
     /// The container: what the machine flies. All else is read from it, for judges and reports.
     pub bytes: Vec<u8>,

@@ -134,10 +134,14 @@ class Jump:
     """What the plan may use."""
     weights: Weights = field(default_factory=Weights)
     """Weights of the costs."""
+    feet_m: Sequence[Sequence[float]] | None = None
+    """Where FL, FR, RL and RR stand at the start, seen from below the centre of mass, m, two numbers each; below the hips without it."""
 
     def toml(self) -> str:
         """As a task file, for A1."""
         head = ['robot = "a1"', f"goal_m = {_value(self.goal_m)}"]
+        if self.feet_m is not None:
+            head.append(f"feet_m = {_value(self.feet_m)}")
         if self.trunk_may_touch:
             head.append("trunk_may_touch = true")
         names = ("turn", "box", "total", "limits", "weights")

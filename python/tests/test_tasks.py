@@ -40,6 +40,7 @@ def test_every_key_of_a_task_file_has_its_field() -> None:
             Phase(["FL", "FR", "RL", "RR"], 0.5, 50, 0.1, 0.6, 0.0),
             Phase([], 0.4, 40, 0.3, 0.6, 90.0),
         ],
+        feet_m=[(0.18, 0.15), (0.18, -0.15), (-0.18, 0.14), (-0.18, -0.14)],
         turn=Turn((0, 0, 1), 90.0),
         box=Box(0.3, "x", 1, beyond_feet_m=0.1),
         trunk_may_touch=True,
@@ -49,6 +50,7 @@ def test_every_key_of_a_task_file_has_its_field() -> None:
     )
     task = jump.task()
     assert np.allclose(task.goal, [0.5, 0.0, -0.3])
+    assert np.allclose(task.robot.feet(task.start)[:, :2], jump.feet_m)
     assert task.heading == pytest.approx(np.pi / 2)
 
 

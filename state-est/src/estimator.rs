@@ -132,6 +132,17 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
         true
     }
 
+    /// Where the feet stand in the world, m: the middles of balls, or the points of soles. None unless every foot stands.
+    #[must_use]
+    pub fn feet(&self) -> Option<[Vector3<T>; F]> {
+        let mut feet_w = [Vector3::zeros(); F];
+        for (foot, mean) in feet_w.iter_mut().zip(self.filter.mean.iter().skip(FEET)) {
+            *foot = *mean;
+        }
+        let stands = !self.anchored.contains(&false);
+        stands.then_some(feet_w)
+    }
+
     fn is_finite(&self) -> bool {
         let vectors = [&self.bias_b, &self.force_b, &self.rate_b];
         self.filter.is_finite()

@@ -79,6 +79,24 @@ proptest! {
         }
     }
 
+    /// Feet stand where the joints have them under the base, and none where one does not stand.
+    #[test]
+    fn the_feet_are_where_they_stand(at in vector(3.0), first in -3.1..3.1_f64, tilt in -0.3..0.3_f64, lifted in 0..4_usize) {
+        let (world, (estimator, mut state)) = standing(at, first, tilt, [1.0; 4]);
+        let base = go_on(&world, &estimator, &mut state, [1.0; 4], 30);
+        let mut there = world;
+        there.q.base = base.base;
+        let feet_w = state.feet().unwrap();
+        for (foot_w, foot) in feet_w.iter().zip(feet()) {
+            // It sways, and what is believed of a foot is a mean.
+            prop_assert!((foot_w - there.pose_of(&foot.frame).translation).norm() < 5e-3);
+        }
+        let mut evidence = [1.0; 4];
+        evidence[lifted] = 0.0;
+        let (_, (_, state)) = standing(at, first, tilt, evidence);
+        prop_assert_eq!(state.feet(), None);
+    }
+
     /// A foot in the air, or a number that is none, changes nothing.
     #[test]
     fn who_does_not_stand_stays_where_he_is(foot in 0..4_usize, axis in 0..3_usize, bad in prop_oneof![Just(f64::NAN), Just(f64::INFINITY)]) {

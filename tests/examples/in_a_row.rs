@@ -1,18 +1,19 @@
-//! Ten jumps in a row in the lab: `cargo run --release -p saltus-tests --example in_a_row -- [SEEDS] [FIRST] [TASK...]`, and with MuJoCo
-//! `cargo xtask mujoco run --release -p saltus-tests --features mujoco --example in_a_row -- [SEEDS] [FIRST] [TASK...]`.
+//! Ten jumps in a row in the lab: `cargo run --release -p saltus-tests --example in_a_row -- [SEEDS] [FIRST] [TASK...] [--stored]`, and with MuJoCo
+//! `cargo xtask mujoco run --release -p saltus-tests --features mujoco --example in_a_row -- [SEEDS] [FIRST] [TASK...] [--stored]`.
 //!
 //! A row for each of SEEDS (20) labs from seed FIRST (1) on: the same robot, motors, sensors and ground for ten jumps, the TASKs (lateral, spin-90,
-//! diagonal, forward-60 and barrel-roll of A1) over and over. Each jump begins where the last one has ended. Then how many robots fell, and how many
-//! jumps were on target.
+//! diagonal, forward-60 and barrel-roll of A1) over and over. Each jump begins where the last one has ended, planned from where the robot knows its feet;
+//! with `--stored`, or where that finds no plan, as it is stored for feet below the hips. Then how many robots fell, and how many jumps were on target.
 #![allow(missing_docs, reason = "a program")]
 
 use core::ops::ControlFlow;
 use jump_lab::Sim;
 use jump_lab::lab::{Disturbance, Lab};
 use jump_lab::quadruped::execute::Trial;
-use jump_lab::quadruped::{Planned, run_in_a_row};
+use jump_lab::quadruped::{FOOT_COUNT, Planned, run_in_a_row};
 use jump_planner::task::Task;
 use jump_planner::{Options, plan};
+use nalgebra::Vector3;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 /// Jumps of a row.
@@ -47,6 +48,19 @@ fn jumps(plans: &[(String, Vec<u8>)]) -> Result<Vec<Planned>, String> {
         .collect()
 }
 
+/// The jump of a plan, planned from where the feet stand.
+fn planned_from(stored: &Planned, feet_w: &[Vector3<f64>; FOOT_COUNT]) -> Result<Planned, String> {
+    let task = stored.task.from_feet(feet_w)?;
+    let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()))?;
+    match found.answer {
+        None => Planned::open(&stored.task.robot, &found.bytes, |_| Ok::<_, String>(task)),
+        Some(answer) => Err(format!(
+            "{}: {}: {}",
+            task.name, answer.status, answer.because
+        )),
+    }
+}
+
 fn main() -> Result<(), String> {
     let mut words = std::env::args().skip(1);
     let mut number = |default: u64| match words.next() {
@@ -57,6 +71,8 @@ fn main() -> Result<(), String> {
     };
     let (seeds, first) = (number(20)?, number(1)?);
     let mut names: Vec<String> = words.collect();
+    let as_stored = names.iter().any(|name| name == "--stored");
+    names.retain(|name| name != "--stored");
     if names.is_empty() {
         names = TASKS.map(str::to_owned).to_vec();
     }
@@ -78,9 +94,20 @@ fn main() -> Result<(), String> {
                 seed,
                 ..Trial::nominal(sim)
             };
-            let runs = run_in_a_row(&jumps, &trial)?;
-            let judged = jumps.iter().zip(&runs).map(|(jump, run)| jump.judge(run));
-            let end = runs.last().map(|run| (run.final_phase, run.fault));
+            let mut next = |i: usize, feet_w: Option<&[Vector3<f64>; FOOT_COUNT]>| {
+                let stored = jumps.get(i);
+                let anew = feet_w
+                    .filter(|_| !as_stored)
+                    .zip(stored)
+                    .map(|(feet_w, stored)| {
+                        planned_from(stored, feet_w)
+                            .inspect_err(|why| eprintln!("{seed}, jump {i} as it is stored: {why}"))
+                    });
+                Ok(anew.and_then(Result::ok).or_else(|| stored.cloned()))
+            };
+            let runs = run_in_a_row(&mut next, JUMPS, &trial)?;
+            let judged = runs.iter().map(|(jump, run)| jump.judge(run));
+            let end = runs.last().map(|(_, run)| (run.final_phase, run.fault));
             Ok((seed, judged.collect::<Vec<_>>(), end))
         })
         .collect();

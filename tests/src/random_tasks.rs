@@ -24,6 +24,7 @@ pub fn tasks(robot: &str) -> impl Strategy<Value = TaskFile> + use<> {
             robot: robot.clone(),
             lock: Vec::new(),
             goal_m,
+            feet_m: None,
             turn,
             r#box,
             trunk_may_touch: false,

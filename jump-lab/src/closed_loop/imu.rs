@@ -95,6 +95,11 @@ impl<const N: usize, const F: usize, const S: usize> Observer<N, F, S> {
         self.state.stand_at(middle_w, heading)
     }
 
+    /// As [`State::feet`].
+    pub(super) fn feet(&self) -> Option<[Vector3<f64>; F]> {
+        self.state.feet()
+    }
+
     /// One millisecond: samples the true motion with noise and estimates.
     pub(super) fn step<M: Tree<f64, N>>(
         &mut self,

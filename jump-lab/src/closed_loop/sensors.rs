@@ -92,6 +92,12 @@ impl<R: Tree<f64, N>, const N: usize, const F: usize, const C: usize, const E: u
         stands
     }
 
+    /// Where the feet stand, as [`state_est::State::feet`] has it.
+    #[must_use]
+    pub fn feet_w(&self) -> Option<[Vector3<f64>; F]> {
+        self.observer.feet()
+    }
+
     /// Joint positions and speeds as the encoders say now.
     pub fn encoders(&mut self, world: &Ground<N, C>) -> ([f64; N], [f64; N]) {
         let (q, v) = (world.configuration(), world.velocity());

@@ -3,7 +3,7 @@
 use super::log::Sample;
 use super::measure::Measure;
 use super::series::run_all;
-use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, World};
+use super::{FOOT_COUNT, JOINTS, OWNERS, Observed, Planned, World};
 use crate::Sim;
 use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
 use crate::lab::{Disturbance, Interface};
@@ -332,8 +332,15 @@ pub fn run_watched(
     mut watch: impl FnMut(&landing::Workspace<f64, 12, 4>),
 ) -> Result<Run, String> {
     let watched = (&mut tamper as &mut Tamper<'_>, &mut watch as &mut Watch<'_>);
-    let runs = run_all(&[(task, reference)], &trial, watched, &mut progress)?;
-    runs.into_iter().next().ok_or_else(|| "no jump".to_owned())
+    let planned = Planned {
+        task: task.clone(),
+        reference: reference.clone(),
+    };
+    let mut first = Some(planned);
+    let mut next = |_: usize, _: Option<&[Vector3<f64>; FOOT_COUNT]>| Ok(first.take());
+    let flown = run_all(&mut next, 1, &trial, watched, &mut progress)?;
+    let run = flown.into_iter().next().map(|(_, run)| run);
+    run.ok_or_else(|| "no jump".to_owned())
 }
 
 /// A sample of a world at time `t` of the plan.

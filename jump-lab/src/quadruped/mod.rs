@@ -15,7 +15,7 @@ pub mod programs;
 mod series;
 
 pub use planned::Planned;
-pub use series::run_in_a_row;
+pub use series::{Next, run_in_a_row};
 
 pub use jump_planner::robot::{OWNER_COUNT as OWNERS, State};
 pub use jump_planner::{FOOT_COUNT, JOINTS, Node, state};

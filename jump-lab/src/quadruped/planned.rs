@@ -10,6 +10,7 @@ use jump_planner::stored;
 use jump_planner::task::Task;
 
 /// A task with its plan.
+#[derive(Clone)]
 pub struct Planned {
     /// What is wanted, by which runs are judged.
     pub task: Task,

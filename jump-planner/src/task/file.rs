@@ -46,6 +46,8 @@ pub struct TaskFile {
     pub lock: Vec<String>,
     /// Displacement of the centre of mass, m.
     pub goal_m: [f64; 3],
+    /// Where the feet FL, FR, RL, RR stand at the start, seen from below the centre of mass, m; below the hips without it.
+    pub feet_m: Option<[[f64; 2]; 4]>,
     /// Turn of the body; without it the body ends as it began.
     pub turn: Option<TurnTable>,
     /// A box to jump off or onto.

@@ -6,6 +6,7 @@
 mod attempt;
 pub mod file;
 mod guess;
+mod stance;
 mod values;
 
 use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
@@ -15,8 +16,7 @@ use crate::range::{Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
 use ocp_solver::{Stage, Status};
-use rbd_core::Transform;
-use srb_opt::{Edge, Exponential, Foot, Phase, Problem, Reference, Weights};
+use srb_opt::{Edge, Exponential, Phase, Problem, Reference, Weights};
 use std::path::Path;
 
 /// Most contact phases of a task.
@@ -24,8 +24,6 @@ pub const PHASES: usize = 6;
 const NX: usize = 12 + PHASES;
 const NU: usize = 12;
 const NI: usize = srb_opt::row_capacity(FOOT_COUNT, PHASES);
-/// Height of the hips over the feet at the start, as a share of the leg.
-const STAND: f64 = 0.625;
 /// Height of the centre of mass at the planned touchdown over its height at the start, as a share of the leg: legs reach
 /// for the ground.
 const LANDING_RISE: f64 = 0.1;
@@ -160,11 +158,18 @@ impl Task {
                 file.lock
             ),
         )?;
-        let (start, start_w) = standing(&robot).map_err(|what| ("robot".to_owned(), what))?;
+        let points_w = stance::points(file, &robot)?;
+        let culprit = if file.feet_m.is_some() {
+            "feet_m"
+        } else {
+            "robot"
+        };
+        let standing = stance::standing(&robot, &points_w);
+        let (start, start_w) = standing.map_err(|what| (culprit.to_owned(), what))?;
         let com_b = start_w - start.base.translation;
         let leg = robot.leg_length;
         let (axis, angle) = turn(file)?;
-        let edge = edge(file, &robot)?;
+        let edge = edge(file, &points_w)?;
         let total = file.total;
         check_total(total.min_s, total.max_s)?;
         check_height(&goal, edge)?;
@@ -175,10 +180,7 @@ impl Task {
             inertia_b: robot.locked_inertia(&start),
             gravity: 9.81,
             // The problem's body frame sits at the centre of mass, the robot's at the trunk's middle.
-            feet: core::array::from_fn(|i| Foot {
-                pos_wf: Vector3::new(robot.hips[i].x, robot.hips[i].y, 0.0),
-                nominal_b: robot.hips[i] - com_b,
-            }),
+            feet: stance::feet(&robot, &points_w, &com_b),
             reach_lower: Vector3::new(-FRONT_REACH, -SIDE_REACH, -LONGEST_LEG) * leg,
             reach_upper: Vector3::new(FRONT_REACH, SIDE_REACH, -SHORTEST_LEG) * leg,
             friction: limits.friction * limits.friction_share,
@@ -278,23 +280,6 @@ fn robot_error(task: &str, robot: &Path, error: RobotError) -> TaskError {
     }
 }
 
-/// The robot standing at the origin, and its centre of mass.
-fn standing(robot: &Quadruped) -> Result<(State, Vector3<f64>), String> {
-    let points = robot.hips.map(|hip| Vector3::new(hip.x, hip.y, 0.0));
-    // Paper A's robot stands with its centre of mass, not its hips, at this height; there the two are 2 mm apart.
-    let mut com_w = Vector3::z() * (STAND * robot.leg_length);
-    if !robot.stands_by_com() {
-        let hip = robot.hips.iter().map(|hip| hip.z).sum::<f64>() / robot.hips.len() as f64;
-        let height = STAND * robot.leg_length + robot.foot_radius - hip;
-        let base = Transform::new(
-            nalgebra::Rotation3::identity(),
-            Vector3::new(0.0, 0.0, height),
-        );
-        com_w.z = robot.com(&robot.near(base)).z;
-    }
-    Ok((robot.stand(&com_w, &points)?, com_w))
-}
-
 fn turn(file: &TaskFile) -> Result<(Vector3<f64>, f64), Unusable> {
     let Some(turn) = file.turn else {
         return Ok((Vector3::z(), 0.0));
@@ -307,7 +292,10 @@ fn turn(file: &TaskFile) -> Result<(Vector3<f64>, f64), Unusable> {
     Ok((axis / length, turn.angle_deg.to_radians()))
 }
 
-fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusable> {
+fn edge(
+    file: &TaskFile,
+    points_w: &[Vector3<f64>; FOOT_COUNT],
+) -> Result<Option<Edge<f64>>, Unusable> {
     let Some(table) = file.r#box else {
         return Ok(None);
     };
@@ -318,7 +306,7 @@ fn edge(file: &TaskFile, robot: &Quadruped) -> Result<Option<Edge<f64>>, Unusabl
         Across::Y => 1,
     };
     let sign = f64::from(table.side);
-    let nearest = robot.hips.iter().map(|hip| sign * hip[axis]);
+    let nearest = points_w.iter().map(|point| sign * point[axis]);
     let nearest = nearest.fold(f64::NEG_INFINITY, f64::max);
     let (key, given, from) = match (table.beyond_feet_m, table.distance_m) {
         (Some(beyond), None) => ("box.beyond_feet_m", beyond, nearest),

@@ -122,6 +122,7 @@ pub(super) fn run<T: Real, R: Recorder, M: Tree<T, 12>>(
     };
     let mut state = State::new(&estimator, model, q);
     let _ = estimator.step(model, &mut state, Some(&calm), T::of(1e-3));
+    on.call("State::feet", &mut state, |state| state.feet());
     let place = (&mut state, Vector3::repeat(T::HALF));
     on.call("State::stand_at", place, |(state, middle_w)| {
         state.stand_at(&middle_w, T::HALF)
