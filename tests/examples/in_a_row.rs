@@ -27,38 +27,15 @@ const TASKS: [&str; 5] = [
     "a1/barrel-roll",
 ];
 
-/// The bytes of the plan of a task.
-fn bytes(name: &str) -> Result<Vec<u8>, String> {
-    let task = Task::load(name).map_err(|error| error.to_string())?;
+/// A task with its plan.
+fn planned(task: Task) -> Result<Planned, String> {
     let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()))?;
-    match found.answer {
-        None => Ok(found.bytes),
-        Some(answer) => Err(format!("{name}: {}: {}", answer.status, answer.because)),
+    if let Some(answer) = found.answer {
+        let (name, status, why) = (task.name, answer.status, answer.because);
+        return Err(format!("{name}: {status}: {why}"));
     }
-}
-
-/// The jumps of a row, made anew from the bytes of their plans.
-fn jumps(plans: &[(String, Vec<u8>)]) -> Result<Vec<Planned>, String> {
-    let again = plans.iter().cycle().take(JUMPS);
-    again
-        .map(|(name, bytes)| {
-            let robot = Task::load(name).map_err(|error| error.to_string())?.robot;
-            Planned::open(&robot, bytes, Task::load)
-        })
-        .collect()
-}
-
-/// The jump of a plan, planned from where the feet stand.
-fn planned_from(stored: &Planned, feet_w: &[Vector3<f64>; FOOT_COUNT]) -> Result<Planned, String> {
-    let task = stored.task.from_feet(feet_w)?;
-    let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()))?;
-    match found.answer {
-        None => Planned::open(&stored.task.robot, &found.bytes, |_| Ok::<_, String>(task)),
-        Some(answer) => Err(format!(
-            "{}: {}: {}",
-            task.name, answer.status, answer.because
-        )),
-    }
+    let robot = task.robot;
+    Planned::open(&robot, &found.bytes, |_| Ok::<_, String>(task))
 }
 
 fn main() -> Result<(), String> {
@@ -81,11 +58,11 @@ fn main() -> Result<(), String> {
     } else {
         Sim::Native
     };
-    let plans: Result<Vec<_>, String> = names
-        .into_iter()
-        .map(|name| bytes(&name).map(|bytes| (name, bytes)))
+    let found: Result<Vec<_>, String> = names
+        .iter()
+        .map(|name| planned(Task::load(name).map_err(|error| error.to_string())?))
         .collect();
-    let jumps = jumps(&plans?)?;
+    let plans = found?;
     let rows: Result<Vec<_>, String> = (first..first + seeds)
         .into_par_iter()
         .map(|seed| {
@@ -95,15 +72,15 @@ fn main() -> Result<(), String> {
                 ..Trial::nominal(sim)
             };
             let mut next = |i: usize, feet_w: Option<&[Vector3<f64>; FOOT_COUNT]>| {
-                let stored = jumps.get(i);
-                let anew = feet_w
-                    .filter(|_| !as_stored)
-                    .zip(stored)
-                    .map(|(feet_w, stored)| {
-                        planned_from(stored, feet_w)
-                            .inspect_err(|why| eprintln!("{seed}, jump {i} as it is stored: {why}"))
-                    });
-                Ok(anew.and_then(Result::ok).or_else(|| stored.cloned()))
+                let stored = &plans[i % plans.len()];
+                let anew = feet_w.filter(|_| !as_stored).map(|feet_w| {
+                    let task = stored.task.from_feet(feet_w);
+                    task.and_then(planned)
+                        .inspect_err(|why| eprintln!("{seed}, jump {i} as it is stored: {why}"))
+                });
+                Ok(Some(
+                    anew.and_then(Result::ok).unwrap_or_else(|| stored.clone()),
+                ))
             };
             let runs = run_in_a_row(&mut next, JUMPS, &trial)?;
             let judged = runs.iter().map(|(jump, run)| jump.judge(run));

@@ -162,16 +162,20 @@ mod tests {
     use jump_planner::task::Task;
     use jump_planner::{Options, plan};
 
-    fn planned(name: &str) -> Planned {
-        let task = Task::load(name).unwrap();
+    fn planned(task: Task) -> Planned {
         let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()));
-        Planned::open(&task.robot, &found.unwrap().bytes, Task::load).unwrap()
+        let robot = task.robot;
+        Planned::open(&robot, &found.unwrap().bytes, |_| Ok::<_, String>(task)).unwrap()
+    }
+
+    fn built_in(name: &str) -> Planned {
+        planned(Task::load(name).unwrap())
     }
 
     /// Of jumps that each move and turn the robot: the first is the one that it is alone, and each is on target from where the last one has ended.
     #[test]
     fn each_jump_begins_where_the_last_has_ended() {
-        let jumps = ["a1/lateral", "a1/spin-90", "a1/lateral"].map(planned);
+        let jumps = ["a1/lateral", "a1/spin-90", "a1/lateral"].map(built_in);
         let trial = Trial::nominal(Sim::Native);
         let runs = run_in_a_row(&mut |i, _| Ok(jumps.get(i).cloned()), 3, &trial).unwrap();
         assert_eq!(runs.len(), 3);
@@ -194,14 +198,12 @@ mod tests {
     /// It is planned from where they are, what is armed moves the trunk over them and not them, and it is on target.
     #[test]
     fn feet_of_a_robot_that_has_landed_stay_until_it_jumps() {
-        let stored = planned("a1/lateral");
-        let mut next = |i: usize, feet_w: Option<&[Vector3<f64>; FOOT_COUNT]>| {
-            let Some(feet_w) = feet_w else {
-                return Ok((i == 0).then(|| stored.clone()));
-            };
-            let task = stored.task.from_feet(feet_w)?;
-            let found = plan(&task, &Options::default(), |_, _| ControlFlow::Continue(()))?;
-            Planned::open(&stored.task.robot, &found.bytes, |_| Ok::<_, String>(task)).map(Some)
+        let stored = built_in("a1/lateral");
+        let mut next = |_: usize, feet_w: Option<&[Vector3<f64>; FOOT_COUNT]>| {
+            Ok(Some(match feet_w {
+                Some(feet_w) => planned(stored.task.from_feet(feet_w)?),
+                None => stored.clone(),
+            }))
         };
         let runs = run_in_a_row(&mut next, 2, &Trial::nominal(Sim::Native)).unwrap();
         let (jump, run) = runs.get(1).unwrap();
@@ -234,7 +236,7 @@ mod tests {
 
     #[test]
     fn an_edge_is_refused_by_name() {
-        let jumps = ["a1/lateral", "a1/lateral-down"].map(planned);
+        let jumps = ["a1/lateral", "a1/lateral-down"].map(built_in);
         let refused = run_in_a_row(
             &mut |i, _| Ok(jumps.get(i).cloned()),
             2,

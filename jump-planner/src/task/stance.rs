@@ -91,7 +91,7 @@ mod tests {
         robot.feet.map(|foot| poses.frame(&foot).translation)
     }
 
-    /// The file and the call make the same task, which stands on those feet with its centre of mass where it was, and nothing else of it is another.
+    /// The file and the call make the same task, which stands on those feet with its centre of mass where it was.
     #[test]
     fn a_task_begins_where_the_feet_are() {
         let (mut file, _) = TaskFile::load("a1/diagonal").unwrap();
