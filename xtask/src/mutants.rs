@@ -104,6 +104,10 @@ fn measure(name: &str, args: &Args) -> Result<Outcome> {
     cargo.env_remove("CARGO_TARGET_DIR");
     // In builds as in tests: without them, examples would be built for every mutant.
     cargo.args(["--cargo-arg=--lib", "--cargo-arg=--test=all"]);
+    // A mutant is caught by the first test that fails: libtest would run all others as well.
+    cargo.args(["--profile=mutants", "--test-tool=nextest"]);
+    // Tests that take three times as long as they should never end.
+    cargo.arg("--timeout-multiplier=3");
     let status = cargo.status().context("cannot start cargo mutants")?;
     // 2: some survived; 3: some did not end.
     ensure!(
