@@ -217,9 +217,9 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         put(&mut c.d, k, first + signed);
         let columns = self.j.get_mut(k..self.dim).unwrap_or(&mut []);
         let Some(first) = columns.first() else { return };
-        let mut shares = *first;
-        for (f, z) in shares.iter_mut().zip(z) {
-            *f = (*z + signed * *f) * share;
+        let mut shares = [T::ZERO; N];
+        for (f, (z, first)) in shares.iter_mut().zip(z.iter().zip(first)) {
+            *f = (*z + signed * *first) * share;
         }
         sub_outer(columns, span(&c.d, k, self.dim), &shares, 0, N);
         if let Some(column) = self.inverse.get_mut(k) {
@@ -282,20 +282,18 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         c.measure(last, self.dim);
     }
 
-    /// v ← R⁻¹v.
+    /// r ← R⁻¹d₁, d₁ being the first entries of d.
     #[inline]
-    pub(crate) fn solve(&self, v: &mut [T; N]) {
-        let shares = *v;
+    pub(crate) fn solve(&self, d: &[T; N], r: &mut [T; N]) {
         let columns = head(&self.inverse, self.len);
-        sum_triangle(v, head(&shares, self.len), columns);
+        sum_triangle(r, head(d, self.len), columns);
     }
 
     /// v ← R⁻ᵀv.
     pub(crate) fn solve_transposed(&self, v: &mut [T; N]) {
         let len = self.len;
-        let whole = *v;
         let mut known = [T::ZERO; N];
-        copy(head_mut(&mut known, len), &whole);
+        copy(head_mut(&mut known, len), v);
         dots(
             head_mut(v, len),
             head(&self.inverse, len),

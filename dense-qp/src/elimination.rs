@@ -9,8 +9,8 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, copy, dots, floor4, head, max_abs, put, row, row_mut};
-use crate::kernels::{span, span_mut, sub_rows, sub_scaled, sum_rows};
+use crate::kernels::{at, ceil4, copy, dots, floor4, head, largest_square, max_abs, put, row};
+use crate::kernels::{row_mut, span, span_mut, sub_rows, sub_scaled, sum_rows};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
@@ -174,13 +174,10 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         let (rank, free) = (self.rank, self.free());
         let rhs = self.eliminate(work, shares, limit);
         // The pivot is the entry that is largest for variables measured by their own curvature; those that are taken have no scale.
-        let squares = || work.iter().zip(&*scales).map(|(w, scale)| *w * *w * *scale);
-        let best = squares().fold(
-            T::ZERO,
-            |best, square| if square > best { square } else { best },
-        );
-        let pivot = squares().position(|square| square == best);
-        let pivot = pivot.unwrap_or(0).min(free.saturating_sub(1));
+        let open = head(work, free);
+        let best = largest_square(open, head(scales, free));
+        let mut squares = open.iter().zip(&*scales).map(|(w, scale)| *w * *w * *scale);
+        let pivot = squares.position(|square| square == best).unwrap_or(0);
         let size = max_abs(a);
         let least = row_tolerance::<T>() * size;
         let is_left = |w: T| w > least;

@@ -8,7 +8,8 @@
 use so3::Scalar;
 
 /// aᵀb over the shorter length, in four interleaved partial sums (a fixed order, so that host and
-/// target round alike, and one the compiler can vectorise).
+/// target round alike, and one the compiler can vectorise: a sum of their own for the entries beyond whole blocks would make it
+/// gather single entries instead).
 #[inline(always)]
 pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     let n = a.len().min(b.len());
@@ -22,11 +23,10 @@ pub(crate) fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
         s[2] += p[2] * q[2];
         s[3] += p[3] * q[3];
     }
-    let mut rest = T::ZERO;
-    for (p, q) in a1.iter().zip(b1) {
-        rest += *p * *q;
+    for (s, (p, q)) in s.iter_mut().zip(a1.iter().zip(b1)) {
+        *s += *p * *q;
     }
-    ((s[0] + s[2]) + (s[1] + s[3])) + rest
+    (s[0] + s[2]) + (s[1] + s[3])
 }
 
 /// Σ aᵢxᵢ over columns `from..to`, few of them: one after the other.
@@ -323,13 +323,12 @@ pub(crate) fn dot_in<T: Scalar, const N: usize>(
             s[3] += p[3] * q[3];
         }
     }
-    let mut rest = T::ZERO;
     if to == N {
-        for (p, q) in a1.iter().zip(b1) {
-            rest += *p * *q;
+        for (s, (p, q)) in s.iter_mut().zip(a1.iter().zip(b1)) {
+            *s += *p * *q;
         }
     }
-    ((s[0] + s[2]) + (s[1] + s[3])) + rest
+    (s[0] + s[2]) + (s[1] + s[3])
 }
 
 /// Products of x with rows, two at a time, over columns `from..to`; these are multiples of 4 (or `to` = N). As [`dot_in`] of each.
@@ -375,16 +374,16 @@ fn dot_pair<T: Scalar, const N: usize>(
             }
         }
     }
-    let (mut s_rest, mut t_rest) = (T::ZERO, T::ZERO);
     if to == N {
         let rest = a.as_chunks::<4>().1.iter().zip(b.as_chunks::<4>().1);
-        for ((a, b), x) in rest.zip(x.as_chunks::<4>().1) {
-            s_rest += *a * *x;
-            t_rest += *b * *x;
+        let sums = s.iter_mut().zip(&mut t);
+        for ((s, t), ((a, b), x)) in sums.zip(rest.zip(x.as_chunks::<4>().1)) {
+            *s += *a * *x;
+            *t += *b * *x;
         }
     }
-    let sum = |s: [T; 4], rest: T| ((s[0] + s[2]) + (s[1] + s[3])) + rest;
-    (sum(s, s_rest), sum(t, t_rest))
+    let sum = |s: [T; 4]| (s[0] + s[2]) + (s[1] + s[3]);
+    (sum(s), sum(t))
 }
 
 /// max |aᵢ| (NaN entries are skipped), in four lanes.
@@ -407,6 +406,23 @@ pub(crate) fn max_abs<T: Scalar>(a: &[T]) -> T {
     }
     let rest = a1.iter().fold(T::ZERO, |high, v| larger(high, *v));
     high.iter().fold(rest, |high, v| larger(high, *v))
+}
+
+/// max aᵢ²fᵢ (NaN entries are skipped), in four lanes, as [`max_abs`].
+#[inline(always)]
+pub(crate) fn largest_square<T: Scalar>(a: &[T], f: &[T]) -> T {
+    let n = a.len().min(f.len());
+    let (a4, a1) = head(a, n).as_chunks::<4>();
+    let (f4, f1) = head(f, n).as_chunks::<4>();
+    let larger = |high: T, v: T| if v > high { v } else { high };
+    let mut high = [T::ZERO; 4];
+    for (a, f) in a4.iter().zip(f4) {
+        for k in 0..4 {
+            high[k] = larger(high[k], a[k] * a[k] * f[k]);
+        }
+    }
+    let rest = a1.iter().zip(f1).map(|(a, f)| *a * *a * *f);
+    rest.chain(high).fold(T::ZERO, larger)
 }
 
 /// Whether every entry is neither NaN nor infinite.

@@ -270,7 +270,8 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 (mark, stalls) = (merit, 0);
             } else {
                 stalls += 1;
-                if self.is_within(&rest, NOISE) {
+                let noise = if stalls > 4 { SETTLED } else { NOISE };
+                if self.is_within(&rest, noise) {
                     return Ok(Status::Solved);
                 }
             }
@@ -281,14 +282,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 }
             }
             if stalls > patience {
-                // The last look at the reduced gradient has overwritten it.
-                self.reduce_gradient();
-                let is_settled = self.is_within(&rest, SETTLED);
-                return Ok(if is_settled {
-                    Status::Solved
-                } else {
-                    Status::Numerical
-                });
+                return Ok(Status::Numerical);
             }
             self.w.previous = self.w.x;
         }

@@ -38,7 +38,8 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         for (i, (o, v)) in out.iter_mut().zip(self.free_variables()).enumerate() {
             let hv = row(h, *v);
             put(magnitude, i, at(hv, *v));
-            for (o, f) in o.iter_mut().zip(self.free_variables()).skip(i) {
+            let others = span(self.free_variables(), i, free);
+            for (o, f) in span_mut(o, i, free).iter_mut().zip(others) {
                 *o = at(hv, *f);
             }
         }

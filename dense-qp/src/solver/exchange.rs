@@ -261,10 +261,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// r (in `vec_b`) of the candidate.
     pub(super) fn answer(&mut self) {
         let w = &mut *self.w;
-        for (r, d) in w.vec_b.iter_mut().zip(&w.candidate.d).take(w.basis.len) {
-            *r = *d;
-        }
-        w.basis.solve(&mut w.vec_b);
+        w.basis.solve(&w.candidate.d, &mut w.vec_b);
     }
 
     /// z (in `step`) of the candidate.

@@ -9,7 +9,7 @@ use crate::residual::{norm, worse};
 /// Round-off of evaluating a gradient, in ε of its terms.
 pub(super) const NOISE: f64 = 32.0;
 /// What corrections that no longer help may leave of a gradient, in ε of its terms: with no gradient at the optimum there is nothing else
-/// to measure it by. Below the default tolerances.
+/// to measure it by, and there the cost is round-off as well, of which every few steps seem to lower it. Below the default tolerances.
 pub(super) const SETTLED: f64 = 1024.0;
 
 /// What is left at a point that meets all rows.

@@ -57,7 +57,8 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         for (d, y) in rows.take(w.basis.len) {
             (*d, *y) = (*y, *y - *d);
         }
-        w.basis.solve(&mut w.vec_b);
+        let rest = w.vec_b;
+        w.basis.solve(&rest, &mut w.vec_b);
     }
 
     /// The least step, in the metric of H, that meets all active rows and the equalities.

@@ -208,7 +208,10 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             // Each round takes all but a share of what is left of curvature in the direction, the proximal weight's.
             for _ in 0..ROUNDS {
                 let before = course.minimum();
-                self.purify();
+                if !self.purify() {
+                    self.evaluate_gradient();
+                    return Ray::Stays;
+                }
                 if self.is_ray() {
                     return Ray::Endless;
                 }
@@ -335,8 +338,9 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     }
 
     /// Takes out of the direction in `previous` what the equalities, the active rows and H do not allow and round-off of x has left in
-    /// it: one proximal step from it without a gradient.
-    fn purify(&mut self) {
+    /// it: one proximal step from it without a gradient. Returns whether half the digits of a direction are left: where the last step was a
+    /// correction across the active rows, what is left is round-off.
+    fn purify(&mut self) -> bool {
         let w = &mut *self.w;
         w.elimination.complete(&mut w.previous, &mut w.vec_a);
         w.basis.prepare(&w.factor, &w.elimination);
@@ -355,6 +359,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         sub_scaled(&mut w.previous, T::ONE, &w.step);
         let length = max_abs(&w.previous);
         scale_direction(&mut w.previous, length);
+        length * length > T::EPSILON
     }
 
     /// Whether the gradient alone falls along `previous`, by a share of its terms that round-off leaves no doubt about.
