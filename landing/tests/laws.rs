@@ -1,7 +1,7 @@
 //! Laws of the optimum of a tick: limits, frames, units, the order of feet, and memory.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
-use crate::common::{Case, Controller, case, config};
+use crate::common::{Case, Controller, case, config, round_off};
 use dense_qp::Status;
 use landing::{Command, Outcome, Program, Workspace};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -34,6 +34,22 @@ fn cost(controller: &Controller<f64>, command: &Command<f64, 12, 4>) -> f64 {
 fn off(a: &[Vector3<f64>; 4], b: &[Vector3<f64>; 4]) -> f64 {
     let gaps = a.iter().zip(b).map(|(a, b)| (a - b).amax());
     gaps.fold(0.0, f64::max)
+}
+
+/// Forces and torques of one program found in two ways, each with its own round-off (in seeds 1 to 40 up to 3.8 units); a torque is the force by
+/// arms that add up to less than a metre.
+fn same(
+    controller: &Controller<f64>,
+    [a, b]: [&[Vector3<f64>; 4]; 2],
+    [torques, others]: [&[f64; 12]; 2],
+) -> Result<(), TestCaseError> {
+    let (gap, unit) = (off(a, b), round_off::<f64>(controller, a));
+    let most = (16.0 * unit).min(1e-7);
+    prop_assert!(gap <= most, "{:e} N, unit {:e} N", gap, unit);
+    for (a, b) in torques.iter().zip(others) {
+        prop_assert!((a - b).abs() <= most, "{} {}", a, b);
+    }
+    Ok(())
 }
 
 fn is_solved(command: &Command<f64, 12, 4>) -> bool {
@@ -116,10 +132,7 @@ proptest! {
         let (a, b) = (here.step(&case), there.step(&moved));
         if is_solved(&a) && is_solved(&b) {
             let turned = a.forces_w.map(|force| turn * force);
-            prop_assert!(off(&turned, &b.forces_w) < 2e-8, "{:e}", off(&turned, &b.forces_w));
-            for (a, b) in a.feed_forward.iter().zip(&b.feed_forward) {
-                prop_assert!((a - b).abs() < 2e-8, "{} {}", a, b);
-            }
+            same(&there, [&b.forces_w, &turned], [&a.feed_forward, &b.feed_forward])?;
         }
     }
 
@@ -143,10 +156,8 @@ proptest! {
         let shuffled = Case { on: order.map(|i| case.on[i]), ..case };
         let (a, b) = (one.step(&case), other.step(&shuffled));
         if is_solved(&a) && is_solved(&b) {
-            prop_assert!(off(&order.map(|i| a.forces_w[i]), &b.forces_w) < 2e-8);
-            for (a, b) in a.feed_forward.iter().zip(&b.feed_forward) {
-                prop_assert!((a - b).abs() < 2e-8, "{} {}", a, b);
-            }
+            let forces_w = order.map(|i| a.forces_w[i]);
+            same(&other, [&b.forces_w, &forces_w], [&a.feed_forward, &b.feed_forward])?;
         }
     }
 
@@ -158,10 +169,10 @@ proptest! {
         let _ = warm.step(&before);
         let first = warm.step(&case);
         if is_solved(&wanted) && is_solved(&first) {
-            prop_assert!(off(&wanted.forces_w, &first.forces_w) < 2e-8);
+            same(&cold, [&wanted.forces_w, &first.forces_w], [&wanted.feed_forward, &first.feed_forward])?;
             let again = warm.step(&case);
             prop_assert_eq!(again.outcome, Outcome::Solved(1));
-            prop_assert!(off(&wanted.forces_w, &again.forces_w) < 2e-8);
+            same(&cold, [&wanted.forces_w, &again.forces_w], [&wanted.feed_forward, &again.feed_forward])?;
             prop_assert_eq!(warm.workspace.forces_w(), again.forces_w);
         }
         warm.workspace = Workspace::new();
@@ -177,7 +188,7 @@ proptest! {
             now.v = case.v * (share * f64::from(tick) / 12.0);
             let (a, b) = (Controller::<f64>::new().step(&now), warm.step(&now));
             if is_solved(&a) && is_solved(&b) {
-                prop_assert!(off(&a.forces_w, &b.forces_w) < 5e-8, "{:e}", off(&a.forces_w, &b.forces_w));
+                same(&warm, [&b.forces_w, &a.forces_w], [&b.feed_forward, &a.feed_forward])?;
             }
         }
     }

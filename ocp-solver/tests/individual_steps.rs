@@ -23,13 +23,35 @@ where
     })
 }
 
-fn same(solutions: &[Solution<f64>; 2]) -> Result<(), TestCaseError> {
+/// On the central path every bound that holds costs µ more than at the optimum, so a cost is known to the sum of the products that a solver
+/// leaves: at most `bounds` times what the residual says of the largest. (Seed 33: 54 bounds of 9·10⁻⁷ cost 4.8·10⁻⁵.) A hundredth more is
+/// for the second order in µ, and 2·10⁻⁷ for the violation that is allowed.
+fn same(solutions: &[Solution<f64>; 2], bounds: usize) -> Result<(), TestCaseError> {
     let [common, individual] = solutions;
     prop_assert_eq!(common.status, Status::Solved);
     prop_assert_eq!(individual.status, Status::Solved, "{:?}", individual);
     let off = (individual.cost - common.cost).abs();
-    prop_assert!(off < 1e-5 * (1.0 + common.cost), "{:?}", solutions);
+    let products = solutions.each_ref().map(|s| s.residual.complementarity);
+    let most = 1.01 * bounds as f64 * products[0].max(products[1]);
+    prop_assert!(off < most + 2e-7 * (1.0 + common.cost), "{:?}", solutions);
     Ok(())
+}
+
+/// Of every row that an interval has, and of the time, one bound may hold.
+fn least_time_arrives(intervals: usize, longest: f64, speed: f64) -> Result<(), TestCaseError> {
+    let problem = LeastTime { intervals, longest };
+    let mut guess = vec![Stage::new([0.0; 3]); intervals + 1];
+    for (k, stage) in guess.iter_mut().enumerate() {
+        let place = k as f64 / intervals as f64;
+        stage.state = [place, if k == 0 { 0.0 } else { speed }, 1.0];
+    }
+    same(&both(&problem, &guess), intervals + 1)
+}
+
+/// Individual steps end with the adaptive rule here, at nine times the µ of common steps.
+#[test]
+fn least_time_under_another_rule() -> Result<(), TestCaseError> {
+    least_time_arrives(54, 4.811_537_122_469_796, 0.040_184_507_007_832_32)
 }
 
 proptest! {
@@ -40,16 +62,11 @@ proptest! {
         let problem = BrysonDenham { intervals, wall };
         let mut guess = vec![Stage::new([0.0, 0.0]); intervals + 1];
         guess[0].state = [0.0, 1.0];
-        same(&both(&problem, &guess))?;
+        same(&both(&problem, &guess), intervals)?;
     }
 
     #[test]
     fn least_time(intervals in 4..60_usize, longest in 2.5..20.0_f64, speed in 0.0..2.0_f64) {
-        let problem = LeastTime { intervals, longest };
-        let mut guess = vec![Stage::new([0.0; 3]); intervals + 1];
-        for (k, stage) in guess.iter_mut().enumerate() {
-            stage.state = [k as f64 / intervals as f64, if k == 0 { 0.0 } else { speed }, 1.0];
-        }
-        same(&both(&problem, &guess))?;
+        least_time_arrives(intervals, longest, speed)?;
     }
 }

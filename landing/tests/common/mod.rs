@@ -3,7 +3,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET};
 use core::f64::consts::PI;
-use landing::{Command, Landing, Settings, Target, Workspace};
+use landing::{Command, Landing, Program, Settings, Target, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use proptest::array::{uniform, uniform3, uniform4};
 use proptest::prelude::*;
@@ -142,4 +142,29 @@ where
             workspace,
         )
     }
+}
+
+/// How far the optimum of a tick can move, N, where H and g of its program are off by one unit of round-off of their largest entries: the cost
+/// curves by at least w_e, so a change of the gradient at the optimum moves it by no more than 1/w_e times as much. To some of these units
+/// forces can be known in T, whoever solves for them.
+pub(crate) fn round_off<T: Scalar>(
+    controller: &Controller<f64>,
+    forces_w: &[Vector3<f64>; 4],
+) -> f64 {
+    let program = Program::<f64, 12, 28>::of(&controller.workspace);
+    let problem = program.problem();
+    let (lower, upper) = (problem.lower, problem.upper);
+    // Feet in the air have no force to move.
+    let moves = |i: usize| {
+        lower
+            .zip(upper)
+            .is_none_or(|(l, u)| l[3 * (i / 3) + 2] < u[3 * (i / 3) + 2])
+    };
+    let moving = || (0..12).filter(|i| moves(*i));
+    let row = |i: usize| moving().map(|j| problem.hessian[i][j].abs()).sum();
+    let hessian = moving().map(row).fold(0.0, f64::max);
+    let gradient = moving().map(|i| problem.gradient[i].abs());
+    let force = forces_w.iter().fold(0.0, |most: f64, f| most.max(f.amax()));
+    let effort = controller.landing.settings.effort_weight;
+    T::EPSILON.to_f64() * (hessian * force + gradient.fold(0.0, f64::max)) / effort
 }

@@ -17,6 +17,7 @@ pub(crate) struct Node {
     pub(crate) right: DVector<f64>,
 }
 
+#[derive(Clone)]
 pub(crate) struct Lq {
     pub(crate) nx: usize,
     pub(crate) nodes: Vec<Node>,
