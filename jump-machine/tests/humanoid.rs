@@ -4,11 +4,12 @@
 use icub_model::profile::{self, Machine, Settings, Workspace};
 use icub_model::{Icub23GazeboGeared, MOTORS};
 use jump_control::{Fault, Measurement, Phase};
-use jump_machine::humanoid::{Jump, Landing, PushOff, Work, on_the_floor};
+use jump_machine::humanoid::{Jump, Landing, PushOff, Work, middle_of_feet, on_the_floor};
 use jump_machine::{JumpMachine, Observation, Refusal, Tick};
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
-use rbd_core::{Configuration, Motion, Motor};
+use rbd_core::{Configuration, Kinematics, Motion, Motor, Posture, forward_kinematics};
+use wbc_qp::Patch;
 use wbc_qp::jump::VelocityJumpSettings;
 
 const N: usize = 23;
@@ -63,6 +64,25 @@ fn resting(joints: &[f64; N], force: f64) -> Heard {
         },
         joint_torques: [0.0; N],
     }
+}
+
+/// Soles that are not symmetric, one a rectangle and one a triangle.
+#[test]
+fn the_middle_of_feet_is_that_of_their_soles() {
+    let mut feet = profile::SOLE_CONTACTS;
+    feet[0].shape = Patch::Rectangle {
+        x: [-0.02, 0.10],
+        y: [-0.01, 0.05],
+    };
+    feet[1].shape = Patch::Polygon {
+        vertices: &[[0.09, -0.03], [-0.06, 0.0], [0.03, 0.06]],
+    };
+    let mut poses = Kinematics::IDENTITY;
+    let squat = Posture::new(&ROBOT, &standing(&profile::SQUAT));
+    forward_kinematics(&ROBOT, &squat, &mut poses);
+    let at = |k: usize, x, y| poses.frame(&feet[k].frame).point(&Vector3::new(x, y, 0.0));
+    let middle = (at(0, 0.04, 0.02) + at(1, 0.02, 0.01)) * 0.5;
+    assert!((middle_of_feet(&poses, &feet) - middle).amax() < 1e-12);
 }
 
 fn ground() -> Heard {

@@ -154,6 +154,24 @@ fn a_jump_goes_through_its_phases_and_another_may_follow() {
     );
 }
 
+/// A robot that stands is pushed: it balances as after a landing, until it is at rest again.
+#[test]
+fn a_robot_that_is_pushed_lands_again() {
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    assert_eq!(run(&mut m, 0, 100, &inputs()).unwrap().phase, Phase::Stand);
+    let mut pushed = inputs();
+    pushed.measured.base_velocity.linear.x = 1.0;
+    assert_eq!(
+        run(&mut m, 100, 110, &pushed).unwrap().phase,
+        Phase::Landing
+    );
+    assert_eq!(
+        run(&mut m, 110, 500, &inputs()).unwrap().phase,
+        Phase::Stand
+    );
+}
+
 /// Shares of their way that torques have gone after a joint tick, of the joints that have one: until then a leg was where it should be, now it is not.
 fn shares(machine: &mut A1Machine<'_, f64>) -> Vec<f64> {
     let bent = core::array::from_fn(|i| crouch::<f64>()[i] + [0.02, -0.1, 0.15][i % 3]);
@@ -224,6 +242,10 @@ fn a_start_before_the_gains_are_computed_is_refused() {
     let ticks = 250 + i32::try_from(2001_usize.div_ceil(NODES_PER_TICK)).unwrap();
     let mut workspace = Workspace::new();
     let mut m = machine(&mut workspace);
+    let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch());
+    // A tick to begin with, and one for each pair of nodes.
+    let least: f64 = settings.least_hold(&jump(&many).plan);
+    assert!((least - time(ticks + 1)).abs() < 1e-9, "{least}");
     // No tick has told the time yet.
     m.arm(jump(&many), time(ticks - 3)).unwrap();
     let tick = run(&mut m, 0, ticks - 1, &inputs()).unwrap();
