@@ -1,7 +1,8 @@
 //! `cargo xtask mutants`: how many small changes of the source do the tests notice?
 //!
 //! cargo-mutants lists every change that it knows, a random sample of them is made one after the other, and each runs the unit and
-//! integration tests of its own crate. A mutant that does not compile is not viable; one with which the tests fail or never end is caught.
+//! integration tests of its own crate, up to the first that fails. A mutant that does not compile is not viable; one with which the tests fail or
+//! never end is caught.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -60,6 +61,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
             "cargo-mutants {VERSION} missing: `cargo install --locked cargo-mutants --version {VERSION}`"
         );
     }
+    let runner = run::output(run::cargo().args(["nextest", "--version"]))?;
+    ensure!(
+        runner.status.success(),
+        "cargo-nextest missing: `cargo install --locked cargo-nextest`"
+    );
     let named = args.crates.iter().map(String::as_str);
     let crates: Vec<&str> = if args.crates.is_empty() {
         CRATES.to_vec()
