@@ -302,3 +302,36 @@ impl<T: Scalar, const N: usize> Basis<T, N> {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Basis, Candidate};
+
+    /// e₀ and e₀ + `angle`·e₁ are active, and e₁ + `own`·e₂ comes: whether it is in doubt that it depends on them.
+    fn is_in_doubt(angle: f64, own: f64) -> bool {
+        let mut basis = Basis::<f64, 3>::new();
+        basis.dim = 3;
+        basis.j = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (mut c, mut r, mut z) = (Candidate::new(), [0.0; 3], [0.0; 3]);
+        for row in [[1.0, 0.0, 0.0], [1.0, angle, 0.0], [0.0, 1.0, own]] {
+            basis.coordinates(&row, &mut c.d);
+            basis.project(&mut c);
+            basis.solve(&c.d, &mut r);
+            if row[0] != 0.0 {
+                basis.direction(basis.len, &c.d, &mut z);
+                basis.append(&mut c, &z, &r);
+            }
+        }
+        assert!(c.free > 0.0);
+        basis.is_in_doubt(&c, &r)
+    }
+
+    /// Rows at an angle of 1e-9 make up another by terms of 1e9, whose round-off hides 1e-8 of its own. 1e-7, more than √ε, is in no doubt
+    /// whatever the terms, and 1e-8 is in none where they are small.
+    #[test]
+    fn a_row_is_in_doubt_that_is_round_off_of_large_terms() {
+        assert!(is_in_doubt(1e-9, 1e-8));
+        assert!(!is_in_doubt(1e-9, 1e-7));
+        assert!(!is_in_doubt(1.0, 1e-8));
+    }
+}

@@ -7,4 +7,6 @@ mod common;
 mod oracle;
 mod properties;
 mod published;
+mod round_off;
 mod seeds;
+mod starts;

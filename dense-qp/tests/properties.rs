@@ -6,7 +6,7 @@
     reason = "tests"
 )]
 
-use crate::common::{INF, Qp, definite, dot};
+use crate::common::{INF, Qp, definite, dot, semidefinite};
 use dense_qp::{Settings, Status, Workspace, kkt_residual, resume, solve, solve_warm};
 use proptest::prelude::*;
 
@@ -42,6 +42,17 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 fn powers<const K: usize>() -> impl Strategy<Value = [f64; K]> {
     prop::collection::vec(-20..=20_i32, K)
         .prop_map(|v| core::array::from_fn(|i| f64::powi(2.0, v[i])))
+}
+
+/// The same program with every row times a unit.
+fn in_units(q: &Qp<f64, N, M>, units: &[f64; M]) -> Box<Qp<f64, N, M>> {
+    let mut s = Box::new(q.clone());
+    for i in 0..M {
+        s.a[i] = s.a[i].map(|a| a * units[i]);
+        s.l[i] *= units[i];
+        s.u[i] *= units[i];
+    }
+    s
 }
 
 /// A permutation of 0..K.
@@ -107,12 +118,7 @@ proptest! {
     /// units.
     #[test]
     fn units_of_rows_do_not_matter(q in definite::<N, M>(2), cost in powers::<1>(), rows in powers::<M>()) {
-        let mut s = q.clone();
-        for i in 0..M {
-            s.a[i] = s.a[i].map(|a| a * rows[i]);
-            s.l[i] *= rows[i];
-            s.u[i] *= rows[i];
-        }
+        let mut s = in_units(&q, &rows);
         let (a, b) = (optimum(&q), optimum(&s));
         prop_assert_eq!((a.x, a.steps), (b.x, b.steps));
         for (h, g) in s.h.iter_mut().zip(&mut s.g) {
@@ -125,6 +131,18 @@ proptest! {
             let y = b.rows[i] * rows[i] / cost[0];
             prop_assert!((a.rows[i] - y).abs() < 1e-6 * (1.0 + a.rows[i].abs()), "{} {}", a.rows[i], y);
         }
+    }
+
+    /// Nor does the unit of all rows where H is singular and the optimum is come to by proximal steps: what is near enough is measured by
+    /// forces, not by multipliers.
+    #[test]
+    fn the_unit_of_rows_does_not_matter_to_proximal_steps(q in semidefinite::<N, M>(4), unit in powers::<1>()) {
+        let settings = Settings::default();
+        let (mut a, mut b) = (Box::new(Workspace::new()), Box::new(Workspace::new()));
+        let s = in_units(&q, &[unit[0]; M]);
+        let a = solve(&q.problem(), &settings, &mut a).unwrap();
+        let b = solve(&s.problem(), &settings, &mut b).unwrap();
+        prop_assert_eq!((a.status, a.x, a.steps), (b.status, b.x, b.steps));
     }
 
     /// Variables and rows in another order: the same optimum.

@@ -190,3 +190,87 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         reach
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::{NOISE, Search};
+    use crate::{Problem, Settings, Workspace, solve};
+
+    const INF: f64 = f64::INFINITY;
+
+    /// Active bound x₀ ≤ 1, active row x₁ ≥ 1, equality x₂ = 1: a point that has left one of them by more than round-off is not on them.
+    #[test]
+    fn a_point_off_a_bound_a_row_or_an_equality_is_not_on_them() {
+        let h = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (a, l, u) = ([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [1.0; 2], [INF, 1.0]);
+        let (lower, upper) = ([-INF; 3], [1.0, INF, INF]);
+        let p = Problem::new(&h, &[-4.0, 0.0, 0.0], &a, &l, &u).with_bounds(&lower, &upper);
+        let (settings, mut w) = (Settings::default(), Workspace::new());
+        let x = *solve(&p, &settings, &mut w).unwrap().x;
+        assert!(Search::new(&p, &settings, &mut w).is_on_active());
+        for i in 0..3 {
+            for by in [1e-3, -1e-3] {
+                w.x = x;
+                w.x[i] += by;
+                assert!(!Search::new(&p, &settings, &mut w).is_on_active(), "{i}");
+            }
+        }
+    }
+
+    /// min ½x₀² − x₀ + ½ 1e-14 x₁²: at (1, 50) the gradient is 5e-13 beside terms of 1, but the cost can fall by a share of 1e-11.
+    #[test]
+    fn a_small_gradient_along_a_flat_direction_is_not_the_end() {
+        let (h, g) = ([[1.0, 0.0], [0.0, 1e-14]], [-1.0, 0.0]);
+        let (a, l, u): ([[f64; 2]; 0], [f64; 0], [f64; 0]) = ([], [], []);
+        let p = Problem::new(&h, &g, &a, &l, &u);
+        let (settings, mut w) = (Settings::default(), Workspace::new());
+        solve(&p, &settings, &mut w).unwrap();
+        for (x, is_end) in [(0.0, true), (50.0, false)] {
+            w.x[1] = x;
+            let mut search = Search::new(&p, &settings, &mut w);
+            let rest = search.measure();
+            assert!(rest.residual <= 0.01 * settings.optimality * rest.scale);
+            assert_eq!(search.is_tight(&rest), is_end, "{x}");
+        }
+    }
+
+    /// Beside a multiplier of 1e6 a distance of 9e-10 from the limit is worth more of the cost than the tolerance, one of 1e-11 is not;
+    /// though both are small as distances, and the gradient is small as well, but not round-off.
+    #[test]
+    fn what_distances_are_worth_counts() {
+        let p = Problem::new(&[[1.0]], &[-1e6], &[[1.0]], &[-INF], &[1.0]);
+        let (settings, mut w) = (Settings::default(), Workspace::new());
+        solve(&p, &settings, &mut w).unwrap();
+        w.lambda[0] *= 1.0 + 1e-12;
+        for (distance, is_within) in [(1e-11, true), (9e-10, false)] {
+            w.x[0] = 1.0 + distance;
+            let mut search = Search::new(&p, &settings, &mut w);
+            let rest = search.measure();
+            assert!(rest.drift <= settings.feasibility);
+            assert_eq!(search.is_within(&rest, NOISE), is_within, "{distance}");
+        }
+    }
+
+    /// 1e14 along a direction without curvature, the terms of Hx hide a gradient of ½. That is round-off where limits are as far, and none
+    /// where they are near the origin: x has run away.
+    #[test]
+    fn a_gradient_does_not_hide_where_x_has_run_away() {
+        let (h, g) = ([[1.0, -1.0], [-1.0, 1.0]], [-0.5; 2]);
+        for (far, is_round_off) in [(1e14, true), (1.0, false)] {
+            let (a, l, u) = ([[1.0, 0.0]], [-INF], [far]);
+            let p = Problem::new(&h, &g, &a, &l, &u);
+            let (settings, mut w) = (Settings::default(), Workspace::new());
+            w.x = [1e14; 2];
+            w.factor.dim = 2;
+            let mut search = Search::new(&p, &settings, &mut w);
+            let noise = NOISE * f64::EPSILON;
+            assert_eq!(
+                search.is_gradient_round_off(&g, noise),
+                is_round_off,
+                "{far}"
+            );
+        }
+    }
+}

@@ -235,6 +235,26 @@ pub fn definite<const N: usize, const M: usize>(
     })
 }
 
+/// A program whose H is singular, with limits on both sides of most rows and none of variables.
+pub fn semidefinite<const N: usize, const M: usize>(
+    rank: usize,
+) -> impl Strategy<Value = Box<Qp<f64, N, M>>> {
+    draw(most_numbers(N, M)).prop_map(move |mut r| {
+        let mut q = Qp::zero();
+        q.set_hessian(&mut r, rank, 0.0);
+        q.set_rows(&mut r, 0, false);
+        (q.lb, q.ub) = ([-INF; N], [INF; N]);
+        for (l, u) in q.l.iter_mut().zip(&mut q.u) {
+            if l.is_finite() {
+                *u = u.min(*l + 3.0);
+            } else if u.is_finite() {
+                *l = *u - 3.0;
+            }
+        }
+        q
+    })
+}
+
 /// Limits of rows, then of variables, with their multipliers and values at x.
 fn limited<'a, const N: usize, const M: usize>(
     q: &'a Qp<f64, N, M>,
