@@ -210,7 +210,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
 
     /// 1 / max|aₖ| of active row k.
     #[inline(always)]
-    fn active_scale(&mut self, k: usize) -> T {
+    pub(super) fn active_scale(&mut self, k: usize) -> T {
         let id = at(&self.w.id, k);
         scale_inverse::<T, N, M>(self.p, self.w, id)
     }

@@ -112,17 +112,21 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         self.steps >= self.most && multipliers.any(|l| *l < T::ZERO)
     }
 
-    /// Lets rows go until none pulls.
+    /// Lets rows go until none pulls, always the one that pulls most: as a force, since multipliers depend on units of rows.
     pub(super) fn drop_negative(&mut self) {
         for _ in 0..N {
             if self.steps >= self.most {
                 return;
             }
             let mut worst = None;
-            let mut value = T::ZERO;
-            for (k, l) in self.w.lambda.iter().take(self.w.basis.len).enumerate() {
-                if *l < value {
-                    (worst, value) = (Some(k), *l);
+            let (mut force, mut value) = (T::ZERO, T::ZERO);
+            for k in 0..self.w.basis.len {
+                let l = at(&self.w.lambda, k);
+                if l < T::ZERO {
+                    let pull = l / self.active_scale(k);
+                    if pull < force {
+                        (worst, force, value) = (Some(k), pull, l);
+                    }
                 }
             }
             let Some(k) = worst else { break };
