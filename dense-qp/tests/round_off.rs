@@ -73,3 +73,14 @@ fn an_overflow_is_given_up() {
     assert_eq!(s.status, Status::Numerical, "{} steps", s.steps);
     assert!(s.steps < Workspace::<f64, 1, 1>::STEPS / 4, "{}", s.steps);
 }
+
+/// Three rows whose vertex at the origin is the optimum: N + M steps and a few, though no cost and no length is left by which to measure.
+#[test]
+fn a_vertex_at_the_origin_is_found_at_once() {
+    let a = [[-2.0, 0.0, 2.0], [3.0, -2.0, 1.0], [0.0, 2.0, 2.0]];
+    let p = Problem::new(&IDENTITY, &[1.0, -3.0, -7.0], &a, &[-INF; 3], &[0.0; 3]);
+    let mut w = Workspace::new();
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Solved);
+    assert!(s.steps <= 9, "{} steps", s.steps);
+}

@@ -79,7 +79,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let w = &*self.w;
         let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
         let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
-        gain + self.toll <= least * self.worth
+        gain + self.toll <= least * math::max(self.worth, self.s.feasibility * rest.scale)
     }
 
     /// Inside the tolerances, or as near as round-off lets a point come, up to `noise`·ε of its terms. `vec_a` as [`Search::measure`]
