@@ -119,6 +119,27 @@ mod tests {
         }
     }
 
+    /// What always takes its least acceleration comes to zero and not below: on the way at the rate −d/h_q, reached within h_v, and by no
+    /// more than the cap.
+    #[test]
+    fn riding_on_the_least_acceleration_ends_at_zero() {
+        for start in [0.01, 0.1, 1.0] {
+            let (mut d, mut rate) = (start, 0.0);
+            for _ in 0..5000 {
+                let wanted = HORIZON.least_acceleration(d, rate);
+                assert!(wanted.abs() <= 1e3);
+                d += 1e-4 * rate + 0.5e-8 * wanted;
+                rate += 1e-4 * wanted;
+                assert!(d > -1e-9, "{start}: {d}");
+            }
+            assert!(d < 1e-4 * start, "{start}: ended at {d}");
+        }
+        // −0.02 m / 0.04 s is 0.4 m/s faster than −0.1 m/s: in 0.01 s.
+        assert!((HORIZON.least_acceleration(0.02, -0.1) + 40.0).abs() < 1e-12);
+        assert_eq!(HORIZON.least_acceleration(0.02, 100.0), -1e3);
+        assert_eq!(HORIZON.least_acceleration(0.02, -100.0), 1e3);
+    }
+
     #[test]
     fn rest_is_always_allowed_at_the_level_of_velocities() {
         for q in [-3.0, -1.0, 0.0, 0.999, 1.0, 2.0] {

@@ -9,3 +9,4 @@ mod paper_b;
 mod rows;
 mod tasks;
 mod torque;
+mod velocity;

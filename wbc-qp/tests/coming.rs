@@ -5,7 +5,7 @@ use crate::common::{M, N, config, crouch, each, snapshot};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
-use rbd_core::joint_friction;
+use rbd_core::{integrate, joint_friction};
 use wbc_qp::jump::{Absorption, ComReference, Landing, LandingReference, LandingSettings};
 use wbc_qp::{Contact, Snapshot, TorqueAnswer, TorqueQp};
 
@@ -119,6 +119,43 @@ fn without_ground_the_body_is_left_alone() {
             assert!(apart(&torques(load, none, turn), &still) > 1e-3);
         }
     });
+}
+
+/// In the air tilted soles come level within a fall, though the posture to keep is the tilted one and the body turns.
+#[test]
+fn soles_come_level_in_the_air() {
+    let tilts = prop::array::uniform4(0.1..0.25_f64);
+    each(
+        config(3, 45),
+        &(crouch(0.05, 0.3), tilts),
+        |((q, v), by)| {
+            let (mut q, mut v) = (q, v);
+            for (joint, tilt) in [4, 5, 10, 11].into_iter().zip(by) {
+                q.joints[joint] += tilt;
+            }
+            let wanted = resting(&snapshot(&q, &v), [0.0; 3], [0.0; 3]);
+            let tilt = |s: &Snapshot<f64, N>| {
+                SOLES.map(|sole| {
+                    let normal = s.pose(&sole.frame).rotation * Vector3::z();
+                    normal.cross(&Vector3::z()).norm()
+                })
+            };
+            let before = tilt(&snapshot(&q, &v));
+            let mut landing = Landing::<f64, N, K, V, M>::new(profile::LANDING);
+            let dt = 2e-3;
+            for _ in 0..150 {
+                let s = snapshot(&q, &v);
+                let limits = (&LIMITS, &MOTORS);
+                let tick = landing.tick(&Icub23, &s, &contacts(0.0), limits, &wanted);
+                v = v + tick.unwrap().answer.acceleration * dt;
+                q = integrate(&q, &(v * dt));
+            }
+            let after = tilt(&snapshot(&q, &v));
+            for (before, after) in before.into_iter().zip(after) {
+                assert!(before > 0.1 && after < 0.1 * before, "{before} {after}");
+            }
+        },
+    );
 }
 
 /// The way from touchdown to rest begins with the speed, ends at rest after the distance, and its speeds and accelerations are derivatives.

@@ -4,11 +4,15 @@
 use crate::common::{M, N, VELOCITY_ROWS, config, each, snapshot};
 use a1_model::{A1, FEET, FOOT_RADIUS};
 use core::cell::Cell;
+use core::f64::consts::{PI, TAU};
 use icub_model::{Icub23, SOLES};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use rbd_core::{Configuration, ContactShape, Frame, Tangent, Transform, integrate, rnea};
-use wbc_qp::{Contact, Error, Patch, Rank, Snapshot, TorqueQp, VelocityQp, Yielded, anchored};
+use so3::math;
+use wbc_qp::{
+    Contact, Error, Extent, Limit, Patch, Rank, Snapshot, TorqueQp, VelocityQp, Yielded, anchored,
+};
 
 /// Standing A1, turned and moved as a whole by `ground`.
 fn standing(ground: &Transform<f64>) -> Snapshot<f64, 12> {
@@ -152,6 +156,77 @@ fn a_polygon_bounds_the_centre_of_pressure() {
             Contact::polygon(&frame, vertices, 0.5, 1.0),
             Err(Error::NotConvex)
         );
+    }
+}
+
+/// A round sole is a polygon of many corners: taken in every size, with the yaw moment of a square of its perimeter, and refused where it
+/// goes around twice.
+#[test]
+fn a_round_sole_has_many_corners() {
+    let around = |radius: f64, corners: u32, turns: u32| -> &'static [[f64; 2]] {
+        let corner = |i| {
+            let angle = TAU * f64::from(turns * i) / f64::from(corners);
+            let (sin, cos) = math::sin_cos(angle);
+            [radius * cos, radius * sin]
+        };
+        (0..corners).map(corner).collect::<Vec<_>>().leak()
+    };
+    let frame = SOLES[0].frame;
+    for (radius, corners) in [(1e-3, 17), (0.05, 17), (0.05, 101), (10.0, 17)] {
+        let round = Contact::polygon(&frame, around(radius, corners, 1), 0.5, 1.0).unwrap();
+        let corners_on_it = f64::from(corners);
+        let half = corners_on_it * radius * math::sin(PI / corners_on_it) / 4.0;
+        let square = rbd_core::Contact {
+            name: "",
+            frame,
+            shape: ContactShape::Rectangle {
+                x: [-half, half],
+                y: [-half, half],
+            },
+        };
+        let square = Contact::new(&square, 0.5, 1.0);
+        assert!((round.yaw / square.yaw - 1.0).abs() < 1e-12);
+        let twice = Contact::polygon(&frame, around(radius, corners, 2), 0.5, 1.0);
+        assert_eq!(twice, Err(Error::NotConvex));
+    }
+}
+
+/// A foot in the air changes nothing for the others, wherever it stands among them, and is not missed.
+#[test]
+fn the_order_of_feet_is_no_matter() {
+    let s = standing(&Transform::IDENTITY);
+    let solve = |order: [usize; 4]| {
+        let mut all = feet(Vector3::z());
+        all[1].load = 0.0;
+        let contacts = order.map(|i| all[i]);
+        let mut qp = TorqueQp::<f64, 12, 12, 24, 46>::new();
+        qp.begin(&A1, &s, &contacts, &[0.0; 12]).unwrap();
+        qp.minimise(&s.com(), &[0.5, 0.5, 0.0], &[1e3; 3]);
+        qp.minimise(&s.angular_momentum(), &[0.0; 3], &[1e3; 3]);
+        qp.minimise_joints(&[0.0; 12], &[1.0; 12]);
+        qp.minimise_forces(&[0.0; 12], &[1e-3; 12]);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Nothing);
+        for line in qp.report(&answer, 0.0) {
+            if let (Limit::Contact(k), Extent::Missed(_)) = (line.limit, line.extent) {
+                assert!(order[k] != 1, "{line:?}");
+            }
+        }
+        let mut forces = [[0.0; 3]; 4];
+        for (i, f) in order.into_iter().zip(answer.forces.chunks(3)) {
+            forces[i].copy_from_slice(f);
+        }
+        forces
+    };
+    let first = solve([1, 0, 2, 3]);
+    let last = solve([0, 2, 3, 1]);
+    let middle = solve([3, 1, 0, 2]);
+    assert_eq!(first[1], [0.0; 3]);
+    assert!(first[0][0].abs() > 0.1 && first[3][1].abs() > 0.1);
+    for (i, f) in first.iter().enumerate() {
+        for (k, x) in f.iter().enumerate() {
+            assert!((x - last[i][k]).abs() < 1e-6 && (x - middle[i][k]).abs() < 1e-6);
+        }
     }
 }
 

@@ -1,18 +1,26 @@
 //! Both programs on an arm that is bolted to the world, beside the recursive dynamics.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
+use nalgebra::Vector3;
 use rbd_core::joint::Kind;
 use rbd_core::{
     Axes, BaseBody, BaseKind, Body, Configuration, Contact, ContactShape, Effort, Force, Frame,
     FrameJacobian, JointLimits, Link, TableModel, Tangent, frame_jacobian, rnea,
 };
-use wbc_qp::{Horizon, Limit, Rank, Snapshot, TorqueQp, VelocityQp, Yielded};
+use wbc_qp::{
+    Extent, Horizon, Limit, Limited, Rank, Side, Snapshot, TorqueQp, VelocityQp, Yielded,
+};
 
 const N: usize = 4;
 type Arm = TableModel<f64, N>;
 
 /// A turntable and three rods of 2 kg and 0.3 m.
 fn arm() -> Arm {
+    mounted(Link::Joint(2), 0.3)
+}
+
+/// The last rod on this link, at this x.
+fn mounted(last: Link, x: f64) -> Arm {
     let base = BaseBody {
         mass: 30.0,
         first: [1.0, 2.0, 3.0],
@@ -26,7 +34,7 @@ fn arm() -> Arm {
     };
     let rod = |parent, x| Body {
         kind: Kind::RevoluteY,
-        parent: Link::Joint(parent),
+        parent,
         offset: [x, 0.0, 0.1],
         mass: 2.0,
         first: [0.3, 0.0, 0.0],
@@ -36,7 +44,12 @@ fn arm() -> Arm {
     Arm::new(
         BaseKind::Fixed,
         base,
-        &[turntable, rod(0, 0.0), rod(1, 0.3), rod(2, 0.3)],
+        &[
+            turntable,
+            rod(Link::Joint(0), 0.0),
+            rod(Link::Joint(1), 0.3),
+            rod(last, x),
+        ],
     )
     .unwrap()
 }
@@ -126,6 +139,42 @@ fn a_torque_limit_is_kept_and_named() {
         named.contains(&Limit::Torque(1)) && named.contains(&Limit::Row(2)),
         "{named:?}"
     );
+}
+
+/// Beside an arm that is too weak to keep its tip where it is stands a rod that has no part in that: its limit stays, though contacts,
+/// which come after limits, yield.
+#[test]
+fn a_limit_without_a_part_in_it_does_not_yield() {
+    let model = mounted(Link::Base, 1.0);
+    let mut q = Configuration::NEUTRAL;
+    q.joints = [0.3, -0.8, 1.2, 0.4];
+    let mut s = Snapshot::ZERO;
+    s.update(&model, &q, &Tangent::ZERO);
+    let elbow = Frame {
+        link: Link::Joint(2),
+        ..TOOL
+    };
+    let contact = wbc_qp::Contact::ball(&elbow, 0.0, Vector3::z(), 0.5, 0.0);
+    let mut qp = TorqueQp::<f64, N, 3, 7, 14>::new();
+    qp.begin(&model, &s, &[contact], &[0.0; N]).unwrap();
+    qp.limit_torques(&[1.0, 1.0, 1.0, 100.0].map(|most| [-most, most]))
+        .unwrap();
+    let height = s.frame_position(&model, &TOOL).select([2]);
+    let free = [f64::NEG_INFINITY];
+    qp.constrain(&height, &free, &[1.0], Rank::Limit).unwrap();
+    qp.minimise(&height, &[3.0], &[1e3]);
+    qp.minimise_joints(&[0.0; N], &[1.0; N]);
+    qp.minimise_forces(&[0.0; 3], &[1.0; 3]);
+    let answer = qp.solve().unwrap();
+    assert_eq!(answer.yielded, Yielded::Contacts);
+    assert!(answer.contact_violation > 1.0);
+    let reached = height.reached(&answer.acceleration)[0];
+    assert!((reached - 1.0).abs() < 1e-9, "{reached}");
+    let held = Limited {
+        limit: Limit::Row(0),
+        extent: Extent::Held(Side::Upper),
+    };
+    assert!(qp.report(&answer, 1e-6).any(|line| line == held));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The torque program against the equations of motion, its limits, and Clarabel.
 #![allow(clippy::unwrap_used, missing_docs, reason = "tests")]
 
-use crate::common::{M, N, Verdict, config, crouch, each, oracle, snapshot, unknowns};
+use crate::common::{M, N, Verdict, config, crouch, crouched, each, oracle, snapshot, unknowns};
 use core::cell::{Cell, RefCell};
 use icub_model::{Icub23, LIMITS, MOTORS, SOLES, profile};
 use proptest::prelude::*;
@@ -409,6 +409,42 @@ fn a_capped_command_is_inside_its_limits() {
     });
     let (capped, whole) = (capped.get(), whole.get());
     assert!(capped > 100 && whole > 100, "{capped} {whole}");
+}
+
+/// What had yielded where the cap ended a tick comes back as soon as nothing is missed: the second tick of a calm stand is that of a
+/// program without a past.
+#[test]
+fn what_yielded_at_the_cap_comes_back() {
+    each(config(3, 14), &(crouch(0.1, 0.3), up()), |((q, v), up)| {
+        let s = snapshot(&q, &v);
+        // Soles shall fly apart, for which there is no torque; some caps end the tick after something has yielded to that.
+        let apart = core::array::from_fn(|k| [500.0, -500.0][k / 6]);
+        let mut qp = TorqueQp::new();
+        let ended = (0..1000).step_by(10).find(|cap| {
+            qp = TorqueQp::new();
+            qp.max_steps = *cap;
+            program(&mut qp, &s, &up, 1.0);
+            qp.correct_contacts(&apart);
+            let answer = qp.solve().unwrap();
+            answer.capped && answer.yielded == Yielded::Contacts
+        });
+        assert!(ended.is_some());
+        qp.max_steps = u32::MAX;
+        let (q, v) = crouched(&[0.0; N], &[0.0; N]);
+        let calm = snapshot(&q, &v);
+        let stand = |qp: &mut TorqueQp<f64, N, K, V, M>| {
+            program(qp, &calm, &[0.0; 3], 1.0);
+            qp.solve().unwrap()
+        };
+        let first = stand(&mut qp);
+        assert_eq!(first.yielded, Yielded::Contacts);
+        assert!(first.contact_violation < 0.1 && first.limit_violation < 0.1);
+        let (second, fresh) = (stand(&mut qp), stand(&mut TorqueQp::new()));
+        assert_eq!(second.yielded, Yielded::Nothing);
+        for (x, y) in second.torques.iter().zip(&fresh.torques) {
+            assert!((x - y).abs() < 1e-6, "{x} {y}");
+        }
+    });
 }
 
 fn strict<T: so3::Scalar>() -> TorqueJumpSettings<T, N> {
