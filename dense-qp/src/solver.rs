@@ -216,7 +216,9 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
         // Merit when it last fell to half, cost when it last fell by more than round-off, and passes since either.
         let (mut mark, mut cost) = (T::INFINITY, T::INFINITY);
         let mut stalls = 0;
-        let patience = if self.w.factor.proximal { 20 } else { 4 };
+        // After a few passes without progress what is left counts as round-off; proximal steps may make some again.
+        let few = 4;
+        let patience = if self.w.factor.proximal { 20 } else { few };
         loop {
             if self.is_at_cap() {
                 return Ok(Status::Limit);
@@ -270,7 +272,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
                 (mark, stalls) = (merit, 0);
             } else {
                 stalls += 1;
-                let noise = if stalls > 4 { SETTLED } else { NOISE };
+                let noise = if stalls > few { SETTLED } else { NOISE };
                 if self.is_within(&rest, noise) {
                     return Ok(Status::Solved);
                 }

@@ -79,7 +79,12 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let w = &*self.w;
         let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
         let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
-        gain + self.toll <= least * math::max(self.worth, self.s.feasibility * rest.scale)
+        gain + self.toll <= least * self.worth_beside(rest)
+    }
+
+    /// The terms of the cost; at the origin there are none, and lengths count from the distance by which rows may be missed.
+    fn worth_beside(&self, rest: &Rest<T>) -> T {
+        math::max(self.worth, self.s.feasibility * rest.scale)
     }
 
     /// Inside the tolerances, or as near as round-off lets a point come, up to `noise`·ε of its terms. `vec_a` as [`Search::measure`]
@@ -96,9 +101,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
             // A proximal step is no measure of those that would follow.
             let margin = T::of(if w.factor.proximal { 0.01 } else { 1.0 });
-            // At the origin the cost has no terms: lengths count from the distance by which rows may be missed.
-            let worth = math::max(self.worth, self.s.feasibility * rest.scale);
-            if gain + self.toll <= margin * self.s.optimality * worth {
+            if gain + self.toll <= margin * self.s.optimality * self.worth_beside(rest) {
                 return true;
             }
         }
