@@ -95,7 +95,10 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityQp<T, N,
                 T::INFINITY
             };
             for row in rows.iter().take(contact.size()) {
-                self.program.constrain(&flat(row), -limit, limit)?;
+                let i = self.program.constrain(&flat(row), -limit, limit)?;
+                if let Some(asked) = self.rows.asked.get_mut(i) {
+                    *asked = [-limit, limit];
+                }
             }
         }
         Ok(())

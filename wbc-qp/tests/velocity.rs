@@ -6,7 +6,8 @@ use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
 use nalgebra::Vector3;
 use wbc_qp::{
-    Contact, Error, Extent, Horizon, Limit, Rank, Snapshot, VelocityAnswer, VelocityQp, Yielded,
+    Contact, Error, Extent, Horizon, Limit, Limited, Rank, Snapshot, VelocityAnswer, VelocityQp,
+    Yielded,
 };
 
 const HORIZON: Horizon<f64> = Horizon {
@@ -102,6 +103,30 @@ fn feedback_is_had_or_its_contacts_rest() {
             });
             assert!((by.unwrap() - 50.0).abs() < 1e-6, "{lines:?}");
         }
+        let of_the_hand = |line: &Limited<f64>| line.limit == Limit::Contact(2);
+        assert!(!lines.iter().any(of_the_hand), "{lines:?}");
+    });
+}
+
+/// What was asked of a contact ends with its tick: in the next one, whose feedback is of the first sole alone, the second one shall rest and
+/// does.
+#[test]
+fn feedback_of_an_earlier_tick_is_forgotten() {
+    each(config(4, 54), &crouch(0.1, 0.2), |(q, v)| {
+        let s = snapshot(&q, &v);
+        let (mut qp, _) = reaching(&s, &[0.01; 15]);
+        qp.begin(&Icub23, &s, &soles()).unwrap();
+        qp.correct_contacts(&[50.0; 6]);
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.limit_joints(&s, &LIMITS, &HORIZON);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Contacts);
+        let lines: Vec<_> = qp.report(&answer, 1e-6).collect();
+        let missed = |sole| {
+            let of_it = move |line: &&Limited<f64>| line.limit == Limit::Contact(sole);
+            lines.iter().filter(of_it).count()
+        };
+        assert_eq!([missed(0), missed(1)], [6, 0], "{lines:?}");
     });
 }
 
