@@ -123,6 +123,33 @@ mod tests {
         assert_eq!(command.torques(&[0.0], &[f64::NAN], &[MOTOR]), [0.0]);
     }
 
+    /// A command is finite as long as all its numbers are, however large, and no longer when any one of them is not.
+    #[test]
+    fn one_number_that_is_not_finite_is_enough() {
+        let finite = JointCommand {
+            position: [1.0, -f64::MAX],
+            velocity: [0.0, 2.0],
+            feed_forward: [f64::MAX, -3.0],
+            gains: [JointGains {
+                stiffness: 50.0,
+                damping: f64::MIN_POSITIVE,
+            }; 2],
+        };
+        assert!(finite.is_finite());
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for joint in 0..2 {
+                let mut spoilt = [finite; 5];
+                spoilt[0].position[joint] = bad;
+                spoilt[1].velocity[joint] = bad;
+                spoilt[2].feed_forward[joint] = bad;
+                spoilt[3].gains[joint].stiffness = bad;
+                spoilt[4].gains[joint].damping = bad;
+                let found = spoilt.map(|command| command.is_finite());
+                assert_eq!(found, [false; 5], "{bad} at joint {joint}");
+            }
+        }
+    }
+
     #[test]
     fn equation_seven() {
         let command = JointCommand {

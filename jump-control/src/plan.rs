@@ -282,6 +282,7 @@ fn base_at<T: Scalar, const N: usize, const F: usize>(
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use nalgebra::{Rotation3, Vector3};
+    use proptest::prelude::*;
 
     use super::{Node, Plan};
     use crate::Torques;
@@ -302,6 +303,40 @@ mod tests {
         assert!((so3::log(&turned) - expected).norm() < 1e-12);
         for outside in [(0, -0.1), (1, 0.005), (0, f64::NAN)] {
             assert_eq!(plan.base(outside), None, "{outside:?}");
+        }
+    }
+
+    proptest! {
+        /// Whenever its node begins, a base that turns about one axis turns as fast as its rate says, has the rate of the next node once it
+        /// is there, and keeps what it has from then on.
+        #[test]
+        fn the_base_is_at_its_next_node_in_time(
+            begin in -5.0..5.0_f64,
+            dt in 0.01..0.5_f64,
+            turn in prop::array::uniform3(-1.0..1.0_f64),
+            rates in prop::array::uniform2(-9.0..9.0_f64),
+            share in 0.01..0.99_f64,
+        ) {
+            let axis = Vector3::new(0.48, -0.6, 0.64);
+            let mut nodes = [Node::<f64, 1, 1>::ZERO; 2];
+            nodes[0].base.rotation = so3::exp(&Vector3::from(turn));
+            for (i, node) in nodes.iter_mut().enumerate() {
+                node.time = begin + dt * i as f64;
+                node.base_velocity.angular = axis * rates[i];
+            }
+            let plan = Plan::new(&nodes, begin, begin, begin, Torques::Hold).unwrap();
+            let at = |after: f64| plan.base((0, begin + after)).unwrap();
+            let (t, h) = (share * dt, 1e-3 * dt);
+            let turned = at(t - h).rot_wb.inverse() * at(t + h).rot_wb;
+            prop_assert!((so3::log(&turned) / (2.0 * h) - at(t).omega_b).norm() < 1e-7);
+            let end = plan.base((0, nodes[1].time)).unwrap();
+            prop_assert!((end.omega_b - axis * rates[1]).norm() < 1e-9);
+            let mean = so3::exp(&(axis * (0.5 * dt * (rates[0] + rates[1]))));
+            let there = nodes[0].base.rotation * mean;
+            prop_assert!((end.rot_wb.matrix() - there.matrix()).norm() < 1e-9);
+            let later = at(2.0 * dt);
+            prop_assert!((later.omega_b - end.omega_b).norm() < 1e-9);
+            prop_assert!((later.rot_wb.matrix() - there.matrix()).norm() < 1e-9);
         }
     }
 }

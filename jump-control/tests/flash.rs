@@ -1,7 +1,7 @@
 //! Plans in flash, as a controller has them: what the compiler reads is what a run-time reader reads, in both scalars.
 
-use jump_control::container::Container;
-use jump_control::{Node, Plan, flash_plan, sample};
+use jump_control::container::{Container, ContainerError, write};
+use jump_control::{Node, Plan, PlanError, flash_plan, sample};
 
 /// Written by the container's own tests, see `the_golden_is_written` there.
 const BYTES: &[u8] = include_bytes!("hop.bin");
@@ -58,4 +58,42 @@ fn a_stored_plan_is_followed_from_its_bytes() {
         }
     }
     assert_eq!(sample(&stored, f64::NAN, 1), sample(&read, f64::NAN, 1));
+}
+
+/// Read or left where it is stored, a plan starts in the posture that it is sampled with before it begins.
+#[test]
+fn a_plan_starts_where_its_first_node_is() {
+    let container = Container::<2, 1>::open(BYTES, PLAN.robot()).unwrap();
+    let h = container.header();
+    let stored = Plan::<f32, 2, 1>::stored(&container).unwrap();
+    let read = Plan::new(&SINGLE, h.takeoff, h.posing, h.touchdown, h.torques).unwrap();
+    for plan in [stored, read] {
+        assert_eq!(plan.start(), Some(sample(&plan, -1.0, 0).joints));
+        assert_eq!(plan.start(), Some([-0.2, 0.0]));
+    }
+}
+
+/// The pre-landing posture is taken at the earliest when the robot leaves the ground, and before it lands: a plan where it is not is refused
+/// where it is stored as it is when it was read.
+#[test]
+fn a_stored_plan_has_its_phases_in_order() {
+    let nodes: [_; 3] = core::array::from_fn(|i| PLAN.node(i).unwrap());
+    let mut h = *PLAN.header();
+    let what = "posing";
+    let refused = Err(ContainerError::Value { node: None, what });
+    let cases = [(0.0, false), (0.049, false), (0.05, true), (0.06, true)];
+    for (posing, in_order) in cases.into_iter().chain([(0.1, true), (0.101, false)]) {
+        h.posing = posing;
+        let mut bytes = [0; BYTES.len()];
+        write(&mut bytes, PLAN.robot(), &h, &nodes).unwrap();
+        let container = Container::<2, 1>::open(&bytes, PLAN.robot()).unwrap();
+        let stored = Plan::<f32, 2, 1>::stored(&container).map(|plan| plan.posing);
+        let read = Plan::new(&SINGLE, h.takeoff, posing, h.touchdown, h.torques);
+        let read = read.map(|plan| plan.posing);
+        if in_order {
+            assert_eq!((stored, read), (Ok(posing), Ok(posing)));
+        } else {
+            assert_eq!((stored, read), (refused, Err(PlanError::PhaseOrder)));
+        }
+    }
 }

@@ -1,8 +1,11 @@
 //! Laws of motions and limits for any numbers.
 #![allow(missing_docs, reason = "tests")]
 
-use jump_control::{MinimumJerk, Slew};
+use a1_model::{A1, BUILD, FEET};
+use jump_control::{CartesianGains, CartesianPd, Measurement, MinimumJerk, Reference, Slew};
 use proptest::prelude::*;
+use rbd_core::nalgebra::Vector3;
+use rbd_core::{Configuration, Kinematics, Motion, Posture, Transform, forward_kinematics};
 
 const N: usize = 3;
 
@@ -20,6 +23,45 @@ fn motion() -> impl Strategy<Value = MinimumJerk<f64, N>> {
             to,
             duration,
         })
+}
+
+fn joints(most: f64) -> impl Strategy<Value = [f64; 12]> {
+    prop::array::uniform12(-most..most)
+}
+
+fn gains() -> impl Strategy<Value = CartesianGains<f64>> {
+    let each = |most: f64| prop::array::uniform3(0.0..most);
+    (each(500.0), each(20.0)).prop_map(|(stiffness, damping)| CartesianGains { stiffness, damping })
+}
+
+/// A1's feet seen from its base.
+fn feet(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
+    let q = Configuration {
+        joints: *joints,
+        ..Configuration::NEUTRAL
+    };
+    let mut bodies = Kinematics::IDENTITY;
+    forward_kinematics(&A1, &Posture::new(&A1, &q), &mut bodies);
+    FEET.map(|foot| bodies.frame(&foot.frame).translation)
+}
+
+/// The torques of A1's foot controller.
+fn torques(
+    gains: CartesianGains<f64>,
+    (joints, joint_velocities): ([f64; 12], [f64; 12]),
+    reference: &Reference<f64, 12>,
+) -> [f64; 12] {
+    let mut pd = CartesianPd::<f64, 12, 4>::new(&BUILD, FEET.map(|foot| foot.frame));
+    pd.gains = gains;
+    let measured = Measurement {
+        base: Transform::IDENTITY,
+        base_velocity: Motion::ZERO,
+        joints,
+        joint_velocities,
+        foot_forces: [0.0; 4],
+        age: 0.0,
+    };
+    pd.command(&A1, &measured, reference).feed_forward
 }
 
 fn near(a: &[f64; N], b: &[f64; N], bound: f64) -> bool {
@@ -90,5 +132,43 @@ proptest! {
                 last = now;
             }
         }
+    }
+
+    /// The power that goes into the joints, beyond the plan's torques, is what the springs between the feet and where they are wanted lose
+    /// of their energy, less what their dampers take.
+    #[test]
+    fn feet_hang_on_springs_and_dampers(
+        gains in gains(),
+        (q, qd) in (joints(1.0), joints(3.0)),
+        (wanted, planned) in (joints(1.0), joints(30.0)),
+    ) {
+        let reference = Reference { joints: wanted, torques: planned, ..Reference::ZERO };
+        let tau = torques(gains, (q, qd), &reference);
+        let power: f64 = (0..12).map(|i| (tau[i] - planned[i]) * qd[i]).sum();
+        let h = 1e-5;
+        let ends = [-h, h].map(|t| feet(&core::array::from_fn(|i| q[i] + t * qd[i])));
+        let (mut gained, mut taken) = (0.0, 0.0);
+        for (foot, goal) in feet(&wanted).iter().enumerate() {
+            for axis in 0..3 {
+                let [before, after] = ends.map(|feet| feet[foot][axis]);
+                let stretched = [before, after].map(|p| goal[axis] - p);
+                let [was, is] = stretched.map(|x| 0.5 * gains.stiffness[axis] * x * x);
+                let speed = (after - before) / (2.0 * h);
+                gained += (is - was) / (2.0 * h);
+                taken += gains.damping[axis] * speed * speed;
+            }
+        }
+        let scale = 1.0 + gained.abs() + taken;
+        prop_assert!((power + gained + taken).abs() < 1e-6 * scale, "{power} {gained} {taken}");
+    }
+
+    /// Legs that are where the plan has them and move as it says are given its torques and no others.
+    #[test]
+    fn nothing_is_added_on_the_plan(
+        gains in gains(),
+        (q, qd, planned) in (joints(2.0), joints(20.0), joints(30.0)),
+    ) {
+        let reference = Reference { joints: q, joint_velocities: qd, torques: planned, node: 0 };
+        prop_assert_eq!(torques(gains, (q, qd), &reference), planned);
     }
 }

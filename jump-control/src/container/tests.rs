@@ -323,6 +323,60 @@ fn values_that_cannot_be_are_named() {
     assert_eq!(mirrored[0].node::<f32>().base.rotation, level);
 }
 
+/// What a test does to the header.
+type Change<'a> = &'a dyn Fn(&mut Header<'static, 2>);
+
+/// What the check says of a plan with this header, which is written as it is.
+fn checked(change: Change<'_>) -> Result<(), ContainerError> {
+    let mut changed = header();
+    change(&mut changed);
+    let stored = written(&changed, &nodes());
+    let container = (Container::open(&stored, ROBOT) as Opened<'_>).unwrap();
+    container.check()
+}
+
+/// Friction, the largest force and the weight are each positive and finite, and shares are above zero and at most one: whichever one of
+/// them is not, the others do not make up for it.
+#[test]
+fn every_margin_has_its_range() {
+    let bad = [0.0, -0.0, -0.5, f32::INFINITY, f32::NAN];
+    let refused = |what| Err(ContainerError::Value { node: None, what });
+    for x in bad {
+        let margins: [Change<'_>; 3] = [
+            &|h| h.margins.friction = x,
+            &|h| h.margins.max_force = x,
+            &|h| h.margins.weight = x,
+        ];
+        assert_eq!(margins.map(checked), [refused("margins"); 3], "{x}");
+    }
+    for x in bad.into_iter().chain([1.0 + f32::EPSILON]) {
+        let shares: [Change<'_>; 3] = [
+            &|h| h.margins.friction_share = x,
+            &|h| h.margins.torque_share = x,
+            &|h| h.margins.speed_share = x,
+        ];
+        assert_eq!(shares.map(checked), [refused("shares"); 3], "{x}");
+    }
+    let all_of_it: Change<'_> = &|h| {
+        h.margins.friction_share = 1.0;
+        h.margins.torque_share = 1.0;
+        h.margins.speed_share = 1.0;
+    };
+    assert_eq!(checked(all_of_it), Ok(()));
+}
+
+/// A robot with one foot cannot stand on a second or on any other, alone or together with the first.
+#[test]
+fn nobody_stands_on_feet_that_are_not_there() {
+    let what = "feet of a phase";
+    for contacts in 2..=u8::MAX {
+        let stands: Change<'_> = &|h| h.phases[0].contacts = contacts;
+        let refused = Err(ContainerError::Value { node: None, what });
+        assert_eq!(checked(stands), refused, "{contacts}");
+    }
+    assert_eq!(checked(&|_| ()), Ok(()));
+}
+
 /// Parts of a node are those of the whole, and zeros elsewhere: for any parts that are asked for.
 #[test]
 fn parts_of_a_node_are_the_wholes() {
