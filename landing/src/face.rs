@@ -226,3 +226,41 @@ impl<T: Scalar> Face<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Face, MOST};
+    use nalgebra::Vector3;
+    use proptest::array::uniform3;
+    use proptest::prelude::{Just, prop_assert, prop_oneof, proptest};
+
+    proptest! {
+        /// As far as the blocking step all multipliers stay above zero and the one that blocks reaches it; where none falls, none blocks, however
+        /// far the step is.
+        #[test]
+        fn the_first_multiplier_that_falls_to_zero_blocks(
+            multipliers in uniform3(prop_oneof![1 => Just(0.0), 3 => 0.0..10.0_f64]),
+            rates in uniform3(prop_oneof![1 => Just(0.0), 3 => -1.0..1.0_f64]), len in 0..=MOST, among in 0..=MOST,
+        ) {
+            let mut face = Face::FREE;
+            for (k, multiplier) in multipliers.iter().take(len).enumerate() {
+                let split = face.split(&Vector3::ith(k, 1.0));
+                face.push(k, 0.0, &split, *multiplier);
+            }
+            let count = len.min(among);
+            let falls = rates.iter().take(count).any(|rate| *rate < 0.0);
+            let Some((k, step)) = face.blocking(&rates, among) else {
+                prop_assert!(!falls);
+                return Ok(());
+            };
+            prop_assert!(falls && k < count && step >= 0.0, "{k} {step}");
+            face.advance(step, &rates);
+            for (i, after) in face.without(usize::MAX).take(count) {
+                prop_assert!(after >= -1e-12 * step, "{i} {after}");
+                if i == k {
+                    prop_assert!(after <= 1e-12 * step, "{after}");
+                }
+            }
+        }
+    }
+}

@@ -81,6 +81,25 @@ proptest! {
     }
 }
 
+/// No force is felt over a time that is none or that no tick has, and what was seen before it is forgotten: the next tick is a first one again.
+#[test]
+fn a_tick_of_no_time_is_no_measurement() {
+    let observer = ForceObserver::<f64, 12, 4>::new(&BUILD, FEET.map(|foot| foot.frame));
+    let (q, v) = (Configuration::NEUTRAL, Tangent::ZERO);
+    for ticks in 0..3 {
+        for bad in [0.0, -0.0, -DT, 1.001, f64::NAN, f64::INFINITY] {
+            let mut state = ObserverState::new();
+            let mut felt = |dt| observer.update(&A1Geared, &mut state, &q, &v, &[1.0; 12], dt);
+            for tick in 0..ticks {
+                assert_eq!(felt(DT).is_some(), tick > 0);
+            }
+            assert_eq!(felt(bad), None);
+            assert_eq!(felt(DT), None, "{bad} after {ticks}");
+            assert!(felt(DT).is_some());
+        }
+    }
+}
+
 /// A sensor that says contact while the leg feels nothing is doubted after [`Detector::patience`]; it is believed again only when nothing is
 /// left of a doubt of twice that, which falls at a quarter of the rate.
 #[test]
