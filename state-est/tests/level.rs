@@ -27,6 +27,27 @@ fn tilted(world: &World, tilt: f64, force_b: &Vector3<f64>, evidence: f64) -> Es
     estimator.step(&A1, &mut state, Some(&sample), DT)
 }
 
+/// How likely a foot stands; as likely as not, too.
+fn evidence() -> impl Strategy<Value = f64> {
+    prop_oneof![1 => Just(0.5), 4 => 0.11..1.0_f64]
+}
+
+/// What the estimator knows after it has learnt the gyroscope's `bias` from the feet of the crouched robot, which stands.
+fn learnt(bias: &Vector3<f64>) -> State<f64, 4, 6> {
+    let mut world = World::crouched();
+    world.omega_b = *bias;
+    let mut settings = trusting();
+    (settings.tilt_gain, settings.bias_gain) = (0.0, 50.0);
+    settings.max_bias = 1.0;
+    let estimator = world.estimator::<4, 6>(feet(), settings);
+    let mut state = State::new(&estimator, &A1, &world.q);
+    let sample = world.sample(&world.held(), [1.0; 4]);
+    for _ in 0..200 {
+        let _ = estimator.step(&A1, &mut state, Some(&sample), 0.01);
+    }
+    state
+}
+
 /// Angle between the estimated and the true vertical after a step.
 fn tilt_of(world: &World, estimate: &Estimate<f64, 4>) -> f64 {
     let true_b = world.q.base.rotation.inverse() * Vector3::z();
@@ -50,7 +71,7 @@ proptest! {
     /// Gravity speaks only in a force within 1 m/s² of its own, while the robot turns by less than 0.5 rad/s on a foot that is more
     /// likely to stand than not.
     #[test]
-    fn gravity_is_heard_only_at_rest(yaw in 0.0..1.0_f64, size in 8.0..12.0_f64, evidence in 0.11..1.0_f64) {
+    fn gravity_is_heard_only_at_rest(yaw in 0.0..1.0_f64, size in 8.0..12.0_f64, evidence in evidence()) {
         let mut world = World::crouched();
         world.omega_b = Vector3::z() * yaw;
         let tilt = 0.2;
@@ -100,6 +121,45 @@ proptest! {
         }
     }
 
+}
+
+proptest! {
+    #![proptest_config(config(16, 17))]
+
+    /// A robot that has learnt the bias of its gyroscope and leaves the ground turns by what is left of the rate, and is said to.
+    #[test]
+    fn a_learnt_bias_turns_nothing(bias in vector(0.25), turning in vector(3.0), time in 0.1..1.0_f64) {
+        let mut state = learnt(&bias);
+        let mut world = World::crouched();
+        world.omega_b = turning + bias;
+        let estimator = world.estimator::<4, 6>(feet(), Settings::new());
+        let sample = world.sample(&Vector3::zeros(), [0.0; 4]);
+        let mut step = || estimator.step(&A1, &mut state, Some(&sample), time / 100.0);
+        let start = step().base.rotation;
+        let last = (0..100).fold(step(), |_, _| step());
+        prop_assert!((last.velocity.angular - turning).amax() < 1e-6, "{}", last.velocity.angular - turning);
+        let end = start * so3::exp(&(turning * (time * 1.01)));
+        let off = end.matrix() - last.base.rotation.matrix();
+        prop_assert!(off.amax() < 1e-6, "{off}");
+    }
+
+    /// It is the robot's own rate that has to be small for gravity to be heard, not the gyroscope's with its bias.
+    #[test]
+    fn a_learnt_bias_is_no_motion(bias in vector(0.25), yaw in -1.0..1.0_f64) {
+        let state = learnt(&bias);
+        let mut world = World::crouched();
+        world.omega_b = bias + Vector3::z() * yaw;
+        let force_b = so3::exp(&(Vector3::x() * 0.1)) * world.held();
+        let sample = world.sample(&force_b, [1.0; 4]);
+        let after = |tilt_gain| {
+            let mut settings = trusting();
+            (settings.tilt_gain, settings.bias_gain) = (tilt_gain, 0.0);
+            settings.max_bias = 1.0;
+            let estimator = world.estimator::<4, 6>(feet(), settings);
+            estimator.step(&A1, &mut { state }, Some(&sample), DT).base.rotation
+        };
+        prop_assert_eq!(after(1.0) != after(0.0), yaw.abs() < 0.5);
+    }
 }
 
 proptest! {
