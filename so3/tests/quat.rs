@@ -1,6 +1,6 @@
 //! Quaternions: round trips, storage orders, exp and log, slerp, bad input.
 
-use crate::cases::{matrix_error, rotation_vector, rotation_vectors};
+use crate::cases::{matrix_error, rotation_vector, rotation_vectors, to_f64};
 use proptest::prelude::*;
 use so3::nalgebra::Quaternion;
 use so3::{Error, Geodesic, Rotation3, Scalar, UnitQuaternion, Vector3, exp, log, quat};
@@ -78,7 +78,21 @@ fn bad_quaternions_are_refused() {
     assert!(q.w.is_nan());
 }
 
+/// Whether the logarithm of a quaternion `factor` times as long as the unit one of `w` is the unit one's, bit for bit.
+fn keeps_its_log<T: Scalar>(w: &Vector3<f64>, factor: f64) -> bool {
+    let unit = quat::exp(&w.map(T::of));
+    let scaled = UnitQuaternion::new_unchecked(unit.into_inner() * T::of(factor));
+    to_f64(&quat::log(&scaled)) == to_f64(&quat::log(&unit))
+}
+
 proptest! {
+    /// A quaternion's length says nothing of its rotation: times a power of two, which rounds nothing, it has the same logarithm, bit for bit.
+    #[test]
+    fn a_longer_or_shorter_quaternion_has_the_same_log(w in rotation_vector(), base in prop_oneof![Just(2.0), Just(0.5_f64)], power in 0..=32_u32) {
+        let factor = so3::math::powi(base, power);
+        prop_assert!(keeps_its_log::<f64>(&w, factor) && keeps_its_log::<f32>(&w, factor));
+    }
+
     #[test]
     fn quaternion_exp_and_log(w in rotation_vector(), turns in -3..=3_i32) {
         let rot = exp(&w);
