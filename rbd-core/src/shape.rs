@@ -95,3 +95,53 @@ impl Shape<f64> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Rotation3;
+    use proptest::prelude::*;
+
+    use super::{Contact, ContactShape, Link, Shape, Vector3};
+    use crate::model::Frame;
+
+    proptest! {
+        /// The four balls of a sole touch its plane from above and two of its edges each from inside, in their order.
+        #[test]
+        fn balls_in_the_corners_of_a_sole_touch_its_plane_and_its_edges(
+            x in -0.1..0.1_f64, y in -0.1..0.1_f64, size in [0.1..0.3_f64, 0.1..0.3_f64], radius in 1e-3..0.04_f64,
+            offset in prop::array::uniform3(-1.0..1.0_f64), turn in prop::array::uniform3(-1.5..1.5_f64),
+        ) {
+            let rotation = Rotation3::from_scaled_axis(turn.into());
+            let r = rotation.matrix();
+            let (x, y) = ([x, x + size[0]], [y, y + size[1]]);
+            let sole = Contact {
+                name: "sole",
+                frame: Frame {
+                    link: Link::Joint(3),
+                    offset,
+                    rotation: core::array::from_fn(|i| core::array::from_fn(|j| r[(i, j)])),
+                },
+                shape: ContactShape::Rectangle { x, y },
+            };
+            let balls = Shape::corners(&sole, radius, 7);
+            let balls = balls.as_ref().map_or(&[][..], |balls| balls);
+            prop_assert_eq!(balls.len(), 4);
+            for (i, ball) in balls.iter().enumerate() {
+                prop_assert!(ball.is_ball());
+                prop_assert_eq!((ball.link, ball.radius, ball.owner), (Link::Joint(3), radius, 7 + i));
+                let center = rotation.inverse() * (Vector3::from(ball.from) - Vector3::from(offset));
+                let (from_x, from_y) = ((center.x - x[i / 2]).abs(), (center.y - y[i % 2]).abs());
+                for distance in [from_x, from_y, center.z] {
+                    prop_assert!((distance - radius).abs() < 1e-14, "{i}: {distance}");
+                }
+                let inside = |c: f64, edges: [f64; 2]| edges[0] < c && c < edges[1];
+                prop_assert!(inside(center.x, x) && inside(center.y, y));
+            }
+            // A foot that is a ball has no corners, and a sole is no ball.
+            prop_assert_eq!(Shape::of(&sole, 0), None);
+            let foot = Contact { shape: ContactShape::Sphere { radius }, ..sole };
+            prop_assert_eq!(Shape::corners(&foot, radius, 0), None);
+            prop_assert_eq!(Shape::of(&foot, 5), Some(Shape::ball(Link::Joint(3), offset, radius, 5)));
+        }
+    }
+}

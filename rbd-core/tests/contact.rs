@@ -6,19 +6,20 @@
     reason = "tests"
 )]
 
-use crate::common::{CAP, masked, model, state, vector};
+use crate::common::{CAP, Model, masked, model, state, vector};
 use proptest::prelude::*;
 use rbd_core::{
-    AbaWorkspace, Axes, BodyMotions, ContactRow, ContactWorkspace, Effort, Frame, FrameJacobian,
-    Kinematics, Link, MassFactors, MassMatrix, Posture, Tangent, Tree, aba, bias_accelerations,
-    contact_dynamics, crba, forward_kinematics, frame_jacobian, impact, nonlinear_effects,
+    AbaWorkspace, Axes, BaseKind, BodyMotions, ContactRow, ContactWorkspace, Effort, Frame,
+    FrameJacobian, Kinematics, Link, MassFactors, MassMatrix, Posture, Tangent, Tree, aba,
+    bias_accelerations, contact_dynamics, crba, forward_kinematics, frame_jacobian, impact,
+    nonlinear_effects,
 };
 
 const ROWS: usize = 12;
 const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// The leaf that ends the chain of the first joint, as far from the base as the table goes.
-fn last_leaf(model: &crate::common::Model) -> usize {
+fn last_leaf(model: &Model) -> usize {
     model.joint_count() - 1
 }
 
@@ -58,7 +59,7 @@ proptest! {
         let scale = bias.norm().max(rows.iter().map(|r| free.dot(&r.gradient).abs()).fold(1.0, f64::max));
 
         // A fixed-base robot with fewer than three joints cannot hold three rows.
-        if model.base_kind() == rbd_core::BaseKind::Floating {
+        if model.base_kind() == BaseKind::Floating {
             prop_assert!(solution.residual <= 1e-6 * scale, "residual {}", solution.residual);
         }
         // M ν̇ + h = τ + Jᵀ λ, whatever the rows.
@@ -68,7 +69,7 @@ proptest! {
         }
         let left = mass.mul(&solution.motion) + nonlinear_effects(&model, &posture, &v);
         let size = (0..6 + CAP).map(|i| push.coordinate(i).abs()).fold(1.0, f64::max);
-        let first = if model.base_kind() == rbd_core::BaseKind::Floating { 0 } else { 6 };
+        let first = if model.base_kind() == BaseKind::Floating { 0 } else { 6 };
         for i in first..6 + CAP {
             let (x, y) = (left.coordinate(i), push.coordinate(i));
             prop_assert!((x - y).abs() <= 1e-7 * size, "row {i}: {x} {y}");
@@ -77,6 +78,43 @@ proptest! {
         for i in 0..3 {
             let (x, y) = (solution.forces[i], solution.forces[i + 3]);
             prop_assert!((x - y).abs() <= 1e-6 * size, "{x} {y}");
+        }
+    }
+
+    /// The unit in which a row is written, metres or millimetres, changes the number of its force and nothing else: neither the
+    /// motion nor the load.
+    #[test]
+    fn the_unit_of_a_row_changes_neither_motion_nor_load(
+        robot in model(), (q, [v, free]) in state(), arm in vector(0.3), units in prop::array::uniform3(0.02..1.0f64),
+    ) {
+        let bodies = &robot.bodies()[..robot.joint_count()];
+        let model = Model::new(BaseKind::Floating, *robot.base(), bodies).unwrap();
+        let [v, free] = [v, free].map(|x| masked(&model, x));
+        let posture = Posture::new(&model, &q);
+        let (mut kinematics, mut motions) = (Kinematics::IDENTITY, BodyMotions::ZERO);
+        forward_kinematics(&model, &posture, &mut kinematics);
+        bias_accelerations(&model, &posture, &v, &mut motions);
+        let (mut mass, mut factors) = (MassMatrix::ZERO, MassFactors::new());
+        crba(&model, &posture, &mut mass);
+        factors.factor(&model, &mass);
+        let frame = Frame { link: Link::Base, offset: arm.into(), rotation: IDENTITY };
+        let mut jacobian = FrameJacobian::ZERO;
+        frame_jacobian(&model, &kinematics, &frame, Axes::Local, &mut jacobian);
+        let bias = motions.frame_classical_acceleration(&frame).linear;
+        let rows = ContactRow::point(&jacobian, &bias);
+        let scaled: [_; 3] = core::array::from_fn(|i| ContactRow {
+            gradient: rows[i].gradient * units[i],
+            bias: rows[i].bias * units[i],
+        });
+        let mut ws = ContactWorkspace::<f64, CAP, 3>::new();
+        let plain = contact_dynamics(&factors, &free, &rows, &mut ws);
+        let other = contact_dynamics(&factors, &free, &scaled, &mut ws);
+        let wanted = rows.iter().map(|row| (free.dot(&row.gradient) + row.bias).abs()).fold(1.0, f64::max);
+        let load = plain.forces.iter().map(|f| f.abs()).fold(1.0, f64::max);
+        for i in 0..3 {
+            let left = other.motion.dot(&rows[i].gradient) + rows[i].bias;
+            prop_assert!(left.abs() <= 1e-10 * wanted, "row {i}: {left}");
+            prop_assert!((other.forces[i] * units[i] - plain.forces[i]).abs() <= 1e-10 * load);
         }
     }
 
@@ -99,7 +137,7 @@ proptest! {
         let mut ws = ContactWorkspace::<f64, CAP, ROWS>::new();
         let after = impact(&factors, &v, restitution, &rows, &mut ws);
         let before = jacobian.mul(&v).linear;
-        if model.base_kind() == rbd_core::BaseKind::Floating {
+        if model.base_kind() == BaseKind::Floating {
             let rebound = jacobian.mul(&after.motion).linear + before * restitution;
             prop_assert!(rebound.norm() <= 1e-6 * before.norm().max(1.0), "{rebound}");
         }

@@ -10,7 +10,9 @@ use rbd_core::convert::{
     velocity_from_com, velocity_from_mixed, velocity_from_mujoco, velocity_to_com,
     velocity_to_mixed, velocity_to_mujoco,
 };
-use rbd_core::{Force, Motion, Transform};
+use rbd_core::hardware::motors_f32;
+use rbd_core::model::{frames_f32, limits_f32};
+use rbd_core::{Force, Frame, JointLimits, Link, Motion, Motor, Shape, Transform};
 
 fn vector() -> impl Strategy<Value = Vector3<f64>> {
     proptest::array::uniform3(-2.0..2.0_f64).prop_map(Vector3::from)
@@ -32,6 +34,16 @@ fn far(a: &[f64], b: &[f64]) -> f64 {
 fn distance(a: &Transform<f64>, b: &Transform<f64>) -> f64 {
     let turned = (a.rotation.matrix() - b.rotation.matrix()).amax();
     turned.max((a.translation - b.translation).amax())
+}
+
+/// Rounded, a number moves by half of the last digit at most.
+fn nearest(double: &[f64], single: &[f32]) -> Result<(), TestCaseError> {
+    prop_assert_eq!(double.len(), single.len());
+    for (&x, &y) in double.iter().zip(single) {
+        let off = (f64::from(y) - x).abs();
+        prop_assert!(off <= x.abs() * f64::from(f32::EPSILON) / 2.0, "{x} {y}");
+    }
+    Ok(())
 }
 
 /// The base a moment later: it moves with `velocity`, which changes by `acceleration`.
@@ -100,6 +112,43 @@ proptest! {
         prop_assert!(far(&back.to_array(), &a.to_array()) < 1e-13);
         let back = acceleration_from_mixed(&base, &v, &acceleration_to_mixed(&base, &v, &a));
         prop_assert!(far(&back.to_array(), &a.to_array()) < 1e-13);
+    }
+
+    /// A table in single precision holds, entry by entry, the number nearest to that in double precision.
+    #[test]
+    fn tables_in_single_precision_hold_the_nearest_numbers(x in proptest::collection::vec(-5.0..5.0_f64, 15)) {
+        let limits: [_; 3] = core::array::from_fn(|i| JointLimits {
+            lower: x[i], upper: x[i + 1], speed: x[i + 2], effort: x[i + 3], damping: x[i + 4], friction: x[i + 5],
+        });
+        for (a, b) in limits.iter().zip(limits_f32(&limits)) {
+            nearest(
+                &[a.lower, a.upper, a.speed, a.effort, a.damping, a.friction],
+                &[b.lower, b.upper, b.speed, b.effort, b.damping, b.friction],
+            )?;
+        }
+        let motors: [_; 3] = core::array::from_fn(|i| Motor {
+            gear: x[i], torque: x[i + 1], corner_speed: x[i + 2], no_load_speed: x[i + 3], rotor_inertia: x[i + 4],
+        });
+        for (a, b) in motors.iter().zip(motors_f32(&motors)) {
+            nearest(
+                &[a.gear, a.torque, a.corner_speed, a.no_load_speed, a.rotor_inertia],
+                &[b.gear, b.torque, b.corner_speed, b.no_load_speed, b.rotor_inertia],
+            )?;
+        }
+        let row = |i: usize| [x[i], x[i + 1], x[i + 2]];
+        let frames: [_; 3] = core::array::from_fn(|i| Frame {
+            link: Link::Joint(i), offset: row(i), rotation: [row(i + 3), row(i + 6), row(i + 9)],
+        });
+        for (a, b) in frames.iter().zip(frames_f32(&frames)) {
+            prop_assert_eq!(a.link, b.link);
+            nearest(&a.offset, &b.offset)?;
+            nearest(a.rotation.as_flattened(), b.rotation.as_flattened())?;
+        }
+        let link = Link::Joint(2);
+        let shape = Shape { link, from: row(0), to: row(3), radius: x[6], owner: 4 };
+        let single = shape.to_f32();
+        prop_assert_eq!((single.link, single.owner), (link, 4));
+        nearest(&[row(0), row(3), row(6)].as_flattened()[..7], &[single.from, single.to, [single.radius; 3]].as_flattened()[..7])?;
     }
 
     /// The CoM's velocity is the derivative of the CoM's position.
