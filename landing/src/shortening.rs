@@ -52,7 +52,7 @@ impl<T: Scalar> Shortening<T> {
         let mut fastest = T::ZERO;
         for end in legs {
             let speed_b = velocity_b.linear + velocity_b.angular.cross(&end.position);
-            let force = solve_damped(end, self.damping, &-speed_b);
+            let force = solve_damped(end, self.damping, &speed_b);
             for (_, column) in end.columns() {
                 fastest = math::max(fastest, math::abs(column.dot(&force)));
             }

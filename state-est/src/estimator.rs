@@ -222,7 +222,7 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
         };
         state.coasting = if fault.is_some() {
             // Not beyond the limit: sums of small numbers must not end in a stuck float.
-            math::min(state.coasting + dt, s.max_coasting * T::TWO)
+            math::min(state.coasting + dt, s.max_coasting + s.max_dt)
         } else {
             T::ZERO
         };

@@ -138,10 +138,12 @@ proptest! {
     /// Without samples the robot goes on with the last force and rate and no foot is believed; after the limit it is lost and stands
     /// still where it was, for as long as it takes; and the next sample finds it.
     #[test]
-    fn a_gap_is_coasted_lost_and_found(world in world(), force in vector(30.0), gap in 1..20_usize, dt in 5e-4..5e-3_f64) {
+    fn a_gap_is_coasted_lost_and_found(
+        world in world(), force in vector(30.0), gap in 1..20_usize, dt in 5e-4..5e-3_f64, coasted in 0..6_usize,
+    ) {
         let mut settings = Settings::new();
-        // Exactly four steps, as they are summed: the limit itself is still coasted.
-        settings.max_coasting = [dt; 4].iter().sum();
+        // Exactly so many steps, as they are summed: the limit itself is still coasted. None is a limit, too.
+        settings.max_coasting = [dt; 6].iter().take(coasted).sum();
         let estimator = world.estimator::<4, 6>(feet(), settings);
         let mut state = State::new(&estimator, &A1, &world.q);
         let _ = estimator.step(&A1, &mut state, Some(&world.sample(&force, [1.0; 4])), dt);
@@ -151,7 +153,7 @@ proptest! {
             let estimate = estimator.step(&A1, &mut state, None, dt);
             prop_assert_eq!(estimate.fault, Some(Fault::Missing));
             prop_assert_eq!(estimate.confidence, [0.0; 4]);
-            if k <= 4 {
+            if k <= coasted {
                 // As with sensors that say the same again, and feet in the air.
                 let same = estimator.step(&A1, &mut followed, Some(&world.sample(&force, [0.0; 4])), dt);
                 prop_assert_eq!(estimate.status, Status::Coasting);
