@@ -306,7 +306,9 @@ pub const SETTINGS: Settings = Settings {
     patience: 1.0,
     // m/s and rad/s: as of A1's machine on its legs of 0.4 m.
     rest: (0.05, 0.2),
-    // s: likewise.
+    // rad: the squat itself leans by 17°.
+    most_tilt: 0.5,
+    // s: as of A1's machine.
     settling: 0.2,
     // N m s/rad. Found.
     safe_damping: 5.0,

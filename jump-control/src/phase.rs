@@ -47,7 +47,7 @@ pub enum Event {
     Posing,
     /// A foot touches the ground at or after `T_posing`.
     Touchdown,
-    /// The body is level, low in speed, and has been so for a while.
+    /// The body is not tilted, low in speed, and has been so for a while.
     Settled,
     /// A stood robot was pushed.
     Disturbed,

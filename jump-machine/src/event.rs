@@ -14,7 +14,8 @@ impl<T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'_, T, M,
         let phase = self.supervisor.phase;
         let moving = velocity.linear.norm_squared() > linear * linear
             || velocity.angular.norm_squared() > angular * angular;
-        self.calm = if moving || !matches!(phase, Phase::Landing | Phase::Stand) {
+        let resting = !moving && self.supervisor.upright;
+        self.calm = if !resting || !matches!(phase, Phase::Landing | Phase::Stand) {
             T::ZERO
         } else {
             self.calm + settings.period

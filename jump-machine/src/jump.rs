@@ -39,6 +39,8 @@ impl<'a, T: Scalar, const N: usize, const F: usize> Jump<'a, T, N, F> {
 pub enum Refusal {
     /// The robot does not stand: it holds for another jump, is under way, or has aborted.
     NotStanding,
+    /// The base is tilted further than that of a robot on its feet: it lies, or leans on something.
+    Tilted,
     /// The start is not a number, or leaves less time than holding still, weighing, the push-off's gains and moving the trunk take.
     TooLate,
     /// At the start this joint was not where the plan begins.
@@ -53,6 +55,7 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotStanding => f.write_str("the robot does not stand: wait until it does"),
+            Self::Tilted => f.write_str("the base is tilted: set the robot on its feet"),
             Self::TooLate => {
                 f.write_str("the plan came too late for its start: choose a later one")
             }

@@ -78,6 +78,7 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
                 max_silence: settings.max_silence,
                 safe_damping: settings.safe_damping,
                 slew: settings.slew,
+                most_tilt: settings.most_tilt,
             }),
             contact: DetectorState::new(),
             calm: T::ZERO,

@@ -37,6 +37,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub patience: T,
     /// Base speeds below which the robot is at rest, m/s and rad/s.
     pub rest: (T, T),
+    /// Largest tilt of the base of a robot that stands, rad.
+    pub most_tilt: T,
     /// Time at rest after which it stands, s.
     pub settling: T,
     /// Height of the centre of mass over the feet's centres when standing, m.
@@ -107,6 +109,7 @@ impl<T: Scalar, const F: usize, const N: usize> Settings<T, N, F> {
             levelling: build.time(0.12),
             patience: build.time(0.5),
             rest: (build.speed(0.05), build.rate(0.2)),
+            most_tilt: of(0.4),
             settling: build.time(0.2),
             stand_height: build.length(0.25),
             safe_damping: build.joint_damping(2.0),

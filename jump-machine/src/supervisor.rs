@@ -20,6 +20,8 @@ pub(crate) struct Limits<T> {
     pub(crate) safe_damping: T,
     /// Largest rate of a joint's torque, N m/s.
     pub(crate) slew: T,
+    /// Largest tilt of the base of a robot that stands, rad.
+    pub(crate) most_tilt: T,
 }
 
 /// Phase, command in force, and what has been heard and when.
@@ -32,6 +34,10 @@ pub(crate) struct Supervisor<T: Scalar, const N: usize, const F: usize> {
     refusal: Option<Refusal>,
     /// When the last tick was, on the caller's clock, s.
     last_tick: Option<T>,
+    /// Whether the base is tilted no further than that of a robot that stands.
+    pub(crate) upright: bool,
+    /// The vertical's part along the base's z axis at the largest tilt.
+    least_up: T,
     limits: Limits<T>,
     heard: Option<Observation<T, N, F>>,
     /// Time since the command was made, s.
@@ -48,6 +54,8 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
             fault: None,
             refusal: None,
             last_tick: None,
+            upright: true,
+            least_up: math::cos(limits.most_tilt),
             heard: None,
             silence: T::ZERO,
             slew: Slew::new(limits.slew),
@@ -57,6 +65,9 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
 
     /// Whether a jump may be armed that begins at `start` on the caller's clock, `ahead` seconds from now at the earliest.
     pub(crate) fn may_arm(&self, start: T, ahead: T) -> Result<(), Refusal> {
+        if !self.upright && matches!(self.phase, Phase::Landing | Phase::Stand) {
+            return Err(Refusal::Tilted);
+        }
         if self.phase != Phase::Stand {
             return Err(Refusal::NotStanding);
         }
@@ -73,8 +84,12 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         self.happened(Event::Armed);
     }
 
-    /// Whether the robot is where its jump begins; the first joint that is not is the reason why the jump is not begun.
+    /// Whether the robot is where its jump begins; a base that is tilted, or the first joint that is elsewhere, is the reason why the jump is
+    /// not begun.
     pub(crate) fn begin(&mut self, joints: &[T; N], first: &[T; N], tolerance: T) -> Event {
+        if !self.upright {
+            return self.refuse(Refusal::Tilted);
+        }
         let mut pairs = joints.iter().zip(first);
         match pairs.position(|(q, first)| math::abs(*q - *first) > tolerance) {
             None => Event::Start,
@@ -121,6 +136,8 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
             (None, None) => return Err(Fault::Stale),
         };
         self.heard = Some(*observed);
+        // Also false for NaN.
+        self.upright = observed.measured.base.rotation.matrix().m33 >= self.least_up;
         let watch = Watch { max_age: s.max_age };
         watch
             .fault(&observed.measured)

@@ -134,6 +134,8 @@ proptest! {
     fn feet_follow_the_tilt_before_the_ground(tilt in -0.4..0.4_f64, rate in -8.0..8.0_f64) {
         let mut settings = Settings::new(&BUILD, feet(), MOTORS, crouch());
         (settings.retraction.share, settings.shortening.most) = (0.0, 0.0);
+        // These plans begin wherever their flight has to.
+        settings.most_tilt = core::f64::consts::PI;
         let nodes = nodes(rate);
         // The plan's rotation is shifted by the tilt with which the body will arrive.
         let nodes: Vec<_> = nodes

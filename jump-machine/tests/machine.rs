@@ -7,7 +7,9 @@ use jump_machine::Workspace;
 use jump_machine::regulator::NODES_PER_TICK;
 use jump_machine::{Jump, Machine, Observation, Refusal, Settings, Work};
 use nalgebra::{Rotation3, Vector3};
-use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_oneof, proptest};
+use proptest::prelude::{
+    Just, ProptestConfig, Strategy, any, prop_assert, prop_assert_eq, prop_oneof, proptest,
+};
 use rbd_core::{Frame, Motion, Motor, Transform};
 use so3::Scalar;
 
@@ -170,6 +172,35 @@ fn a_robot_that_is_pushed_lands_again() {
         run(&mut m, 110, 500, &inputs()).unwrap().phase,
         Phase::Stand
     );
+}
+
+/// A robot at rest stands as long as it is tilted by less than the settings say, about whatever axis. One that lies does not, and is given no jump
+/// until it is on its feet; one that is tipped over in its hold does not push off.
+#[test]
+fn a_robot_that_lies_does_not_stand_and_does_not_jump() {
+    let (ground, nodes) = (inputs(), nodes());
+    let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch());
+    let most: f64 = settings.most_tilt;
+    proptest!(ProptestConfig::with_cases(20), |(axis in -3.2..3.2, turn in -3.2..3.2, share in 0.0..0.99, over in 0.01..1.0)| {
+        let tilted = |by: f64| {
+            let mut heard = ground;
+            let tilt = so3::exp(&(so3::exp(&(Vector3::z() * axis)) * Vector3::x() * by));
+            heard.measured.base.rotation = Rotation3::from_axis_angle(&Vector3::z_axis(), turn) * tilt;
+            heard
+        };
+        let (leaning, lying) = (tilted(share * most), tilted(most + over * (3.1 - most)));
+        let mut workspace = Workspace::new();
+        let mut m = machine(&mut workspace);
+        prop_assert_eq!(run(&mut m, 0, 50, &leaning).unwrap().phase, Phase::Stand);
+        m.arm(jump(&nodes), 1.3).unwrap();
+        prop_assert_eq!(run(&mut m, 50, 1300, &leaning).unwrap().phase, Phase::Hold);
+        let tick = run(&mut m, 1300, 1301, &lying).unwrap();
+        prop_assert_eq!((tick.phase, tick.refusal), (Phase::Stand, Some(Refusal::Tilted)));
+        prop_assert_eq!(run(&mut m, 1301, 2000, &lying).unwrap().phase, Phase::Landing);
+        prop_assert_eq!(m.arm(jump(&nodes), 4.0), Err(Refusal::Tilted));
+        prop_assert_eq!(run(&mut m, 2000, 2250, &leaning).unwrap().phase, Phase::Stand);
+        prop_assert_eq!(m.arm(jump(&nodes), 4.0), Ok(()));
+    });
 }
 
 /// Shares of their way that torques have gone after a joint tick, of the joints that have one: until then a leg was where it should be, now it is not.

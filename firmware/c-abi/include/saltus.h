@@ -334,6 +334,10 @@ typedef enum SaltusRefusal {
    Another reason of a newer machine.
    */
   SALTUS_REFUSAL_OTHER = 5,
+  /*
+   The base is tilted further than that of a robot on its feet.
+   */
+  SALTUS_REFUSAL_TILTED = 6,
 } SaltusRefusal;
 
 /*

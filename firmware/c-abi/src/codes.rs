@@ -105,6 +105,8 @@ pub enum Refusal {
     Place = 4,
     /// Another reason of a newer machine.
     Other = 5,
+    /// The base is tilted further than that of a robot on its feet.
+    Tilted = 6,
 }
 
 /// Whether an estimate may be acted on.
@@ -326,6 +328,7 @@ pub(crate) fn refusal(refusal: Option<jump_machine::Refusal>) -> (Refusal, u32) 
     match refusal {
         None => (Refusal::None, 0),
         Some(jump_machine::Refusal::NotStanding) => (Refusal::NotStanding, 0),
+        Some(jump_machine::Refusal::Tilted) => (Refusal::Tilted, 0),
         Some(jump_machine::Refusal::TooLate) => (Refusal::TooLate, 0),
         Some(jump_machine::Refusal::Posture(joint)) => (Refusal::Posture, joint as u32),
         Some(jump_machine::Refusal::Place) => (Refusal::Place, 0),
@@ -428,6 +431,9 @@ pub extern "C" fn saltus_refusal_text(refusal: u32) -> *const c_char {
             c"the robot does not stand: wait until it does",
             c"the plan came too late for its start: choose a later one",
             c"a joint is not where the plan begins: plan from where the robot stands",
+            c"the feet are not where the jump begins: give it the place where the robot stands",
+            c"another reason",
+            c"the base is tilted: set the robot on its feet",
         ],
         refusal,
     )

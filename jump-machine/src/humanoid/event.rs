@@ -26,7 +26,8 @@ impl<
         let (linear, angular) = s.rest;
         let moving = velocity.linear.norm() > linear || velocity.angular.norm() > angular;
         let phase = self.supervisor.phase;
-        self.calm = if moving || !matches!(phase, Phase::Landing | Phase::Stand) {
+        let resting = !moving && self.supervisor.upright;
+        self.calm = if !resting || !matches!(phase, Phase::Landing | Phase::Stand) {
             T::ZERO
         } else {
             self.calm + dt

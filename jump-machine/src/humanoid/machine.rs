@@ -94,6 +94,7 @@ impl<
                 max_silence: settings.max_silence,
                 safe_damping: settings.safe_damping,
                 slew: settings.slew,
+                most_tilt: settings.most_tilt,
             }),
             armed: None,
             calm: T::ZERO,

@@ -41,6 +41,8 @@ pub struct Settings<T: Scalar, const N: usize, const F: usize> {
     pub patience: T,
     /// Base speeds below which the robot is at rest, m/s and rad/s.
     pub rest: (T, T),
+    /// Largest tilt of the base of a robot that stands, rad.
+    pub most_tilt: T,
     /// Time at rest after which it stands, s.
     pub settling: T,
     /// Damping of the safe command, N m s/rad.
