@@ -454,3 +454,29 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         mu.reverse();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Elimination;
+    use crate::Problem;
+
+    /// Of a single entry nothing cancels: the terms of what the equalities make of it are that, without signs.
+    #[test]
+    fn terms_of_a_single_entry_are_what_it_reduces_to() {
+        const INF: f64 = f64::INFINITY;
+        let a = [[3.0, 1.0, 0.0, -2.0, 1.0], [0.5, 0.0, 4.0, 1.0, -3.0]];
+        let (lower, upper) = ([-INF, 1.0, -INF, -INF, -INF], [INF, 1.0, INF, INF, INF]);
+        let p = Problem::new(&[[1.0; 5]; 5], &[0.0; 5], &a, &[1.0; 2], &[1.0; 2])
+            .with_bounds(&lower, &upper);
+        let (mut e, mut y, mut sizes) = (Elimination::new(), [0.0; 5], [0.0; 5]);
+        assert!(e.build(&p, [true; 2], 1e-9, &mut y).is_ok());
+        assert_eq!((e.fixed, e.rank), (1, 3));
+        for i in 0..5 {
+            let mut t = [0.0; 5];
+            t[i] = 2.0;
+            e.reduce(&t, &mut y);
+            e.reduce_sizes(&t, &mut sizes);
+            assert_eq!(sizes[..2], y.map(f64::abs)[..2], "{i}");
+        }
+    }
+}

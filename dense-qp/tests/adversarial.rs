@@ -113,6 +113,37 @@ fn inverted_limits_and_concave_costs_are_errors() {
     ));
 }
 
+/// H = UᵀDU with a pivot of −1e-6 behind pivots of 1 and 0, in any unit: that one is named, whichever sign round-off gives to those of 0. With a
+/// third 0 instead H is convex.
+#[test]
+fn a_small_negative_curvature_is_named_behind_none() {
+    each::<6, 0>(60, 14, |mut r| {
+        let rows: [[f64; 6]; 6] = core::array::from_fn(|k| {
+            core::array::from_fn(|i| match i.cmp(&k) {
+                core::cmp::Ordering::Less => 0.0,
+                core::cmp::Ordering::Equal => 1.0,
+                core::cmp::Ordering::Greater => r.sym(),
+            })
+        });
+        let unit = f64::powi(2.0, r.below(81) as i32 - 40);
+        for (last, is_concave) in [(-1e-6, true), (0.0, false)] {
+            let mut q = Qp::<f64, 6, 0>::zero();
+            for (row, pivot) in rows.iter().zip([1.0, 0.0, 1.0, 0.0, 1.0, last]) {
+                q.add_outer(row, unit * pivot);
+            }
+            let mut w = Workspace::new();
+            let outcome = solve(&q.problem(), &Settings::default(), &mut w);
+            let error = outcome.map(|s| s.status);
+            let expected = if is_concave {
+                Err(Error::HessianNotConvex(5))
+            } else {
+                Ok(Status::Solved)
+            };
+            assert_eq!(error, expected, "{unit}");
+        }
+    });
+}
+
 /// Rows and costs scaled by 1e-8 to 1e8: the same minimiser and an honest residual.
 #[test]
 fn scaling() {

@@ -7,7 +7,8 @@
 )]
 
 use crate::common::{INF, Qp, definite, dot, semidefinite};
-use dense_qp::{Settings, Status, Workspace, kkt_residual, resume, solve, solve_warm};
+use dense_qp::{Constraint, Problem, Settings, Side, Status, Workspace};
+use dense_qp::{infeasibility, kkt_residual, resume, solve, solve_warm};
 use proptest::prelude::*;
 
 const N: usize = 12;
@@ -45,7 +46,10 @@ fn powers<const K: usize>() -> impl Strategy<Value = [f64; K]> {
 }
 
 /// The same program with every row times a unit.
-fn in_units(q: &Qp<f64, N, M>, units: &[f64; M]) -> Box<Qp<f64, N, M>> {
+fn in_units<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    units: &[f64; M],
+) -> Box<Qp<f64, N, M>> {
     let mut s = Box::new(q.clone());
     for i in 0..M {
         s.a[i] = s.a[i].map(|a| a * units[i]);
@@ -58,6 +62,46 @@ fn in_units(q: &Qp<f64, N, M>, units: &[f64; M]) -> Box<Qp<f64, N, M>> {
 /// A permutation of 0..K.
 fn order(k: usize) -> impl Strategy<Value = Vec<usize>> {
     Just((0..k).collect::<Vec<_>>()).prop_shuffle()
+}
+
+/// The limit of a row or bound that x is farthest outside of, by |violation| / |a|₂.
+fn farthest<const N: usize, const M: usize>(
+    q: &Qp<f64, N, M>,
+    x: &[f64; N],
+) -> Option<(Constraint, Side)> {
+    let rows = (0..M).map(|i| {
+        let length = dot(&q.a[i], &q.a[i]).sqrt();
+        (Constraint::Row(i), dot(&q.a[i], x), q.l[i], q.u[i], length)
+    });
+    let bounds = (0..N).map(|i| (Constraint::Bound(i), x[i], q.lb[i], q.ub[i], 1.0));
+    let limits = rows
+        .chain(bounds)
+        .flat_map(|(constraint, v, l, u, length)| {
+            let upper = (constraint, Side::Upper, (v - u) / length);
+            [upper, (constraint, Side::Lower, (l - v) / length)]
+        });
+    let outside = limits.filter(|(.., distance)| *distance > 0.0);
+    let worst = outside.max_by(|a, b| a.2.total_cmp(&b.2));
+    worst.map(|(constraint, side, _)| (constraint, side))
+}
+
+/// A multiplier whose limit is there counts by the distance from that, one whose limit is not there in full.
+#[test]
+fn a_multiplier_without_a_limit_counts_in_full() {
+    let (x, h, g) = ([0.25], [[0.0]], [0.0]);
+    for (l, u) in [(-1.0, 1.0), (-INF, 1.0), (-1.0, INF), (-INF, INF)] {
+        let (lower, upper) = ([l], [u]);
+        for y in [2.0, -2.0] {
+            let room = if y > 0.0 { u - x[0] } else { x[0] - l };
+            let off = 2.0 * if room < INF { room } else { 1.0 };
+            let row = Problem::new(&h, &g, &[[1.0]], &lower, &upper);
+            let r = kkt_residual(&row, &x, &[y], &[0.0]);
+            assert_eq!(r.complementarity, off, "{l} {u} {y}");
+            let bound = Problem::new(&h, &g, &[[0.0]], &[-INF], &[INF]).with_bounds(&lower, &upper);
+            let r = kkt_residual(&bound, &x, &[0.0], &[y]);
+            assert_eq!(r.complementarity, off, "{l} {u} {y}");
+        }
+    }
 }
 
 proptest! {
@@ -143,6 +187,89 @@ proptest! {
         let a = solve(&q.problem(), &settings, &mut a).unwrap();
         let b = solve(&s.problem(), &settings, &mut b).unwrap();
         prop_assert_eq!((a.status, a.x, a.steps), (b.status, b.x, b.steps));
+    }
+
+    /// Nor do they to a contradiction of one row with a sum of others, or with equalities: it is proved in as many steps, by the same rows.
+    #[test]
+    fn units_of_rows_do_not_matter_to_contradictions(
+        q in definite::<N, M>(2), shares in prop::collection::vec(0.01..1.0_f64, M), rows in powers::<M>(), equal in any::<bool>()
+    ) {
+        let mut q = q;
+        let sum: Vec<usize> = (0..M - 1).filter(|i| q.u[*i] < INF && (q.l[*i] == q.u[*i]) == equal).take(4).collect();
+        prop_assume!(!sum.is_empty());
+        q.a[M - 1] = core::array::from_fn(|j| -sum.iter().map(|i| shares[*i] * q.a[*i][j]).sum::<f64>());
+        let limit: f64 = sum.iter().map(|i| shares[*i] * q.u[*i]).sum();
+        (q.l[M - 1], q.u[M - 1]) = (-INF, -limit - shares[M - 1]);
+        let s = in_units(&q, &rows.map(|unit| unit * unit));
+        let outcomes = [&q, &s].map(|q| {
+            let (p, mut w) = (q.problem(), Box::new(Workspace::<f64, N, M>::new()));
+            let s = solve(&p, &Settings::default(), &mut w).unwrap();
+            let proof = infeasibility(&p, s.row_multipliers, s.bound_multipliers);
+            let is_proved = proof.support < 0.0 && proof.combination * 1e6 <= -proof.support;
+            (s.status, is_proved, s.conflict().collect::<Vec<_>>(), s.steps)
+        });
+        prop_assert_eq!((outcomes[0].0, outcomes[0].1), (Status::Infeasible, true));
+        prop_assert_eq!(&outcomes[0], &outcomes[1]);
+    }
+
+    /// Nor do units of variables to proximal steps between bounds, where each variable has a curvature of its own: the least cost is the same.
+    #[test]
+    fn units_of_variables_do_not_matter_to_proximal_steps(
+        q in (1..6_usize).prop_flat_map(semidefinite::<6, 4>), middle in prop::collection::vec(-1.0..1.0_f64, 6), units in powers::<6>()
+    ) {
+        let mut q = q;
+        (q.l, q.u) = ([-INF; 4], [INF; 4]);
+        q.lb = core::array::from_fn(|i| middle[i] - 1.0);
+        q.ub = core::array::from_fn(|i| middle[i] + 1.0);
+        let mut s = q.clone();
+        for i in 0..6 {
+            s.g[i] *= units[i];
+            (s.lb[i], s.ub[i]) = (q.lb[i] / units[i], q.ub[i] / units[i]);
+            for j in 0..6 {
+                s.h[i][j] *= units[i] * units[j];
+            }
+        }
+        let costs = [&q, &s].map(|q| {
+            let (p, mut w) = (q.problem(), Box::new(Workspace::new()));
+            let s = solve(&p, &Settings::default(), &mut w).unwrap();
+            assert_eq!(s.status, Status::Solved);
+            p.cost(s.x)
+        });
+        prop_assert!((costs[0] - costs[1]).abs() <= 1e-7 * (1.0 + costs[0].abs()), "{:?}", costs);
+    }
+
+    /// Nor does the unit of the cost: without equalities, whose pivots are chosen by curvatures, the same bits of x or of the ray, whatever the
+    /// rank of H.
+    #[test]
+    fn the_unit_of_the_cost_does_not_matter(
+        q in (0..4_usize).prop_flat_map(semidefinite::<6, 4>), exponent in -20..=20_i32
+    ) {
+        let unit = f64::powi(4.0, exponent);
+        let mut s = q.clone();
+        s.g = q.g.map(|g| g * unit);
+        s.h = q.h.map(|h| h.map(|h| h * unit));
+        let (mut v, mut w) = (Box::new(Workspace::new()), Box::new(Workspace::new()));
+        let a = solve(&q.problem(), &Settings::default(), &mut v).unwrap();
+        let b = solve(&s.problem(), &Settings::default(), &mut w).unwrap();
+        prop_assert_eq!((a.status, a.steps, a.x, a.ray()), (b.status, b.steps, b.x, b.ray()));
+        let rows = a.row_multipliers.map(|y| y * unit);
+        prop_assert_eq!(&rows, b.row_multipliers);
+    }
+
+    /// The limit that the least point without any is farthest outside of, by the distance |violation| / |a|₂, enters first, in any units.
+    #[test]
+    fn the_farthest_limit_enters_first(q in definite::<7, 9>(0), rows in powers::<9>()) {
+        let mut open = q.clone();
+        (open.l, open.u, open.lb, open.ub) = ([-INF; 9], [INF; 9], [-INF; 7], [INF; 7]);
+        let mut w = Box::new(Workspace::<f64, 7, 9>::new());
+        let x = *solve(&open.problem(), &Settings::default(), &mut w).unwrap().x;
+        let settings = Settings { max_iterations: 2, ..Settings::default() };
+        let s = in_units(&q, &rows.map(|unit| unit.powi(6)));
+        for q in [&q, &s] {
+            let _ = solve(&q.problem(), &settings, &mut w).unwrap();
+            prop_assert_eq!(w.active().next(), farthest(q, &x));
+            prop_assert!(w.active().count() <= 1);
+        }
     }
 
     /// Variables and rows in another order: the same optimum.

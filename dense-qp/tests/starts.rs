@@ -75,6 +75,28 @@ fn resume_counts_the_rows_that_lose_their_limits() {
     });
 }
 
+/// So is every row that leaves because it would pull, its limit having moved away. Where nothing has moved, no row leaves.
+#[test]
+fn resume_counts_the_rows_that_would_pull() {
+    each::<N, M>(20, 34, |mut r| {
+        let (mut q, excess) = exceeded(&mut r, 1.0);
+        let (settings, mut w) = (Settings::default(), Workspace::new());
+        solve(&q.problem(), &settings, &mut w).unwrap();
+        let active: Vec<_> = w.active().collect();
+        assert!(!active.is_empty());
+        let s = resume(&q.problem(), &settings, &mut w).unwrap();
+        assert_eq!((s.status, s.steps), (Status::Solved, s.iterations));
+        assert_eq!(w.active().collect::<Vec<_>>(), active);
+        for i in 0..M {
+            q.u[i] += 3.0 * excess[i];
+        }
+        let s = resume(&q.problem(), &settings, &mut w).unwrap();
+        assert_eq!(s.status, Status::Solved);
+        assert_eq!(s.steps - s.iterations, active.len() as u32);
+        assert_eq!(w.active().count(), 0);
+    });
+}
+
 /// However soon a warm or resumed solve is capped, also while a remembered row pulls that there is no time to let go: what is called solved is
 /// optimal, signs of multipliers included.
 #[test]

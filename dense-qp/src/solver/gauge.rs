@@ -214,7 +214,7 @@ mod tests {
         let x = *solve(&p, &settings, &mut w).unwrap().x;
         assert!(Search::new(&p, &settings, &mut w).is_on_active());
         for i in 0..3 {
-            for by in [1e-3, -1e-3] {
+            for by in [1e-3, -1e-3, 1e-8, -1e-8] {
                 w.x = x;
                 w.x[i] += by;
                 assert!(!Search::new(&p, &settings, &mut w).is_on_active(), "{i}");

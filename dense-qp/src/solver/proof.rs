@@ -438,3 +438,53 @@ impl<T: Scalar> Course<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Course, Search, has_fallen};
+    use crate::{Problem, Settings, Workspace};
+
+    /// The course at x along d of the cost ½(x₀ − x₁)² − (x₀ − x₁), times a unit: no curvature along (1, 1), least where x₀ = x₁ + 1.
+    fn course(unit: f64, x: [f64; 2], d: [f64; 2]) -> Course<f64> {
+        let (h, g) = ([[unit, -unit], [-unit, unit]], [-unit, unit]);
+        let (a, l, u): ([[f64; 2]; 0], [f64; 0], [f64; 0]) = ([], [], []);
+        let p = Problem::new(&h, &g, &a, &l, &u);
+        let (settings, mut w) = (Settings::default(), Workspace::new());
+        (w.x, w.previous) = (x, d);
+        Search::new(&p, &settings, &mut w).course()
+    }
+
+    /// Of terms of 1e6 a fall by 1e-10 is round-off, one by 1e-7 is not; a cost that stays or rises has not fallen.
+    #[test]
+    fn a_cost_has_fallen_by_more_than_round_off() {
+        for (fall, has) in [(-1.0, false), (0.0, false), (1e-10, false), (1e-7, true)] {
+            assert_eq!(has_fallen(1.0 - fall, 1.0, 1e6), has, "{fall}");
+        }
+    }
+
+    const UNITS: [f64; 3] = [1e-12, 1.0, 1e12];
+
+    /// A proximal step leaves 1e-6 of a direction across one without curvature, of which the share of the curvature is the square. A thousandth
+    /// across is another direction.
+    #[test]
+    fn what_a_proximal_step_leaves_across_is_nearly_straight() {
+        for unit in UNITS {
+            for (across, is_straight) in [(1e-6, true), (1e-3, false)] {
+                let course = course(unit, [0.0; 2], [1.0, 1.0 - across]);
+                assert!(course.curvature > course.curvature_noise);
+                assert_eq!(course.is_nearly_straight(), is_straight, "{unit} {across}");
+            }
+        }
+    }
+
+    /// A million away from the origin, 1e-9 before the least point the slope is round-off, but not 1e-6 before it.
+    #[test]
+    fn a_slope_that_is_round_off_is_no_descent() {
+        for unit in UNITS {
+            for (before, is_ascent) in [(-1e-6, true), (0.0, true), (1e-9, true), (1e-6, false)] {
+                let course = course(unit, [1e6 + 1.0 - before, 1e6], [1.0, -1.0]);
+                assert_eq!(course.is_ascent(), is_ascent, "{unit} {before}");
+            }
+        }
+    }
+}
