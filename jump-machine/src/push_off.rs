@@ -129,3 +129,104 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
         end.add_tr_mul(&(force_b * -share), &mut reference.torques);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::indexing_slicing, reason = "tests")]
+    use a1_model::{A1Geared, BUILD, FEET, MOTORS};
+    use jump_control::{JointCommand, JointGains, Measurement, Reference};
+    use nalgebra::Vector3;
+    use proptest::array::uniform3;
+    use proptest::prelude::{ProptestConfig, prop_assert, prop_assert_eq, proptest};
+    use rbd_core::{Configuration, Limbs, Motion, Motor};
+
+    use crate::{Machine, Settings, Workspace};
+
+    const CROUCH: [f64; 12] = [
+        0.1, 0.9, -1.8, -0.1, 0.8, -1.6, 0.0, 0.7, -1.5, 0.2, 0.9, -1.4,
+    ];
+
+    /// What the joint loop would ask for if motors could give anything.
+    fn asked(
+        measured: &Measurement<f64, 12, 4>,
+        reference: &Reference<f64, 12>,
+        gains: [JointGains<f64>; 12],
+    ) -> [f64; 12] {
+        let command = JointCommand {
+            position: reference.joints,
+            velocity: reference.joint_velocities,
+            feed_forward: reference.torques,
+            gains,
+        };
+        let tireless = MOTORS.map(|motor| Motor {
+            torque: 1e9,
+            corner_speed: 1e9,
+            no_load_speed: 2e9,
+            ..motor
+        });
+        command.torques(&measured.joints, &measured.joint_velocities, &tireless)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+        /// A change of a foot's force is felt by its own leg alone, in full where its motors have room for it beside what the servos ask; else as far as the first joint
+        /// is at the end of its room, and not at all where one is beyond it.
+        #[test]
+        fn a_foots_force_is_changed_as_far_as_its_motors_have_room(
+            foot in 0_usize..4,
+            force in uniform3(-80.0..80.0_f64),
+            torques in uniform3(-15.0..15.0_f64),
+            off in uniform3(-0.1..0.1_f64),
+            speeds in uniform3([-15.0..15.0_f64, -15.0..15.0]),
+        ) {
+            let settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, CROUCH);
+            let mut workspace = Workspace::new();
+            let machine = Machine::<f64, A1Geared, 12, 4>::new(&A1Geared, settings, &mut workspace);
+            let measured = Measurement {
+                base: Configuration::<f64, 12>::NEUTRAL.base,
+                base_velocity: Motion::ZERO,
+                joints: CROUCH,
+                joint_velocities: core::array::from_fn(|j| speeds[j % 3][0]),
+                foot_forces: [0.0; 4],
+                age: 0.0,
+            };
+            let mut reference = Reference {
+                joints: core::array::from_fn(|j| CROUCH[j] + off[j % 3]),
+                joint_velocities: core::array::from_fn(|j| speeds[j % 3][1]),
+                torques: core::array::from_fn(|j| torques[j % 3]),
+                node: 0,
+            };
+            let q = Configuration { joints: CROUCH, ..Configuration::NEUTRAL };
+            let limbs: Limbs<f64, 12, 4> = Limbs::new(&A1Geared, &q, &settings.pd.feet);
+            let end = &limbs.ends[foot];
+            let force_b = Vector3::from(force);
+            // What the ground does to the foot the joints hold.
+            let mut whole = [0.0; 12];
+            end.add_tr_mul(&-force_b, &mut whole);
+            let (torques, before) = (reference.torques, asked(&measured, &reference, settings.pd.joint_gains));
+            machine.change(end, &force_b, &measured, &mut reference);
+            let after = asked(&measured, &reference, settings.pd.joint_gains);
+            let (most, size) = whole.iter().enumerate().fold((0, 0.0), |(most, size): (usize, f64), (j, x)| {
+                if x.abs() > size { (j, x.abs()) } else { (most, size) }
+            });
+            let share = if size > 0.0 { (reference.torques[most] - torques[most]) / whole[most] } else { 1.0 };
+            prop_assert!((0.0..=1.0 + 1e-12).contains(&share), "{share}");
+            let (mut beyond, mut at_end) = (false, false);
+            for j in 0..12 {
+                prop_assert!((reference.torques[j] - torques[j] - share * whole[j]).abs() < 1e-9);
+                if j / 3 != foot {
+                    prop_assert_eq!(whole[j], 0.0);
+                    continue;
+                }
+                let range = MOTORS[j].torque_range(measured.joint_velocities[j]);
+                let (sense, end) = (whole[j].signum(), range[usize::from(whole[j] > 0.0)]);
+                let left = |asked: f64| (end * settings.regulator.torque - asked) * sense;
+                beyond |= left(before[j]) < 0.0;
+                at_end |= left(after[j]).abs() < 1e-9;
+                prop_assert!(left(after[j]) > -1e-9 || share == 0.0, "joint {j}: {share}");
+            }
+            prop_assert!(if beyond { share == 0.0 } else { share > 1.0 - 1e-12 || at_end }, "{share}");
+        }
+    }
+}

@@ -3,5 +3,7 @@
 mod centring;
 mod flight;
 mod humanoid;
+mod humanoid_ground;
 mod machine;
+mod pre_landing;
 mod similarity;

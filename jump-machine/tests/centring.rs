@@ -3,7 +3,7 @@
 
 use a1_model::{A1Geared, BUILD, FEET, MOTORS};
 use jump_control::{Measurement, Node, Phase, Plan, Torques};
-use jump_machine::{Jump, Machine, Observation, Settings, Workspace};
+use jump_machine::{Jump, Machine, Observation, Refusal, Settings, Workspace};
 use nalgebra::{Rotation3, Vector3};
 use rbd_core::{Configuration, GRAVITY, Limbs, Motion, Transform, center_of_mass};
 
@@ -63,25 +63,35 @@ fn heard(loads: Option<[f64; 4]>) -> Observation<f64, 12, 4> {
     }
 }
 
-/// By how much every foot that is commanded is farther than planned, base axes: at the start of the push-off, late in it, in flight, and before the ground.
-fn shifts(most: f64, aside_b: &Vector3<f64>) -> Vec<[Vector3<f64>; 4]> {
-    let nodes: Vec<Node<f64, 12, 4>> = [-0.001, 0.0, 0.6]
-        .map(|time| Node {
-            time,
-            joints: crouch(),
-            ..Node::ZERO
-        })
-        .into();
-    let jump = Jump {
-        plan: Plan::new(&nodes, TAKEOFF, POSING, TOUCHDOWN, Torques::Hold).unwrap(),
+/// A crouch.
+fn nodes() -> [Node<f64, 12, 4>; 3] {
+    [-0.001, 0.0, 0.6].map(|time| Node {
+        time,
+        joints: crouch(),
+        ..Node::ZERO
+    })
+}
+
+fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
+    Jump {
+        plan: Plan::new(nodes, TAKEOFF, POSING, TOUCHDOWN, Torques::Hold).unwrap(),
         rot_goal: Rotation3::identity(),
         landing_joints: crouch(),
-    };
-    let mut settings = Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch());
+    }
+}
+
+fn settings() -> Settings<f64, 12, 4> {
+    Settings::new(&BUILD, FEET.map(|foot| foot.frame), MOTORS, crouch())
+}
+
+/// By how much every foot that is commanded is farther than planned, base axes: at the start of the push-off, late in it, in flight, and before the ground.
+fn shifts(most: f64, aside_b: &Vector3<f64>) -> Vec<[Vector3<f64>; 4]> {
+    let nodes = nodes();
+    let mut settings = settings();
     settings.centring.most = most;
     let mut workspace = Workspace::new();
     let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
-    machine.arm(jump, 0.0).unwrap();
+    machine.arm(jump(&nodes), 0.0).unwrap();
     let planned = legs(&crouch()).ends.map(|end| end.position);
     let mut found = Vec::new();
     for k in -500..480 {
@@ -124,5 +134,57 @@ fn an_offset_that_is_not_believed_moves_nothing() {
         for way in shifts(most, &aside_b).iter().flatten() {
             assert!(way.norm() < 1e-9, "{way}");
         }
+    }
+}
+
+/// The push-off begins where the trunk has moved to: a robot that followed begins it, and one that stayed where the plan begins is refused.
+#[test]
+fn a_robot_begins_where_its_trunk_has_moved_to() {
+    let (nodes, mut settings) = (nodes(), settings());
+    settings.start_tolerance = 0.01;
+    for follows in [true, false] {
+        let mut workspace = Workspace::new();
+        let mut machine = Machine::new(&A1Geared, settings, &mut workspace);
+        machine.arm(jump(&nodes), 0.0).unwrap();
+        let mut last = None;
+        for k in -500..=0 {
+            let mut heard = heard(Some(loads(&Vector3::new(0.012, -0.008, 0.0))));
+            if follows && k > -200 {
+                heard.measured.joints = machine.command().position;
+            }
+            last = Some(machine.tick(f64::from(k) * 1e-3, Some(&heard)));
+        }
+        let tick = last.unwrap();
+        if follows {
+            assert_eq!((tick.phase, tick.refusal), (Phase::Stance, None));
+        } else {
+            assert_eq!(tick.phase, Phase::Stand);
+            assert!(matches!(tick.refusal, Some(Refusal::Posture(_))));
+        }
+    }
+}
+
+/// While the trunk moves each tick moves one leg, each leg every fourth tick.
+#[test]
+fn legs_take_turns_to_move_the_trunk() {
+    let (nodes, mut workspace) = (nodes(), Workspace::new());
+    let mut machine = Machine::new(&A1Geared, settings(), &mut workspace);
+    machine.arm(jump(&nodes), 0.0).unwrap();
+    let heard = heard(Some(loads(&Vector3::new(0.012, -0.008, 0.0))));
+    let mut moved = Vec::new();
+    for k in -500..-100 {
+        let before = machine.command().position;
+        machine.tick(f64::from(k) * 1e-3, Some(&heard));
+        let now = machine.command().position;
+        if k >= -200 {
+            let legs = (0..4).filter(|leg| (3 * leg..3 * leg + 3).any(|j| now[j] != before[j]));
+            moved.push(legs.collect::<Vec<_>>());
+        }
+    }
+    assert!(moved.iter().all(|legs| legs.len() == 1), "{moved:?}");
+    for turns in moved.windows(5) {
+        let mut legs = turns[..4].concat();
+        legs.sort_unstable();
+        assert!(legs == [0, 1, 2, 3] && turns[4] == turns[0], "{turns:?}");
     }
 }

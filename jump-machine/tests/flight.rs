@@ -12,27 +12,27 @@ use rbd_core::{
     centroidal_map,
 };
 
-const TAKEOFF: f64 = 0.2;
-const TOUCHDOWN: f64 = 0.8;
+pub(super) const TAKEOFF: f64 = 0.2;
+pub(super) const TOUCHDOWN: f64 = 0.8;
 /// Time in the landing posture before the touchdown.
-const POSED: f64 = 0.05;
+pub(super) const POSED: f64 = 0.05;
 
-fn crouch() -> [f64; 12] {
+pub(super) fn crouch() -> [f64; 12] {
     core::array::from_fn(|i| [0.0, 0.8, -1.6][i % 3])
 }
 
-fn feet() -> [Frame<f64>; 4] {
+pub(super) fn feet() -> [Frame<f64>; 4] {
     FEET.map(|foot| foot.frame)
 }
 
 /// Where the base is `time` after take-off, and how fast it rises.
-fn ballistic(height: f64, speed: f64, time: f64) -> (f64, f64) {
+pub(super) fn ballistic(height: f64, speed: f64, time: f64) -> (f64, f64) {
     let g = -GRAVITY[2];
     (height + (speed - 0.5 * g * time) * time, speed - g * time)
 }
 
 /// A plan that rises with 2.5 m/s from 0.35 m and turns with `rate` about y in flight.
-fn nodes(rate: f64) -> Vec<Node<f64, 12, 4>> {
+pub(super) fn nodes(rate: f64) -> Vec<Node<f64, 12, 4>> {
     let node = |time: f64| {
         let flown = (time - TAKEOFF).max(0.0);
         let (height, speed) = match flown {
@@ -56,7 +56,7 @@ fn nodes(rate: f64) -> Vec<Node<f64, 12, 4>> {
         .collect()
 }
 
-fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
+pub(super) fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
     Jump {
         plan: Plan::new(nodes, TAKEOFF, TOUCHDOWN - POSED, TOUCHDOWN, Torques::Hold).unwrap(),
         rot_goal: Rotation3::identity(),
@@ -65,7 +65,7 @@ fn jump(nodes: &[Node<f64, 12, 4>]) -> Jump<'_, f64, 12, 4> {
 }
 
 /// The robot in the air, as the world has it.
-fn flying(
+pub(super) fn flying(
     base: Transform<f64>,
     vel_w: Vector3<f64>,
     omega_b: Vector3<f64>,
@@ -85,7 +85,7 @@ fn flying(
 
 /// A flight from `height` with `speed` that turns with `rate`, to the `end` on the caller's clock; what `watch` makes of each
 /// millisecond in the air.
-fn fly<R>(
+pub(super) fn fly<R>(
     settings: &Settings<f64, 12, 4>,
     nodes: &[Node<f64, 12, 4>],
     (height, speed, rate): (f64, f64, f64),
@@ -199,7 +199,7 @@ proptest! {
 }
 
 /// A flight of the planned length at whose end a level body falls at `fall`, as high as planned.
-fn arriving_at(fall: f64) -> (f64, f64, f64) {
+pub(super) fn arriving_at(fall: f64) -> (f64, f64, f64) {
     let (lasting, g) = (TOUCHDOWN - TAKEOFF, -GRAVITY[2]);
     let speed = g * lasting - fall;
     (0.35 + (2.5 - speed) * lasting, speed, 0.0)
@@ -254,7 +254,7 @@ fn what_legs_turn_by_swinging_is_no_tilt() {
 }
 
 /// Velocities, relative to the base and base axes, with which the command moves the feet of a crouching robot.
-fn foot_velocities(machine: &Machine<'_, f64, A1Geared, 12, 4>) -> [Vector3<f64>; 4] {
+pub(super) fn foot_velocities(machine: &Machine<'_, f64, A1Geared, 12, 4>) -> [Vector3<f64>; 4] {
     let q = Configuration {
         joints: crouch(),
         ..Configuration::NEUTRAL
@@ -403,7 +403,7 @@ fn legs_wait_shorter_for_a_fast_ground() {
     assert!(most(1.1) > 1e-3 && most(0.99) < 1e-4);
 }
 
-fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
+pub(super) fn place(joints: &[f64; 12]) -> [Vector3<f64>; 4] {
     let q = Configuration {
         joints: *joints,
         ..Configuration::NEUTRAL

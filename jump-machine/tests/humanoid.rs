@@ -12,25 +12,25 @@ use rbd_core::{Configuration, Kinematics, Motion, Motor, Posture, forward_kinema
 use wbc_qp::Patch;
 use wbc_qp::jump::VelocityJumpSettings;
 
-const N: usize = 23;
-const ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
+pub(super) const N: usize = 23;
+pub(super) const ROBOT: Icub23GazeboGeared = Icub23GazeboGeared;
 /// Largest rate of a torque in these tests, N m/s: the profile has none.
 const SLEW: f64 = 1e5;
 /// The push-off's end, and the apex after it, ms.
-const TAKEOFF: i32 = 435;
+pub(super) const TAKEOFF: i32 = 435;
 const APEX: i32 = TAKEOFF + 92;
 
-type Heard = Observation<f64, N, 2>;
-type Icub<'a> = Machine<'a, Icub23GazeboGeared>;
+pub(super) type Heard = Observation<f64, N, 2>;
+pub(super) type Icub<'a> = Machine<'a, Icub23GazeboGeared>;
 
-fn settings() -> Settings {
+pub(super) fn settings() -> Settings {
     Settings {
         slew: SLEW,
         ..profile::SETTINGS
     }
 }
 
-fn servos() -> Settings {
+pub(super) fn servos() -> Settings {
     Settings {
         push_off: PushOff::Velocity(profile::VELOCITY),
         landing: Landing::Servos(profile::COMPLIANT_SERVOS),
@@ -38,11 +38,11 @@ fn servos() -> Settings {
     }
 }
 
-fn standing(joints: &[f64; N]) -> Configuration<f64, N> {
+pub(super) fn standing(joints: &[f64; N]) -> Configuration<f64, N> {
     on_the_floor(&ROBOT, &profile::SOLE_CONTACTS, joints)
 }
 
-fn jump() -> Jump<f64, N> {
+pub(super) fn jump() -> Jump<f64, N> {
     Jump {
         profile: profile::rise(profile::HEIGHT).unwrap(),
         start: standing(&profile::SQUAT),
@@ -51,7 +51,7 @@ fn jump() -> Jump<f64, N> {
 }
 
 /// At rest in this posture, with this force on each sole.
-fn resting(joints: &[f64; N], force: f64) -> Heard {
+pub(super) fn resting(joints: &[f64; N], force: f64) -> Heard {
     let q = standing(joints);
     Heard {
         measured: Measurement {
@@ -85,20 +85,20 @@ fn the_middle_of_feet_is_that_of_their_soles() {
     assert!((middle_of_feet(&poses, &feet) - middle).amax() < 1e-12);
 }
 
-fn ground() -> Heard {
+pub(super) fn ground() -> Heard {
     resting(&profile::SQUAT, 162.0)
 }
 
-fn air() -> Heard {
+pub(super) fn air() -> Heard {
     resting(&profile::LANDING_POSTURE, 0.0)
 }
 
-fn landed() -> Heard {
+pub(super) fn landed() -> Heard {
     resting(&profile::LANDING_POSTURE, 162.0)
 }
 
 /// What is heard at this millisecond of a jump.
-fn at(k: i32) -> Heard {
+pub(super) fn at(k: i32) -> Heard {
     match k {
         ..TAKEOFF => ground(),
         TAKEOFF..=560 => air(),
@@ -107,7 +107,7 @@ fn at(k: i32) -> Heard {
 }
 
 /// Ticks from millisecond `from` up to `to`, with the joints as they are heard; the last answer.
-fn run<M: JumpMachine<f64, N, 2>>(
+pub(super) fn run<M: JumpMachine<f64, N, 2>>(
     machine: &mut M,
     from: i32,
     to: i32,
@@ -123,7 +123,7 @@ fn run<M: JumpMachine<f64, N, 2>>(
     last.unwrap()
 }
 
-fn with<R>(settings: Settings, test: impl FnOnce(&mut Icub<'_>) -> R) -> R {
+pub(super) fn with<R>(settings: Settings, test: impl FnOnce(&mut Icub<'_>) -> R) -> R {
     let mut workspace = Box::new(Workspace::new(&settings));
     test(&mut Machine::new(&ROBOT, settings, &mut workspace))
 }

@@ -349,6 +349,20 @@ fn missing_measurements_are_bridged_for_ten_milliseconds_and_ticks_for_five_and_
     }
 }
 
+/// What was heard last grows older by the time that passes, also where every other tick is missed.
+#[test]
+fn missed_ticks_do_not_keep_measurements_young() {
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    run(&mut m, 0, 20, &inputs());
+    for k in [21, 23, 25, 27] {
+        assert_eq!(m.tick(f64::from(k) * 1e-3, None).fault, None);
+    }
+    // Now it is as old as it may be, but for rounding.
+    m.tick(0.029, None);
+    assert_eq!(m.tick(0.031, None).fault, Some(Fault::Stale));
+}
+
 #[test]
 fn no_ground_is_given_up() {
     let (mut workspace, nodes) = (Workspace::new(), nodes());

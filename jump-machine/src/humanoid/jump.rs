@@ -65,3 +65,43 @@ fn flight_time<T: Scalar, const N: usize>(jump: &Jump<T, N>, start: T, end: T) -
     let v = profile.speed;
     (v + math::sqrt(math::max(v * v + T::TWO * g * drop, T::ZERO))) / g
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::{Jump, flight_time};
+    use jump_control::{ComProfile, Curve};
+    use proptest::prelude::{ProptestConfig, prop_assert, proptest};
+    use rbd_core::{Configuration, GRAVITY};
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// At the end of the flight the centre of mass, thrown as its profile ends, comes down to the height of the landing posture; one that does not get so high is
+        /// at its highest.
+        #[test]
+        fn the_flight_ends_where_the_throw_comes_down_to_the_landing_posture(
+            speed in 0.3..3.0_f64,
+            displacement in 0.05..0.3_f64,
+            start in 0.2..1.0_f64,
+            drop in -0.3..0.3_f64,
+        ) {
+            let gravity = -GRAVITY[2];
+            let profile = ComProfile::by_displacement(Curve::rising(), speed, displacement, gravity).unwrap();
+            let jump = Jump::<f64, 0> {
+                profile,
+                start: Configuration::NEUTRAL,
+                landing_joints: [],
+            };
+            let end = start + displacement - drop;
+            let flight = flight_time(&jump, start, end);
+            let reached = profile.at(profile.duration + flight);
+            if 2.0 * gravity * -drop < speed * speed {
+                prop_assert!((start + reached.rise - end).abs() < 1e-9, "{flight}");
+                prop_assert!(reached.speed < 0.0, "{flight}");
+            } else {
+                prop_assert!(reached.speed.abs() < 1e-9, "{flight}");
+            }
+        }
+    }
+}

@@ -1,6 +1,8 @@
 //! The gains against a dense finite-horizon problem, and what is never asked for.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
 
+mod along;
+
 use a1_model::{A1, BUILD, FEET};
 use jump_control::{Node, Plan, Torques};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -400,4 +402,41 @@ fn no_foot_is_asked_for_more_than_friction_or_less_than_its_least() {
     assert!((slides.xy().norm() - 50.0).abs() < 1e-12 && slides.y > slides.x);
     let air = Vector3::new(0.0, 0.0, 0.0);
     assert_eq!(weights.within_cone(&air, &Vector3::repeat(5.0)), air);
+}
+
+/// A small rotation of a body whose angular momentum is all in its legs, as in a gyroscope, turns on as the nonlinear equation ω = R I⁻¹ Rᵀ (L − R L) has it; an angular
+/// momentum turns it by I⁻¹; and the planned forces turn a body that is aside about where it is.
+#[test]
+fn errors_go_on_as_those_of_a_body_that_turns() {
+    let (mut body, small) = (body(&nodes()[0]), 1e-6);
+    body.angular_w *= 12.0;
+    let drift = body.drift(DT);
+    let inverse = body.inverse_inertia_w;
+    let part = (inverse * so3::hat(&body.angular_w) * DT).norm();
+    assert!((0.05..0.3).contains(&part), "{part}");
+    for axis in 0..6 {
+        let unit = |of: usize| Vector3::from_fn(|row, _| f64::from(u8::from(of + row == axis)));
+        // As much momentum as turns it by a radian in the time.
+        let (turned, gained) = (unit(0), inverse.try_inverse().unwrap() * unit(3) / DT);
+        let mut rotation = so3::exp(&(turned * small));
+        let steps = 1000;
+        for _ in 0..steps {
+            let rate = |r: &nalgebra::Rotation3<f64>| {
+                let left = body.angular_w + gained * small - r * body.angular_w;
+                r * (inverse * (r.inverse() * left)) * (DT / f64::from(steps))
+            };
+            let middle = so3::exp(&(rate(&rotation) * 0.5)) * rotation;
+            rotation = so3::exp(&rate(&middle)) * rotation;
+        }
+        let found = so3::log(&rotation) / small;
+        let wanted = drift.turned * turned + drift.turns * gained;
+        // What is left is of third order in the time.
+        let left = part * part * if axis < 3 { part } else { 1.0 };
+        let off = (found - wanted).norm();
+        assert!(off < 0.3 * left, "{axis}: {off}");
+    }
+    let aside = Vector3::new(0.01, -0.02, 0.03);
+    let moments = body.forces_w.iter().map(|force| (-aside).cross(force) * DT);
+    let moment: Vector3<f64> = moments.sum();
+    assert!((drift.pushed * aside - moment).norm() < 1e-12);
 }
