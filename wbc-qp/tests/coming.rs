@@ -99,6 +99,33 @@ fn angular_momentum_falls_at_its_rate() {
     });
 }
 
+/// A tick stays near the torques of the one before; after a restart there was none, and the answer is that of a new controller.
+#[test]
+fn a_landing_that_starts_again_has_no_memory_of_torques() {
+    let cases = (crouch(0.1, 0.3), crouch(0.1, 0.3));
+    each(config(4, 46), &cases, |((q0, v0), (q, v))| {
+        let (before, now) = (snapshot(&q0, &v0), snapshot(&q, &v));
+        let settings = LandingSettings {
+            continuity_weight: 1.0,
+            ..profile::LANDING
+        };
+        let tick = |landing: &mut Landing<f64, N, K, V, M>, s: &Snapshot<f64, N>| {
+            let wanted = resting(s, [0.0; 3], [0.0; 3]);
+            let limits = (&LIMITS, &MOTORS);
+            let tick = landing.tick(&Icub23, s, &contacts(1.0), limits, &wanted);
+            tick.unwrap().answer.torques
+        };
+        let fresh = tick(&mut Landing::new(settings), &now);
+        let mut landing = Landing::new(settings);
+        let first = tick(&mut landing, &before);
+        let mut restarted = landing.clone();
+        restarted.restart();
+        assert!(apart(&tick(&mut restarted, &now), &fresh) < 1e-6);
+        let second = tick(&mut landing, &now);
+        assert!(apart(&second, &first) < apart(&fresh, &first) - 1e-3);
+    });
+}
+
 /// In the air nothing is asked of the centre of mass or the trunk; on the ground it is.
 #[test]
 fn without_ground_the_body_is_left_alone() {

@@ -96,6 +96,24 @@ fn friction_is_that_of_the_plane() {
     assert!(holds(25.0, [1.0, 1.0], true) && !holds(28.0, [1.0, 1.0], true));
 }
 
+/// The pyramid is the same to either side of both tangents: a force is allowed exactly where neither of its tangential parts is larger
+/// than μ times the normal one.
+#[test]
+fn the_pyramid_has_four_sides() {
+    let foot = Contact::ball(&FEET[0].frame, FOOT_RADIUS, Vector3::z(), 0.5, 300.0);
+    let forces = [-1.0..1.0, -1.0..1.0, -0.5..1.5_f64];
+    let friction = 0.1..1.0_f64;
+    each(config(1000, 33), &(forces, friction), |(f, friction)| {
+        let foot = Contact { friction, ..foot };
+        let is_allowed = (0..).map_while(|k| foot.cone(k)).all(|row| {
+            let value: f64 = row.iter().zip(&f).map(|(a, f)| a * f).sum();
+            value <= 0.0
+        });
+        let [x, y, z] = f;
+        assert_eq!(is_allowed, x.abs().max(y.abs()) <= friction * z, "{f:?}");
+    });
+}
+
 static SQUARE: [[f64; 2]; 4] = [[0.1, -0.04], [0.1, 0.06], [-0.05, 0.06], [-0.05, -0.04]];
 /// There and back: both corners turn left, by half a turn.
 static TWO: [[f64; 2]; 2] = [[0.0, 0.0], [1.0, 1.0]];

@@ -8,7 +8,7 @@ use rbd_core::{
     FrameJacobian, JointLimits, Link, TableModel, Tangent, frame_jacobian, rnea,
 };
 use wbc_qp::{
-    Extent, Horizon, Limit, Limited, Rank, Side, Snapshot, TorqueQp, VelocityQp, Yielded,
+    Error, Extent, Horizon, Limit, Limited, Rank, Side, Snapshot, TorqueQp, VelocityQp, Yielded,
 };
 
 const N: usize = 4;
@@ -120,6 +120,108 @@ fn a_contact_of_an_arm() {
         let rest = wanted.joints[i] - pushed.joints[i] - answer.torques[i];
         assert!(rest.abs() < 1e-9, "{rest}");
     }
+}
+
+/// The tool as a point on a table, with forces of up to 50 N.
+fn leaning() -> wbc_qp::Contact<f64> {
+    wbc_qp::Contact::ball(&TOOL, 0.0, Vector3::z(), 0.5, 50.0)
+}
+
+/// A contact that still moves is braked at the rate of its damping: what it accelerates by is −k times its velocity.
+#[test]
+fn a_contact_that_moves_is_braked() {
+    let s = state();
+    let tool = s.frame_position(&arm(), &TOOL);
+    assert!(tool.rate.iter().all(|x| x.abs() > 0.05), "{:?}", tool.rate);
+    for damping in [0.0, 5.0, 20.0] {
+        let mut qp = TorqueQp::<f64, N, 3, 7, 14>::new();
+        qp.contact_damping = damping;
+        qp.begin(&arm(), &s, &[leaning()], &[0.0; N]).unwrap();
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.minimise_forces(&[0.0; 3], &[1.0; 3]);
+        let answer = qp.solve().unwrap();
+        let reached = tool.reached(&answer.acceleration);
+        for (a, rate) in reached.iter().zip(&tool.rate) {
+            assert!((a + damping * rate).abs() < 1e-9, "{a} {rate}");
+        }
+    }
+}
+
+/// A normal force that is to be less than its least is the least, and one that is to be more than its largest is the largest, of which
+/// a contact of half its load has half.
+#[test]
+fn a_normal_force_stays_in_its_range() {
+    let s = state();
+    let cases = [
+        (5.0, 1.0, 0.0, 5.0),
+        (40.0, 1.0, 0.0, 40.0),
+        (40.0, 1.0, 45.0, 45.0),
+        (40.0, 1.0, 60.0, 50.0),
+        (5.0, 0.5, 0.0, 5.0),
+        (5.0, 0.5, 60.0, 25.0),
+        (40.0, 0.5, 0.0, 25.0),
+    ];
+    for (min_force, load, asked, wanted) in cases {
+        let contact = wbc_qp::Contact {
+            min_force,
+            load,
+            ..leaning()
+        };
+        let mut qp = TorqueQp::<f64, N, 3, 7, 14>::new();
+        qp.begin(&arm(), &s, &[contact], &[0.0; N]).unwrap();
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.minimise_forces(&[0.0, 0.0, asked], &[1.0; 3]);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Nothing);
+        let force = answer.forces[2];
+        assert!((force - wanted).abs() < 1e-6, "{force}, not {wanted}");
+    }
+}
+
+/// A force that is to leave the friction pyramid ends on it, and the report names the contact's cone and nothing else, whichever side it
+/// is.
+#[test]
+fn every_side_of_the_pyramid_is_named() {
+    let s = state();
+    for asked in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+        let mut qp = TorqueQp::<f64, N, 3, 7, 14>::new();
+        qp.begin(&arm(), &s, &[leaning()], &[0.0; N]).unwrap();
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        let [x, y] = asked.map(|share| 30.0 * share);
+        qp.minimise_forces(&[x, y, 20.0], &[1.0; 3]);
+        let answer = qp.solve().unwrap();
+        let [x, y, z] = answer.forces;
+        let along = x * asked[0] + y * asked[1];
+        assert!(z > 1.0 && (along - 0.5 * z).abs() < 1e-6, "{along} {z}");
+        let cone = Limited {
+            limit: Limit::Cone(0),
+            extent: Extent::Held(Side::Upper),
+        };
+        let lines: Vec<_> = qp.report(&answer, 1e-6).collect();
+        assert_eq!(lines, [cone], "{asked:?}");
+    }
+}
+
+/// The iterations that an answer tells are those that the cap counts: as many are enough, and with one less the search ends without
+/// an answer.
+#[test]
+fn as_many_iterations_as_an_answer_tells_are_enough() {
+    let s = state();
+    let solve = |cap: u32| {
+        let mut qp = TorqueQp::<f64, N, 0, N, 7>::new();
+        qp.settings.max_iterations = cap;
+        qp.begin(&arm(), &s, &[], &[0.0; N]).unwrap();
+        let tool = s.frame_position(&arm(), &TOOL);
+        qp.minimise(&tool, &[30.0, 0.0, 40.0], &[1e3; 3]);
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.limit_torques(&[[-20.0, 20.0]; N]).unwrap();
+        qp.solve()
+    };
+    let answer = solve(1000).unwrap();
+    let enough = answer.iterations;
+    assert!(answer.yielded == Yielded::Nothing && enough > 0);
+    assert_eq!(solve(enough).unwrap(), answer);
+    assert!(matches!(solve(enough - 1), Err(Error::Unsolved(_))));
 }
 
 #[test]

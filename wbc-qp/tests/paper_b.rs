@@ -141,6 +141,35 @@ fn torque_control() {
     });
 }
 
+/// Without weight (6d) is left out where it would be held, too: how fast angular momentum should fall is no matter then, and with
+/// any weight it falls as fast as it should.
+#[test]
+fn without_weight_the_momentum_is_not_held() {
+    let (q, v) = crouch(&core::array::from_fn(|i| 0.02 * (i as f64 - 11.0)));
+    let s = snapshot(&q, &v);
+    let bias = centroidal_bias(&Icub23, &s.posture, &v).angular;
+    let momentum = angular_momentum(&s, &v);
+    assert!(momentum.norm() > 0.01, "{momentum}");
+    let tick = |momentum_weight: f64, momentum_gain: f64| {
+        let settings = TorqueJumpSettings {
+            strict: true,
+            momentum_weight,
+            momentum_gain,
+            ..profile::TORQUE
+        };
+        let mut controller = TorqueJump::<f64, N, K, V, M>::new(settings, q.joints);
+        let joints = (&LIMITS, &MOTORS);
+        let tick = controller.tick(&Icub23, &s, &contacts(), joints, &wanted(&s));
+        let acceleration = tick.unwrap().answer.acceleration;
+        angular_momentum(&s, &acceleration) + bias
+    };
+    assert_eq!(tick(0.0, 1.0), tick(0.0, 10.0));
+    for gain in [1.0, 10.0] {
+        let missed = tick(1.0, gain) + momentum * gain;
+        assert!(missed.amax() < 1e-6, "{missed}");
+    }
+}
+
 /// (3a): where nothing else is asked for, joints go to the posture and stay near the last velocities, by Λ and Δ.
 #[test]
 fn posture_of_the_velocity_program() {

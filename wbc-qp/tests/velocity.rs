@@ -5,9 +5,10 @@ use crate::common::{M, N, VELOCITY_ROWS, config, crouch, each, snapshot};
 use icub_model::gazebo::frame;
 use icub_model::{Icub23, LIMITS, SOLES};
 use nalgebra::Vector3;
+use rbd_core::Frame;
 use wbc_qp::{
-    Contact, Error, Extent, Horizon, Limit, Limited, Rank, Snapshot, VelocityAnswer, VelocityQp,
-    Yielded,
+    Contact, Error, Extent, Horizon, Limit, Limited, Rank, Side, Snapshot, VelocityAnswer,
+    VelocityQp, Yielded,
 };
 
 const HORIZON: Horizon<f64> = Horizon {
@@ -127,6 +128,79 @@ fn feedback_of_an_earlier_tick_is_forgotten() {
             lines.iter().filter(of_it).count()
         };
         assert_eq!([missed(0), missed(1)], [6, 0], "{lines:?}");
+    });
+}
+
+/// A held velocity that no joint is fast enough for is missed by what the report says, what was asked less what is had; and the
+/// joints that it names, of which there are some, are as fast as they may be to the side that it says.
+#[test]
+fn a_velocity_out_of_reach_is_missed_by_what_the_report_says() {
+    each(config(4, 55), &crouch(0.1, 0.2), |(q, v)| {
+        let s = snapshot(&q, &v);
+        let com = s.com();
+        let asked = [3.0, -2.0, 50.0];
+        let mut qp = Box::new(Plain::new());
+        qp.begin(&Icub23, &s, &soles()).unwrap();
+        qp.hold(&com, &asked).unwrap();
+        qp.minimise_joints(&[0.0; N], &[1.0; N]);
+        qp.limit_joints(&s, &LIMITS, &HORIZON);
+        let answer = qp.solve().unwrap();
+        assert_eq!(answer.yielded, Yielded::Tasks);
+        let had = com.of(&answer.velocity);
+        assert!(had[2] > 0.1, "{had:?}");
+        let lines: Vec<_> = qp.report(&answer, 1e-6).collect();
+        for (row, (asked, had)) in asked.iter().zip(&had).enumerate() {
+            let by = lines.iter().find_map(|line| match line.extent {
+                Extent::Missed(by) if line.limit == Limit::Row(row) => Some(by),
+                _ => None,
+            });
+            let missed = (asked - had).abs();
+            assert!((by.unwrap_or(0.0) - missed).abs() < 1e-6, "{lines:?}");
+        }
+        let mut named = 0;
+        for line in &lines {
+            if let (Limit::Motion(i), Extent::Held(side)) = (line.limit, line.extent) {
+                let [low, high] = HORIZON.velocity_range(&LIMITS[i], q.joints[i]);
+                let end = if side == Side::Upper { high } else { low };
+                let qd = answer.velocity.joints[i];
+                assert!((qd - end).abs() < 1e-9, "{line:?}: {qd} {end}");
+                named += 1;
+            }
+        }
+        assert!(named > 0, "{lines:?}");
+    });
+}
+
+/// Room for slack that no row takes changes nothing, and each of its variables is fixed: in what another solver is given none is free
+/// without a cost.
+#[test]
+fn room_for_slack_that_no_row_takes_is_closed() {
+    each(config(4, 56), &crouch(0.1, 0.2), |(q, v)| {
+        let s = snapshot(&q, &v);
+        let com = s.com();
+        let trunk = s.frame_pose(&Icub23, &Frame::IDENTITY);
+        let mut narrow = Box::new(VelocityQp::<f64, N, 29, VELOCITY_ROWS>::new());
+        narrow.begin(&Icub23, &s, &soles()).unwrap();
+        narrow.minimise(&com, &[0.0, 0.0, 0.3], &[1e4; 3]);
+        narrow.minimise(&trunk, &[0.0; 6], &[1.0; 6]);
+        narrow.minimise_joints(&[0.0; N], &[1.0; N]);
+        // Of the size of a program that is there already.
+        let mut wide = Box::new(VelocityQp::<f64, N, 38, M>::new());
+        wide.begin(&Icub23, &s, &soles()).unwrap();
+        wide.minimise(&com, &[0.0, 0.0, 0.3], &[1e4; 3]);
+        wide.minimise(&trunk, &[0.0; 6], &[1.0; 6]);
+        wide.minimise_joints(&[0.0; N], &[1.0; N]);
+        let problem = wide.problem();
+        let bounds = problem.lower.unwrap().iter().zip(problem.upper.unwrap());
+        for (i, (low, high)) in bounds.enumerate() {
+            let is_fixed = [*low, *high] == [0.0; 2];
+            assert_eq!(is_fixed, problem.hessian[i][i] == 0.0, "variable {i}");
+            assert_eq!(is_fixed, i >= N + 6, "variable {i}");
+        }
+        let [a, b] = [narrow.solve().unwrap(), wide.solve().unwrap()];
+        for (a, b) in a.velocity.joints.iter().zip(&b.velocity.joints) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
     });
 }
 
