@@ -74,6 +74,7 @@ pub struct Regulator<T: Scalar> {
     states: [State; STATES],
     gains: [Gain; GAINS],
     /// Nodes from one state, and one gain, to the next; states are counted from the first node on, gains back from the last before the take-off.
+    /// That of the node where the count ends is kept as well, however near it is to the one before.
     every: [NonZeroUsize; 2],
     /// Number of nodes before the take-off.
     nodes: usize,
@@ -122,7 +123,7 @@ impl<T: Scalar> Regulator<T> {
         self.cost.add(ROTATION, &per_variance(weights.touchdown[1]));
         self.left = match nodes {
             0 => 0,
-            _ => plan.count().saturating_sub(1),
+            _ => plan.count(),
         };
     }
 
@@ -146,9 +147,10 @@ impl<T: Scalar> Regulator<T> {
             let Some(i) = self.left.checked_sub(1) else {
                 return;
             };
-            let (Some(node), Some(next)) = (plan.node(i), plan.time(i + 1)) else {
+            let Some(node) = plan.node(i) else {
                 return;
             };
+            let next = plan.time(i + 1).unwrap_or(node.time);
             let body = Body::new(model, &node, feet, (limbs, load_height));
             if node.time < plan.touchdown {
                 self.cost.before(&body.drift(next - node.time));
@@ -182,22 +184,17 @@ impl<T: Scalar> Regulator<T> {
     fn keep<const F: usize>(&mut self, i: usize, body: &Body<T, F>) {
         let [state, gain] = self.every;
         let single = |x: T| x.to_f64() as f32;
-        if let Some(to) = self
-            .states
-            .get_mut(i / state)
-            .filter(|_| i.is_multiple_of(state.get()))
-        {
+        let place = |i: usize, every: NonZeroUsize, last: usize| {
+            (i == last || i.is_multiple_of(every.get())).then(|| i.div_ceil(every.get()))
+        };
+        if let Some(to) = place(i, state, self.nodes).and_then(|k| self.states.get_mut(k)) {
             let of = [body.com_w, body.com_velocity_w, body.angular_w];
             *to = of.map(|part| <[T; 3]>::from(part).map(single));
         }
         let Some(left) = self.nodes.checked_sub(i + 1) else {
             return;
         };
-        if let Some(to) = self
-            .gains
-            .get_mut(left / gain)
-            .filter(|_| left.is_multiple_of(gain.get()))
-        {
+        if let Some(to) = place(left, gain, self.nodes - 1).and_then(|k| self.gains.get_mut(k)) {
             for (to, (of_errors, of_load)) in to.iter_mut().zip(self.cost.costate()) {
                 for (to, x) in to.iter_mut().zip(of_errors.iter().chain([&of_load])) {
                     *to = single(*x);
@@ -259,7 +256,7 @@ impl<T: Scalar> Regulator<T> {
         let [state, gain] = self.every;
         let at = |moment, k: usize| {
             let of = |state: &State| state.get(k).map_or_else(Vector3::zeros, vector);
-            between(&self.states, state, moment, of)
+            between(&self.states, (state, self.nodes), moment, of)
         };
         let (here, there) = (
             (node, share(plan, node, time)?),
@@ -275,7 +272,12 @@ impl<T: Scalar> Regulator<T> {
         match self.nodes.checked_sub(node + 2) {
             Some(left) => {
                 let of = |gain: &Gain| product(gain, &error);
-                between(&self.gains, gain, (left, T::ONE - here.1), of)
+                between(
+                    &self.gains,
+                    (gain, self.nodes - 1),
+                    (left, T::ONE - here.1),
+                    of,
+                )
             }
             None => self.gains.first().map(|gain| product(gain, &error)),
         }
@@ -336,10 +338,10 @@ fn share<T: Scalar, const N: usize, const F: usize>(
     Some(math::clamp((time - from) / (to - from), T::ZERO, T::ONE))
 }
 
-/// What is kept of every so many nodes, read by `of`, at a share of the way from a node to the next.
+/// What is kept of every so many nodes and of the last, read by `of`, at a share of the way from a node to the next.
 fn between<T: Scalar, K, R>(
     kept: &[K],
-    every: NonZeroUsize,
+    (every, last): (NonZeroUsize, usize),
     (node, share): (usize, T),
     of: impl Fn(&K) -> R,
 ) -> Option<R>
@@ -348,7 +350,8 @@ where
 {
     let (i, rest) = (node / every, node % every);
     let whole = |x: usize| T::of(f64::from(u32::try_from(x).unwrap_or(u32::MAX)));
-    let share = (whole(rest) + share) / whole(every.get());
+    let length = every.get().min(last.saturating_sub(node - rest));
+    let share = (whole(rest) + share) / whole(length);
     let (from, to) = (kept.get(i)?, kept.get(i + 1)?);
     Some(of(from) * (T::ONE - share) + of(to) * share)
 }

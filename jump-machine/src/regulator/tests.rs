@@ -262,10 +262,10 @@ fn a_recursion_in_parts_is_the_recursion_at_once() {
         regulator.advance((&A1, &weights), &plan, legs, LOAD_HEIGHT, 2);
         assert!(!regulator.is_ready());
         let times = prepare(&mut regulator, &plan, most);
-        assert_eq!(times, (NODES - 1).div_ceil(most));
+        assert_eq!(times, NODES.div_ceil(most));
         assert!(kept(&regulator).eq(kept(&whole)), "{most} at a time");
     }
-    assert!(Regulator::ticks(&plan) >= (NODES - 1).div_ceil(NODES_PER_TICK));
+    assert_eq!(Regulator::ticks(&plan), NODES.div_ceil(NODES_PER_TICK));
 }
 
 /// Forces that are wanted at `time` of the plan for a robot that is there but turned and moved.

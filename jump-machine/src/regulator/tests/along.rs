@@ -85,8 +85,9 @@ fn a_robot_whose_centre_of_mass_is_where_planned_is_left_alone_wherever_its_trun
     assert!(most(&Vector3::zeros()) > 1.0);
 }
 
-/// Forces that are wanted at this share of a push-off of 0.4 s with so many nodes, of a robot that stands as planned but sways.
-fn standing(count: usize, share: f64) -> [Vector3<f64>; 4] {
+/// Forces that are wanted at this share of a push-off of 0.4 s with so many nodes and these of the flight, of a robot that stands as planned but for this
+/// velocity.
+fn standing(count: usize, flight: &[f64], share: f64, sways: [f64; 3]) -> [Vector3<f64>; 4] {
     let first = Node {
         base_velocity: Motion::ZERO,
         joint_velocities: [0.0; 12],
@@ -96,8 +97,8 @@ fn standing(count: usize, share: f64) -> [Vector3<f64>; 4] {
         time: 0.4 * k as f64 / count as f64,
         ..first
     });
-    let flight = [0.4, 0.45, 0.5].map(|time| Node {
-        time,
+    let flight = flight.iter().map(|time| Node {
+        time: *time,
         forces_w: [Vector3::zeros(); 4],
         ..first
     });
@@ -111,7 +112,7 @@ fn standing(count: usize, share: f64) -> [Vector3<f64>; 4] {
         joints: first.joints,
     };
     let mut velocity = Tangent::ZERO;
-    velocity.base.linear = Vector3::new(0.01, 0.02, -0.03);
+    velocity.base.linear = sways.into();
     let limbs = Limbs::new(&A1, &q, &feet());
     let load = Load {
         share: 0.0,
@@ -127,24 +128,46 @@ fn standing(count: usize, share: f64) -> [Vector3<f64>; 4] {
     )
 }
 
+const FLIGHT: [f64; 3] = [0.4, 0.45, 0.5];
+const SWAYS: [f64; 3] = [0.01, 0.02, -0.03];
+
+/// One that stands as planned is left alone, between any two nodes that are kept and whether or not the plan goes on to the take-off.
+#[test]
+fn a_robot_that_stands_as_planned_is_left_alone_however_many_nodes_it_has() {
+    for count in [60, 191, 192, 193, 383, 384] {
+        for (flight, end) in [(FLIGHT.as_slice(), count), (&[], count - 1)] {
+            for node in [0, 1, count / 2, end - 2, end - 1] {
+                let share = (node as f64 + 0.9) / count as f64;
+                let [most, sways] = [[0.0; 3], SWAYS].map(|sways| {
+                    let forces = standing(count, flight, share, sways);
+                    forces.iter().map(Vector3::norm).fold(0.0, f64::max)
+                });
+                assert!(most < 1e-3 && sways > 0.1, "{count} {node}: {most} {sways}");
+            }
+        }
+    }
+}
+
 /// A push-off is answered from its first node to its last, however many it has, and as much however finely it is divided.
 #[test]
 fn a_push_off_is_answered_however_many_nodes_it_has() {
     for count in [1, 2, 60, 71, 72, 142, 143, 191, 192, 215, 216, 383, 384] {
         for node in [0, 1, count / 2, count - 1] {
             let share = (node.min(count - 1) as f64 + 0.1) / count as f64;
-            let total: Vector3<f64> = standing(count, share).iter().sum();
+            let total: Vector3<f64> = standing(count, &FLIGHT, share, SWAYS).iter().sum();
             assert!(total.z > 0.5 && total.y < -0.3, "{count} {node} {total}");
         }
     }
-    let few = standing(50, 0.3);
-    for count in [71, 72, 100, 143, 191, 215, 383] {
-        let many = standing(count, 0.3);
-        for (few, many) in few.iter().zip(&many) {
-            assert!(
-                (few - many).norm() < 0.1 * few.norm(),
-                "{count}: {few} {many}"
-            );
+    for share in [0.001, 0.02, 0.3, 0.8] {
+        let few = standing(50, &FLIGHT, share, SWAYS);
+        for count in [71, 72, 100, 143, 144, 191, 192, 215, 216, 383] {
+            let many = standing(count, &FLIGHT, share, SWAYS);
+            for (few, many) in few.iter().zip(&many) {
+                assert!(
+                    (few - many).norm() < 0.1 * few.norm(),
+                    "{count} {share}: {few} {many}"
+                );
+            }
         }
     }
 }
