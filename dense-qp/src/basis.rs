@@ -11,9 +11,10 @@
 //! digits, however different the curvatures of H are. Kept of R is its inverse: −r and the new multiplier's own answer are its next
 //! column, r is a product then, in which no entry waits for another, and what a leaving row has in it says how to turn.
 
+use crate::access::{at, copy, head, head_mut, put, span, span_mut};
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::{at, ceil4, copy, dot, dots, head, head_mut, put, rotate, span, span_mut};
+use crate::kernels::{ceil4, dot, dots, rotate};
 use crate::kernels::{sub_outer, sum_rows, sum_triangle};
 use crate::settings::{cancellation_tolerance, dependence_tolerance};
 use crate::tiles::{Shares, load, store, sub_products};

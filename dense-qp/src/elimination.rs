@@ -9,8 +9,10 @@
 //! a_y = a_F − Wᵀ a_B. Fixed variables come first: their rows of U are unit vectors and their rows
 //! of W are zero. A row that depends on earlier ones is dropped when it agrees with them.
 
-use crate::kernels::{at, ceil4, copy, dots, floor4, head, largest_square, max_abs, put, row};
-use crate::kernels::{row_mut, span, span_mut, sub_rows, sub_scaled, sum_rows};
+use crate::access::{at, copy, head, put, row};
+use crate::access::{row_mut, span, span_mut};
+use crate::kernels::{ceil4, dots, floor4, largest_square, max_abs};
+use crate::kernels::{sub_rows, sub_scaled, sum_rows};
 use crate::problem::Problem;
 use crate::settings::row_tolerance;
 use so3::{Scalar, math};
@@ -185,7 +187,7 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
             is_left(math::abs(at(work.as_slice(), pivot))) || is_left(max_abs(head(work, free)));
         if rank >= N || !is_new {
             let scale = if size > T::ZERO { size } else { T::ONE };
-            let noise = T::of(256.0) * T::EPSILON * (math::abs(limit) + size * max_abs(&self.rhs));
+            let noise = self.noise(shares, size, limit);
             if math::abs(rhs) > math::max(feasibility * scale, noise) {
                 return Err(Contradiction {
                     id: i,
@@ -209,6 +211,21 @@ impl<T: Scalar, const N: usize> Elimination<T, N> {
         put(scales, last, T::ZERO);
         self.rank += 1;
         Ok(())
+    }
+
+    /// Round-off of what [`Elimination::eliminate`] leaves of a limit: a share that cancels keeps that of the row's size. No units of earlier rows matter.
+    #[cold]
+    fn noise(&self, shares: &[T; N], size: T, limit: T) -> T {
+        let mut largest = math::abs(limit);
+        for (k, (share, rhs)) in shares.iter().zip(&self.rhs).take(self.rank).enumerate() {
+            let of_pivot = if k < self.fixed {
+                T::ZERO
+            } else {
+                size * math::abs(at(&self.inverse, k))
+            };
+            largest += math::max(math::abs(*share), of_pivot) * math::abs(*rhs);
+        }
+        T::of(256.0) * T::EPSILON * largest
     }
 
     /// Takes the earlier rows out of `work`, whose right-hand side is `limit`; returns what is left of that. Their shares stand in the

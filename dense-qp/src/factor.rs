@@ -1,11 +1,12 @@
 //! H = UᵀDU of the reduced Hessian, U unit upper triangular; no square roots.
 
+use crate::access::{at, head, head_mut, put, span, span_mut};
 use crate::kernels::sub_block;
-use crate::kernels::{at, ceil4, dot_in, floor4, head, head_mut, put, scale_from, span, span_mut};
+use crate::kernels::{ceil4, dot_in, floor4, scale_from};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use crate::tiles::{Shares, block, less, load, store, sub_products};
 use core::slice::from_ref;
-use so3::Scalar;
+use so3::{Scalar, math};
 
 /// Factor of the leading `dim`×`dim` block.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub(crate) struct Factor<T, const N: usize> {
     pub(crate) dim: usize,
     /// Whether a pivot without curvature got a proximal weight.
     pub(crate) proximal: bool,
+    /// Which of them have no curvature at all, not even one of their own that others take away: no units say what a step along them is.
+    pub(crate) linear: [bool; N],
 }
 
 impl<T: Scalar, const N: usize> Factor<T, N> {
@@ -29,31 +32,35 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             weight: [T::ZERO; N],
             dim: 0,
             proximal: false,
+            linear: [false; N],
         }
     }
 
-    /// Factorises in place. A pivot that is zero to round-off gets a proximal weight, a share of its own variable's curvature
-    /// so that units do not matter: the factor is then that of H + P with P ≥ 0 diagonal, and the caller iterates (see
-    /// [`crate`], proximal steps). A variable without any takes the largest curvature, and `reference` where H is zero.
-    ///
-    /// Returns the first pivot that is below zero by more than it should be: [`Factor::concave`] is a direction to look along.
-    pub(crate) fn factorise(&mut self, reference: T) -> Option<usize> {
-        let n = self.dim;
-        let end = ceil4(n, N);
-        let mut largest = T::ZERO;
-        for h in self.weight.iter().take(n) {
+    /// The least and the largest curvature of a variable, before [`Factor::factorise`]; infinite and zero where there is none.
+    pub(crate) fn curvatures(&self) -> [T; 2] {
+        let (mut least, mut largest) = (T::INFINITY, T::ZERO);
+        for h in self.weight.iter().take(self.dim) {
+            if *h < least {
+                least = *h;
+            }
             if *h > largest {
                 largest = *h;
             }
         }
-        let scale = if largest > T::ZERO {
-            largest
-        } else if reference > T::ZERO {
-            reference
-        } else {
-            T::ONE
-        };
-        self.proximal = false;
+        [least, largest]
+    }
+
+    /// Factorises in place. A pivot that is zero to round-off gets a proximal weight, a share of its own variable's curvature
+    /// so that units do not matter: the factor is then that of H + P with P ≥ 0 diagonal, and the caller iterates (see
+    /// [`crate`], proximal steps). A variable without any beside `scale` takes what `linear` says for it.
+    ///
+    /// Returns the first pivot that is below zero by more than it should be: [`Factor::concave`] is a direction to look along.
+    pub(crate) fn factorise(&mut self, scale: T, linear: &[T; N]) -> Option<usize> {
+        let n = self.dim;
+        let end = ceil4(n, N);
+        if core::mem::take(&mut self.proximal) {
+            self.linear.fill(false);
+        }
         span_mut(&mut self.weight, n, end).fill(T::ZERO);
         let mut below = None;
         let mut panel = [[T::ZERO; 4]; N];
@@ -66,7 +73,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
                 *shares = block(row, first).map(|u| u * *w);
             }
             let panel = head(&panel, first);
-            let shares = self.factorise_tile(first, panel, scale, &mut below);
+            let shares = self.factorise_tile(first, panel, (scale, linear), &mut below);
             let mut column = first + 4;
             while column < end {
                 let Some((above, own)) = self.u.split_at_mut_checked(first) else {
@@ -94,7 +101,7 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         &mut self,
         first: usize,
         panel: &[[T; 4]],
-        scale: T,
+        scale: (T, &[T; N]),
         below: &mut Option<usize>,
     ) -> Shares<T> {
         let n = self.dim;
@@ -134,19 +141,35 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
 
     /// The weight of pivot `k`, which is `d`, and whether it is below zero by more than it should be.
     #[inline(always)]
-    fn pivot(&mut self, k: usize, d: T, scale: T) -> (T, bool) {
+    fn pivot(&mut self, k: usize, d: T, (scale, linear): (T, &[T; N])) -> (T, bool) {
         let diagonal = at(&self.weight, k);
-        let is_sound =
-            d > pivot_tolerance::<T>() * diagonal && diagonal > T::EPSILON * T::EPSILON * scale;
+        let is_sound = d > pivot_tolerance::<T>() * diagonal && !is_linear(diagonal, scale);
         let (d, is_below) = if is_sound {
             (d, false)
         } else {
-            self.proximal = true;
-            with_proximal_weight(d, diagonal, scale)
+            self.with_proximal_weight(k, [d, diagonal], (scale, linear))
         };
         let weight = T::ONE / d;
         put(&mut self.weight, k, weight);
         (weight, is_below)
+    }
+
+    /// Pivot `k`, which is `d` without curvature, with its proximal weight, and whether it is below zero by more than it should be.
+    #[cold]
+    fn with_proximal_weight(
+        &mut self,
+        k: usize,
+        [d, diagonal]: [T; 2],
+        (scale, linear): (T, &[T; N]),
+    ) -> (T, bool) {
+        let is_linear = is_linear(diagonal, scale);
+        self.proximal = true;
+        put(&mut self.linear, k, is_linear);
+        let least = T::of(4.0) * pivot_tolerance::<T>() * (diagonal + T::EPSILON * scale);
+        let own = if is_linear { at(linear, k) } else { diagonal };
+        // Below zero it shows how large round-off is in its row, which the weight must outdo.
+        let weight = math::max(proximal_weight::<T>() * own, -(T::of(8.0) * d));
+        (math::max(d, T::ZERO) + weight, d < -least)
     }
 
     /// v ← U⁻¹eₖ, along which the curvature is the pivot `k` before its proximal weight, less what earlier ones got.
@@ -207,16 +230,8 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
     }
 }
 
-/// A pivot `d` without curvature with its proximal weight, and whether it is below zero by more than it should be.
-#[cold]
-fn with_proximal_weight<T: Scalar>(d: T, diagonal: T, scale: T) -> (T, bool) {
-    let least = T::of(4.0) * pivot_tolerance::<T>() * (diagonal + T::EPSILON * scale);
-    let own = if diagonal > T::EPSILON * T::EPSILON * scale {
-        diagonal
-    } else {
-        scale
-    };
-    // Below zero it shows how large round-off is in its row, which the weight must outdo.
-    let weight = so3::math::max(proximal_weight::<T>() * own, -(T::of(8.0) * d));
-    (so3::math::max(d, T::ZERO) + weight, d < -least)
+/// Whether a curvature is none beside the largest.
+#[inline(always)]
+pub(crate) fn is_linear<T: Scalar>(diagonal: T, largest: T) -> bool {
+    diagonal <= T::EPSILON * T::EPSILON * largest
 }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod access;
 mod basis;
 mod elimination;
 mod error;

@@ -1,7 +1,8 @@
 //! The quadratic program as the caller states it.
 
 use crate::Error;
-use crate::kernels::{all_finite, at, dot, dot_few, max_abs, row, span, span_mut};
+use crate::access::{at, row, span, span_mut};
+use crate::kernels::{all_finite, dot, dot_few, max_abs};
 use so3::{Scalar, math};
 
 /// A convex quadratic program with N variables and M two-sided rows:

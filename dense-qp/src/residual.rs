@@ -1,7 +1,8 @@
 //! How far a point and multipliers are from optimal, and whether multipliers prove infeasibility.
 
 use crate::Problem;
-use crate::kernels::{all_finite, at, dot, max_abs};
+use crate::access::at;
+use crate::kernels::{all_finite, dot, max_abs};
 use so3::{Scalar, math};
 
 /// Largest entries of the KKT conditions' violations.

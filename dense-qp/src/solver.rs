@@ -9,6 +9,7 @@
 
 mod exchange;
 mod gauge;
+mod lengths;
 mod newton;
 mod outcome;
 mod proof;
@@ -16,7 +17,9 @@ mod violated;
 
 use so3::{Scalar, math};
 
-use crate::kernels::{at, dot, max_abs, put, square_scaled};
+use crate::access::{at, put};
+use crate::factor::is_linear;
+use crate::kernels::{dot, max_abs, square_scaled};
 use crate::{Error, Problem, Settings, Solution, Status, Workspace};
 use exchange::Pass;
 use gauge::{NOISE, SETTLED};
@@ -169,7 +172,17 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             &mut w.factor.weight,
             &mut w.basis.j,
         );
-        if let Some(k) = w.factor.factorise(max_abs(self.p.gradient))
+        let [least, largest] = w.factor.curvatures();
+        let scale = if largest > T::ZERO {
+            largest
+        } else {
+            or_one(max_abs(self.p.gradient))
+        };
+        if is_linear(least, scale) {
+            self.weigh_linear(scale);
+        }
+        let w = &mut *self.w;
+        if let Some(k) = w.factor.factorise(scale, &w.vec_b)
             && self.is_concave(k)
         {
             return Err(Error::HessianNotConvex(k));
@@ -309,6 +322,11 @@ fn mark_equal<'a, T: Scalar>(
         any |= *state;
     }
     any != 0
+}
+
+/// A size, or one where it is zero.
+fn or_one<T: Scalar>(size: T) -> T {
+    if size > T::ZERO { size } else { T::ONE }
 }
 
 /// Whether l ≤ x ≤ u is a range that numbers can satisfy; false for a NaN.

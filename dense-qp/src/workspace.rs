@@ -1,10 +1,10 @@
 //! All memory of a solve, and the solution left in it.
 
 use crate::Residual;
+use crate::access::at;
 use crate::basis::{Basis, Candidate};
 use crate::elimination::Elimination;
 use crate::factor::Factor;
-use crate::kernels::at;
 use so3::Scalar;
 
 /// Most entries of the list of violated rows.
@@ -124,9 +124,9 @@ impl<T: Scalar, const N: usize, const M: usize> Workspace<T, N, M> {
 
     pub(crate) fn set_state(&mut self, i: usize, state: i8) {
         if i < M {
-            crate::kernels::put(&mut self.row_state, i, state);
+            crate::access::put(&mut self.row_state, i, state);
         } else {
-            crate::kernels::put(&mut self.bound_state, i - M, state);
+            crate::access::put(&mut self.bound_state, i - M, state);
         }
     }
 }

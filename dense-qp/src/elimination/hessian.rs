@@ -1,7 +1,8 @@
 //! H on the null space of the equalities.
 
 use super::Elimination;
-use crate::kernels::{at, ceil4, copy, head, head_mut, put, row, span, span_mut, sub_rows};
+use crate::access::{at, copy, head, head_mut, put, row, span, span_mut};
+use crate::kernels::{ceil4, sub_rows};
 use crate::tiles::{load, store, sub_products};
 use so3::{Scalar, math};
 

@@ -5,7 +5,8 @@ use so3::{Scalar, math};
 use super::violated::Look;
 use super::{Search, is_range, length_inverse, scale_inverse};
 use crate::Status;
-use crate::kernels::{at, max_abs, put};
+use crate::access::{at, put};
+use crate::kernels::max_abs;
 use crate::settings::row_tolerance;
 
 /// How the search for a point that satisfies all rows ended.
@@ -279,7 +280,7 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         let w = &mut *self.w;
         crate::kernels::sub_scaled(&mut w.x, t, &w.step);
         crate::kernels::sub_scaled(
-            crate::kernels::head_mut(&mut w.lambda, w.basis.len),
+            crate::access::head_mut(&mut w.lambda, w.basis.len),
             t,
             &w.vec_b,
         );

@@ -3,7 +3,8 @@
 use so3::{Scalar, math};
 
 use super::{EQUALITY, Search, scale_inverse, signed};
-use crate::kernels::{at, dot_sizes, dots, head, max_abs};
+use crate::access::{at, head};
+use crate::kernels::{dot_sizes, dots, max_abs};
 use crate::residual::{norm, worse};
 
 /// Round-off of evaluating a gradient, in ε of its terms.
@@ -76,10 +77,30 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             return false;
         }
         // rᵀH⁻¹r with D for H: the margin stands for what U would add.
+        self.gain(rest.scale) + self.toll <= least * self.worth_beside(rest)
+    }
+
+    /// What is left to gain of the cost, from the reduced gradient r in `vec_a` or from U⁻ᵀr, which is r where there is no curvature: rᵀD⁻¹r, and
+    /// all the way to the bound where nothing but the bound ends the gain. There an entry that is round-off of multipliers, beside terms of this `scale`,
+    /// goes nowhere.
+    fn gain(&self, scale: T) -> T {
+        let noise = T::of(8.0) * T::EPSILON * scale;
         let w = &*self.w;
         let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
-        let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
-        gain + self.toll <= least * self.worth_beside(rest)
+        if !w.factor.proximal {
+            return entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
+        }
+        let of = |(k, (r, weight)): (usize, (&T, &T))| {
+            if math::abs(*r) <= noise || !at(&w.factor.linear, k) {
+                return *r * *r * *weight;
+            }
+            let i = at(w.elimination.free_variables(), k);
+            let (l, u) = self.p.limits(M + i);
+            let x = at(&w.x, i);
+            let room = if *r > T::ZERO { x - l } else { u - x };
+            math::abs(*r) * math::max(room, T::ZERO)
+        };
+        entries.enumerate().map(of).fold(T::ZERO, |sum, x| sum + x)
     }
 
     /// The terms of the cost; at the origin there are none, and lengths count from the distance by which rows may be missed.
@@ -97,11 +118,11 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
         if rest.residual <= self.s.optimality * rest.scale {
             let w = &mut *self.w;
             w.factor.solve_transposed(&mut w.vec_a);
-            let entries = w.vec_a.iter().zip(&w.factor.weight).take(w.factor.dim);
-            let gain = entries.fold(T::ZERO, |sum, (r, w)| sum + *r * *r * *w);
             // A proximal step is no measure of those that would follow.
             let margin = T::of(if w.factor.proximal { 0.01 } else { 1.0 });
-            if gain + self.toll <= margin * self.s.optimality * self.worth_beside(rest) {
+            if self.gain(rest.scale) + self.toll
+                <= margin * self.s.optimality * self.worth_beside(rest)
+            {
                 return true;
             }
         }

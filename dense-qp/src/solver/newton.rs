@@ -4,7 +4,7 @@ use so3::Scalar;
 
 use super::Search;
 use crate::Workspace;
-use crate::kernels::{at, put};
+use crate::access::{at, put};
 
 impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
     /// From `gradient` at (x, λ): the point that is stationary with all active rows met. Then drops

@@ -3,7 +3,7 @@
 use so3::{Scalar, math};
 
 use super::{Search, signed};
-use crate::kernels::{at, put};
+use crate::access::{at, put};
 use crate::residual::{kkt_residual, worse};
 use crate::{Solution, Status, Workspace};
 

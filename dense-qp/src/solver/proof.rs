@@ -6,7 +6,8 @@ use super::exchange::Pass;
 use super::outcome::set_multiplier;
 use super::{EQUALITY, Search, scale_inverse, signed};
 use crate::Status;
-use crate::kernels::{at, dot, dot_sizes, max_abs, put, sub_scaled};
+use crate::access::{at, put};
+use crate::kernels::{dot, dot_sizes, max_abs, sub_scaled};
 use crate::residual::{infeasibility, worse};
 use crate::settings::{proximal_weight, row_tolerance};
 

@@ -3,7 +3,8 @@
 use so3::{Scalar, math};
 
 use super::{EQUALITY, Search, is_range, length_inverse, scale_inverse};
-use crate::kernels::{at, put, sum_sizes};
+use crate::access::{at, put};
+use crate::kernels::sum_sizes;
 use crate::residual::worse;
 use crate::workspace::POOL;
 use crate::{Status, Workspace};
