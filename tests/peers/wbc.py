@@ -7,7 +7,8 @@ Three take turns, ROUNDS times: `wbc-qp/examples/ticks.rs` (push-offs of iCub an
 programs of these ticks (`programs.py`; DAQP by its own timer, set-up plus solve; bounds as its simple bounds) and, where TSID and `target/peers/*.model` (`setup.sh`) are
 there, `tsid/bench.cpp` on the same states. A round is short, so that a change of the processor's speed meets all; the time of a program is the least of all
 its times, that of a tick the least median of a round. TSID_PREFIX is the `cmeel.prefix` folder of an environment with
-`pip install --only-binary :all: tsid==1.7.1 pin==3.4.0`. Exit code 1 where a ratio is above its limit: 0.3 for the tick against TSID,
+`pip install --only-binary :all: tsid==1.7.1 pin==3.4.0` and then `pip install --no-deps cmeel-urdfdom==4.0.1 cmeel-tinyxml2==10.0.0`, which these
+wheels were linked with; `bench.cpp` needs clang and Eigen. Exit code 1 where a ratio is above its limit: 0.3 for the tick against TSID,
 0.6 for the program against DAQP.
 """
 
