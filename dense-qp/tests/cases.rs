@@ -6,7 +6,7 @@
     reason = "tests"
 )]
 
-use crate::common::{Draw, Qp, Tally, dot, each};
+use crate::common::{Draw, INF, Qp, Tally, dot, each};
 use dense_qp::{Problem, Settings, Solution, Status, Workspace, infeasibility, solve, solve_warm};
 use so3::Scalar;
 
@@ -346,4 +346,64 @@ fn a_correction_is_no_limit_of_a_ray() {
         let residual = s.residual;
         assert!(residual.primal <= 1e-9, "{residual:?}");
     });
+}
+
+/// Lengths of 0.5 to 170, as bounds and rows say them, are alike: with equal weights the ray is found, with others steps bend it.
+#[test]
+fn a_ray_between_lengths_that_are_alike_is_straight() {
+    let g = [
+        2.3181973964811275,
+        1.3324610732705289,
+        -0.651681739649585,
+        -1.2475321791981915,
+        -1.392721242204082,
+        -2.3150098464439623,
+    ];
+    let a = [
+        [0.0, 0.0, 0.0, 0.3707969951361465, -0.13378684192920443, 0.0],
+        [
+            -0.8294957677147108,
+            0.3377044227057089,
+            0.33140887827057064,
+            0.4738294873942219,
+            0.0028142455285309342,
+            0.5192840343282927,
+        ],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [
+            0.849075888795995,
+            0.10243203849998239,
+            -0.7823997529099351,
+            -0.5794760300570949,
+            -0.7250564106249213,
+            0.9854281882550269,
+        ],
+    ];
+    let (l, u) = (
+        [
+            -3.3635182800967307,
+            -0.5571846275267411,
+            -0.9681754894105818,
+            -1.4285955032429178,
+        ],
+        [
+            -0.3635182800967306,
+            2.442815372473259,
+            0.9045114324727886,
+            1.5714044967570822,
+        ],
+    );
+    let lower = [-INF, -INF, -INF, -INF, -0.6725263936221599, -INF];
+    let upper = [
+        1.9201799488704934,
+        0.5379379817079653,
+        1.8539251278313016,
+        0.6220409734418115,
+        1.32747360637784,
+        1.8070753543476001,
+    ];
+    let p = Problem::new(&[[0.0; 6]; 6], &g, &a, &l, &u).with_bounds(&lower, &upper);
+    let mut w = Workspace::new();
+    let s = solve(&p, &Settings::default(), &mut w).unwrap();
+    assert_eq!(s.status, Status::Unbounded, "{} steps", s.steps);
 }
