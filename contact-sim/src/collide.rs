@@ -83,6 +83,12 @@ pub fn gaps<T: Scalar, const N: usize, const S: usize>(
     }
 }
 
+/// The gap between two shapes of a robot, m, which is negative where they overlap.
+#[must_use]
+pub fn gap<T: Scalar, const N: usize>(kinematics: &Kinematics<T, N>, [a, b]: [&Shape<T>; 2]) -> T {
+    place(kinematics, a).gap(&place(kinematics, b))
+}
+
 /// How hard it is to push a shape: its link at its centre of mass, and the shape's ends, of which the lighter counts.
 pub(crate) fn contact_mass<T: Scalar, M: Tree<T, N>, const N: usize>(
     model: &M,

@@ -226,6 +226,7 @@ fn whole_body_sentence(task: &Task, blocked: &Blocked) -> String {
             "foot {} comes {by:.3} m too near to the ground",
             place(foot)
         ),
+        R::Apart { .. } => format!("two links come {by:.3} m too near to each other"),
         R::Position { joint: i } => format!("{} needs {by:.3} rad more room", joint(i)),
         R::Speed { joint: i } => format!("{} needs {by:.1} rad/s more speed", joint(i)),
         R::Goal { axis } if axis < 3 => {

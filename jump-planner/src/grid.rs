@@ -6,6 +6,8 @@ use super::kept::Kept;
 use super::pace::Pace;
 use super::setup::{N, NI, NU, NX, Setup, times};
 use super::task::{PHASES, SrbPlan, Task};
+use crate::apart::Separation;
+use crate::audit::Audit;
 use crate::tightening::Tightening;
 use crate::whole_body::{Attempt, Blocked, Interval, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
@@ -41,6 +43,8 @@ pub(crate) struct Grid<'a> {
     timed: Vec<SparseStage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
     /// Share of the torque limits of the last solve.
     torque_share: f64,
+    /// Links that keep apart.
+    apart: Separation,
     /// All solves, in order.
     pub(crate) path: Vec<Attempt>,
 }
@@ -75,6 +79,7 @@ impl<'a> Grid<'a> {
                 Timing::Free => vec![SparseStage::sparse(timed); nodes],
             },
             torque_share: 0.0,
+            apart: Separation::default(),
             path: Vec::new(),
             setup,
         }
@@ -86,6 +91,7 @@ impl<'a> Grid<'a> {
         let mut grid = Self::of(task, Timing::Given, setup);
         grid.stages.clone_from(&kept.stages);
         grid.torque_share = kept.torque_share;
+        grid.apart.clone_from(&kept.apart);
         Ok(grid)
     }
 
@@ -101,8 +107,15 @@ impl<'a> Grid<'a> {
             lift: self.setup.lift,
             stages: self.stages,
             torque_share: self.torque_share,
+            apart: self.apart,
             drawn,
         })
+    }
+
+    /// Keeps links apart from now on that an audit found to pass through each other; whether there were any, and room for them.
+    pub(crate) fn keep_apart(&mut self, audit: &Audit) -> bool {
+        let kept = audit.overlaps.iter().map(|pair| self.apart.keep(pair));
+        kept.fold(false, |any, kept| any | kept)
     }
 
     /// The motion of the rigid body.
@@ -123,6 +136,7 @@ impl<'a> Grid<'a> {
         let setup = self.setup.split(parts, &self.durations())?;
         let mut fine = Self::of(self.task, self.timing, setup);
         (fine.torque_share, fine.path) = (self.torque_share, self.path);
+        fine.apart = self.apart;
         let problem = fine.setup.problem(&Tightening::default());
         problem.write_split(&mut fine.stages, &motion, parts);
         free_timing(self.task, problem).write_guess(&fine.stages, &mut fine.timed);
@@ -258,6 +272,7 @@ impl<'a> Grid<'a> {
             intervals: plan.intervals.len(),
             torque_share: self.torque_share,
             drawn: *drawn,
+            apart: self.apart.count(),
             status: plan.outcome.status,
             iterations: plan.outcome.iterations,
             wall_ms: clock.elapsed().as_secs_f64() * 1e3,
@@ -272,8 +287,10 @@ impl<'a> Grid<'a> {
         watch: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         let clearances = self.setup.clearances(drawn);
+        let apart = self.apart.rows(self.task)?;
         let mut problem = Problem {
             clearances: &clearances,
+            apart: &apart,
             ..self.setup.problem(drawn)
         };
         for limit in problem.robot.limits.iter_mut().skip(BASE) {

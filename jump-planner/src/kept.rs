@@ -3,6 +3,7 @@
 use super::FOOT_COUNT;
 use super::setup::{N, NI, NU, NX};
 use super::task::{SrbStage, Task};
+use crate::apart::Separation;
 use crate::tightening::Tightening;
 use ocp_solver::SparseStage;
 use wb_opt::State;
@@ -25,6 +26,8 @@ pub struct Kept {
     pub(crate) stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
     /// Share of the torque limits.
     pub(crate) torque_share: f64,
+    /// Links that keep apart.
+    pub(crate) apart: Separation,
     /// Limits that the audit had asked to be drawn in.
     pub(crate) drawn: Tightening,
 }

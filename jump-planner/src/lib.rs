@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod answer;
+mod apart;
 pub mod audit;
 pub mod bounds;
 pub mod file;

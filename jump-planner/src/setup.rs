@@ -22,7 +22,9 @@ pub(crate) const NU: usize = N + 3 * FOOT_COUNT;
 const SIDES: usize = 8;
 /// Trunk corners and knees.
 const CLEARANCES: usize = 12;
-pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES, true);
+/// Most pairs of links that keep apart.
+pub(crate) const PAIRS: usize = 12;
+pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES + PAIRS, true);
 
 /// Longest interval in contact, s. Plans on twice the length pass their audit, but fewer of them survive the lab.
 const CONTACT_DT: f64 = 0.005;
@@ -250,6 +252,7 @@ impl<'a> Setup<'a> {
                 radius: task.robot.foot_radius,
             }),
             clearances: &self.clearances,
+            apart: &[],
             // A foot that grazes the edge of a box turns the robot over.
             swing_height: task.robot.foot_radius,
             swing_rise: self.rise(drawn) + self.lift,

@@ -17,6 +17,8 @@ use wb_opt::{Gains, Judgement, Phase, Row, Sample, State};
 
 /// How often limits are drawn in at most.
 const TIGHTENINGS: usize = 3;
+/// How often at most where there are links to keep apart: those that pass through each other show one after the other.
+const SEPARATIONS: usize = 6;
 
 /// Where the durations of the phases come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,6 +83,8 @@ pub struct Attempt {
     pub torque_share: f64,
     /// Limits that were drawn in after the audit of the attempt before.
     pub drawn: Tightening,
+    /// How many pairs of links were kept apart, because they had passed through each other in an attempt before.
+    pub apart: usize,
     /// How it ended.
     pub status: Status,
     /// Iterations.
@@ -189,11 +193,15 @@ fn tightened(
     observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let mut told = plan.audited(task)?;
-    for _ in 0..TIGHTENINGS {
-        let Some(next) = told.audit.as_ref().and_then(|audit| drawn.after(audit)) else {
+    for round in 0..SEPARATIONS {
+        let Some(audit) = told.audit.as_ref().filter(|audit| !audit.passes()) else {
             break;
         };
-        *drawn = next;
+        let (next, parted) = (drawn.after(audit), grid.keep_apart(audit));
+        if !parted && (next.is_none() || round >= TIGHTENINGS) {
+            break;
+        }
+        *drawn = next.unwrap_or(*drawn);
         let again = grid.again(drawn, observer)?.audited(task)?;
         if again.audit.is_none() {
             break;
@@ -255,6 +263,7 @@ impl Attempt {
                 "friction": drawn.friction,
                 "height": drawn.height,
             },
+            "kept_apart": self.apart,
             "status": format!("{:?}", self.status),
             "iterations": self.iterations,
             "wall_ms": self.wall_ms,
@@ -268,9 +277,14 @@ impl core::fmt::Display for Attempt {
             Timing::Given => "the rigid body's durations",
             Timing::Free => "durations of its own",
         };
+        let apart = match self.apart {
+            0 => String::new(),
+            1 => ", a pair kept apart".to_owned(),
+            pairs => format!(", {pairs} pairs kept apart"),
+        };
         write!(
             f,
-            "{durations}, {} intervals, {:.0} % of the torque{}: {:?} after {} iterations, {:.0} ms",
+            "{durations}, {} intervals, {:.0} % of the torque{}{apart}: {:?} after {} iterations, {:.0} ms",
             self.intervals,
             100.0 * self.torque_share,
             self.drawn,

@@ -146,6 +146,7 @@ impl Data {
             robot: self.robot,
             feet: self.feet,
             clearances: &self.clearances,
+            apart: &[],
             swing_height: SWING_HEIGHT,
             swing_rise: 0.0,
             edge: self.edge,

@@ -55,6 +55,7 @@ fn main() -> Result<(), wb_opt::Error> {
         robot: Robot::on_free_base(&A1Reference),
         feet: feet(),
         clearances: &[],
+        apart: &[],
         swing_height: -0.01,
         swing_rise: 0.0,
         edge: None,

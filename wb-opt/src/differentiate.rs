@@ -117,6 +117,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         }
         let mut positions = self.positions(y, d, &mut hessian);
         self.limits(y, d);
+        self.apart(y, d, &mut hessian, &mut positions);
         self.distance(&mut cost, &mut hessian, &mut positions);
         self.count(T::ONE, &cost);
 
@@ -211,6 +212,24 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
             let mut gradient = Gradient::ZERO;
             gradient.v[joint] = T::ONE;
             self.push(speed, &gradient, core::iter::once(joint), y, d);
+        }
+    }
+
+    /// Links that keep apart.
+    fn apart<const NX: usize, const NU: usize, const NI: usize>(
+        &mut self,
+        y: &[T; NI],
+        d: &mut Derivatives<T, NX, NU, NI>,
+        hessian: &mut Hessian<T, N, FEET>,
+        terms: &mut PositionTerms<T, N>,
+    ) {
+        let groups = self.problem.groups(self.k);
+        let unit = Units::<T>::new().position;
+        self.row = groups.first_apart();
+        for pair in self.problem.apart.iter().take(groups.apart) {
+            let near = pair.near(self.sweep);
+            let y = self.push(unit, &near.gradient(self.sweep), 0..N, y, d);
+            near.bend(self.sweep, y, hessian, terms);
         }
     }
 

@@ -223,5 +223,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             let pos = sweep.place(clearance.point.link, &clearance.point.offset_l);
             above(clearance.height - self.over_ground(&pos).height);
         }
+        for pair in self.apart.iter().take(self.groups(k).apart) {
+            above(pair.distance * T::HALF - pair.near(sweep).value);
+        }
     }
 }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod apart;
 mod differentiate;
 mod drive;
 mod error;
@@ -21,6 +22,7 @@ mod stretch;
 mod timing;
 mod transcription;
 
+pub use apart::{Apart, Segment};
 pub use error::Error;
 pub use friction::Friction;
 pub use gain::Gains;

@@ -38,7 +38,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let lines = self.robot.motors.iter().any(Option::is_some);
         let fits = NX >= N.saturating_mul(2)
             && NU >= N.saturating_add(FEET.saturating_mul(3))
-            && NI >= row_capacity(N, FEET, self.friction.sides(), self.clearances.len(), lines);
+            && NI >= row_capacity(N, FEET, self.friction.sides(), self.points(), lines);
         if !fits {
             return Err(Error::Capacity);
         }

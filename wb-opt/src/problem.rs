@@ -1,5 +1,6 @@
 //! Whole-body dynamics, contacts and cost, paper A eq. (4), eq. (5) and eq. (6), as plain data: robot, contacts, reference, limits and weights.
 
+use crate::apart::{Apart, Segment};
 use crate::error::Error;
 use crate::friction::Friction;
 use crate::robot::{BASE, Point, Robot, TURN};
@@ -67,6 +68,8 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     pub feet: [Foot<T>; FEET],
     /// Points other than feet that stay clear of the ground.
     pub clearances: &'a [Clearance<T>],
+    /// Links that keep apart.
+    pub apart: &'a [Apart<T>],
     /// Least height of a foot that is not in contact, m; negative lets it graze.
     pub swing_height: T,
     /// How much more than that it keeps over the ground on its way, m: reached at 0.5 m/s from where it lifts off, left at
@@ -331,6 +334,15 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.clearances.iter().all(|c| inside(&c.point)),
             "clearances.point: must be on a body of the robot",
+        )?;
+        let of_link = |segment: &Segment<T>| {
+            let [from, to] = &segment.ends;
+            inside(from) && inside(to) && from.link == to.link
+        };
+        let both = |pair: &Apart<T>| pair.segments.iter().all(of_link) && positive(pair.distance);
+        require(
+            self.apart.iter().all(both),
+            "apart: ends of a segment must be on one body of the robot, distances positive",
         )
     }
 

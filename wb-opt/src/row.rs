@@ -57,6 +57,11 @@ pub enum Row {
         /// Coordinate of the joint.
         joint: usize,
     },
+    /// Two links that keep apart.
+    Apart {
+        /// The pair.
+        pair: usize,
+    },
     /// Base at the end, by coordinate.
     Goal {
         /// Coordinate of the base.
@@ -117,6 +122,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         if let Some(i) = within(groups.limited) {
             return Some((Row::Position { joint: joint(i) }, T::ONE));
         }
-        within(groups.limited).map(|i| (Row::Speed { joint: joint(i) }, units.speed))
+        if let Some(i) = within(groups.limited) {
+            return Some((Row::Speed { joint: joint(i) }, units.speed));
+        }
+        within(groups.apart).map(|pair| (Row::Apart { pair }, units.position))
     }
 }

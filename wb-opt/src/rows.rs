@@ -5,7 +5,7 @@
 //! force. Mixed rows, at the midpoint: effort on the base (zero), acceleration of the feet in contact
 //! (zero), joint efforts, torque-speed lines at the speeds of the interval's start and end if any joint has a motor (the effort is held,
 //! and light legs change their speed much over an interval), drift of the feet in contact, clearances, heights of the other feet, and, where
-//! joints move, their positions and speeds. Rows are in the units of [`crate::state::Units`].
+//! joints move, their positions and speeds, and links that keep apart ([`crate::apart`]). Rows are in the units of [`crate::state::Units`].
 
 use crate::drive::Line;
 use crate::problem::Problem;
@@ -15,13 +15,13 @@ use ocp_solver::Dims;
 use so3::Scalar;
 
 /// Rows a node can have at most: the least `NI` for `coordinates` coordinates, `feet` feet with friction pyramids of `sides`
-/// sides ([`crate::Friction::sides`]) and a number of clearances, with or without torque-speed lines.
+/// sides ([`crate::Friction::sides`]) and a number of clearances and pairs that keep apart, with or without torque-speed lines.
 #[must_use]
 pub const fn row_capacity(
     coordinates: usize,
     feet: usize,
     sides: usize,
-    clearances: usize,
+    points: usize,
     lines: bool,
 ) -> usize {
     let joints = coordinates.saturating_sub(BASE);
@@ -30,7 +30,7 @@ pub const fn row_capacity(
     let middle = BASE
         .saturating_add(contacts)
         .saturating_add(joints.saturating_mul(if lines { 5 } else { 3 }));
-    middle.saturating_add(clearances)
+    middle.saturating_add(points)
 }
 
 /// Numbers of rows of an interval, group by group.
@@ -51,6 +51,8 @@ pub(crate) struct Groups {
     pub(crate) swing: usize,
     /// Joints that move.
     pub(crate) limited: usize,
+    /// Pairs of links that keep apart.
+    pub(crate) apart: usize,
 }
 
 impl Groups {
@@ -63,7 +65,18 @@ impl Groups {
     pub(crate) const fn first_limit(&self) -> usize {
         self.first_mixed()
             .saturating_add(self.mixed())
-            .saturating_sub(self.limited.saturating_mul(2))
+            .saturating_sub(self.limits())
+            .saturating_sub(self.apart)
+    }
+
+    /// First row of the links that keep apart: behind all others, so that those keep their places where a pair is added.
+    pub(crate) const fn first_apart(&self) -> usize {
+        self.first_limit().saturating_add(self.limits())
+    }
+
+    /// Rows of the joint positions and speeds.
+    const fn limits(&self) -> usize {
+        self.limited.saturating_mul(2)
     }
 
     /// Rows of the forces.
@@ -77,7 +90,8 @@ impl Groups {
             .saturating_add(self.lines)
             .saturating_add(self.clearances)
             .saturating_add(self.swing)
-            .saturating_add(self.limited.saturating_mul(2))
+            .saturating_add(self.limits())
+            .saturating_add(self.apart)
     }
 }
 
@@ -102,7 +116,17 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             clearances: self.clearances.len(),
             swing: FEET.saturating_sub(layout.feet),
             limited: layout.joints,
+            apart: if layout.joints > 0 {
+                self.apart.len()
+            } else {
+                0
+            },
         }
+    }
+
+    /// Clearances and pairs that keep apart, of which each has one row at most.
+    pub(crate) const fn points(&self) -> usize {
+        self.clearances.len().saturating_add(self.apart.len())
     }
 
     pub(crate) fn row_dims(&self, k: usize) -> Dims {
@@ -187,6 +211,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             for limit in limits() {
                 push(-limit.speed, limit.speed, units.speed);
             }
+        }
+        for pair in self.apart.iter().take(groups.apart) {
+            push(pair.distance * T::HALF, T::INFINITY, units.position);
         }
     }
 }

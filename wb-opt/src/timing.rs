@@ -148,11 +148,10 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
             ));
         }
         let lines = problem.robot.motors.iter().any(Option::is_some);
-        let clearances = problem.clearances.len();
         let fits = self.count() <= PHASES
             && NX >= Self::TIMES.saturating_add(PHASES)
             && NU >= N.saturating_add(FEET.saturating_mul(3))
-            && NI >= row_capacity(N, FEET, problem.friction.sides(), clearances, lines)
+            && NI >= row_capacity(N, FEET, problem.friction.sides(), problem.points(), lines)
             && NI >= BASE.saturating_add(PHASES).saturating_add(1);
         if !fits {
             return Err(Error::Capacity);

@@ -86,6 +86,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             for v in mid.v.iter().skip(BASE) {
                 push(*v / units.speed);
             }
+            for pair in self.apart {
+                push(pair.near(sweep).value / units.position);
+            }
         }
     }
 }

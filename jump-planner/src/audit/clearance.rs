@@ -17,6 +17,15 @@ const KINDS: [(Limit, &str); 2] = [
     (Limit::Robot, "to the robot"),
 ];
 
+/// Two shapes of a robot that pass through each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Overlap {
+    /// The shapes.
+    pub(crate) shapes: [usize; 2],
+    /// The gap between them where they are deepest in each other, negative, m.
+    pub(crate) gap: f64,
+}
+
 /// The shapes of a robot in the world of a plan.
 pub(crate) struct Clearance {
     robot: Quadruped,
@@ -56,12 +65,14 @@ impl Clearance {
             .flat_map(|owner| KINDS.map(|(kind, name)| (kind, format!("{owner} {name}"))))
     }
 
-    /// The smallest gaps in the order of the names, m. Feet that stand touch the ground, and so may all in the last interval.
+    /// The smallest gaps in the order of the names, m, and shapes that pass through each other. Feet that stand touch the ground, and so may
+    /// all in the last interval.
     pub(crate) fn gaps(
         &self,
         kinematics: &Kinematics<f64, JOINTS>,
         held: &Held,
-    ) -> impl Iterator<Item = f64> + use<> {
+        mut overlaps: impl FnMut(Overlap),
+    ) -> [f64; 2 * OWNER_COUNT] {
         let mut found = [[f64::INFINITY; 2]; OWNER_COUNT];
         gaps(
             kinematics,
@@ -77,10 +88,16 @@ impl Clearance {
                         for owner in [owner, self.robot.shapes[j].owner] {
                             found[owner][1] = f64::min(found[owner][1], gap);
                         }
+                        if gap < 0.0 {
+                            overlaps(Overlap {
+                                shapes: [i, j],
+                                gap,
+                            });
+                        }
                     }
                 }
             },
         );
-        found.into_iter().flatten()
+        core::array::from_fn(|i| found[i / 2][i % 2])
     }
 }

@@ -1,5 +1,6 @@
 //! The robot between two nodes of a plan, moved from the first of them by its forward dynamics.
 
+use super::clearance::Overlap;
 use super::forward::{Forward, Passed, Velocity, largest};
 use super::limits::Limits;
 use super::{STEP, state};
@@ -37,6 +38,8 @@ pub(super) struct Watched {
     pub(super) any_saturation: f64,
     /// The smallest of each limit, and when, s.
     pub(super) smallest: Vec<(f64, f64)>,
+    /// Shapes of the robot that pass through each other, where they are deepest.
+    pub(super) overlaps: Vec<Overlap>,
     /// See [`super::Audit::defect`].
     pub(super) defect: [f64; 2],
     /// See [`super::Audit::force_error`].
@@ -150,6 +153,7 @@ impl Watched {
             saturation: [0.0; JOINTS],
             any_saturation: 0.0,
             smallest: vec![(f64::INFINITY, 0.0); limits.count()],
+            overlaps: Vec::new(),
             defect: [0.0; 2],
             force_error: 0.0,
         }
@@ -164,6 +168,16 @@ impl Watched {
         }
     }
 
+    /// Keeps the deepest overlap of two shapes.
+    pub(super) fn overlap(&mut self, found: Overlap) {
+        let mut known = self.overlaps.iter_mut();
+        match known.find(|overlap| overlap.shapes == found.shapes) {
+            Some(overlap) if overlap.gap <= found.gap => {}
+            Some(overlap) => *overlap = found,
+            None => self.overlaps.push(found),
+        }
+    }
+
     /// Adds what was seen later.
     pub(super) fn merge(&mut self, later: &Self) {
         let times = self.saturation.iter_mut().zip(&later.saturation);
@@ -174,6 +188,7 @@ impl Watched {
                 *smallest = *found;
             }
         }
+        later.overlaps.iter().for_each(|found| self.overlap(*found));
         let defects = self.defect.iter_mut().zip(&later.defect);
         defects.for_each(|(most, defect)| *most = most.max(*defect));
         self.force_error = self.force_error.max(later.force_error);

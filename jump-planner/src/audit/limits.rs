@@ -131,7 +131,8 @@ impl<'a> Limits<'a> {
             .iter()
             .map(|c| self.height(&q.base.point(c)));
         values.push(corners.fold(f64::INFINITY, f64::min));
-        let gaps = self.clearance.gaps(&kinematics, held);
+        let overlap = |overlap| found.overlap(overlap);
+        let gaps = self.clearance.gaps(&kinematics, held, overlap);
         values.extend(gaps.map(|gap| gap / self.robot.leg_length));
         found.remember(time, &values);
     }

@@ -17,6 +17,7 @@ mod values;
 
 use crate::robot::{JOINTS, LEGS, Quadruped, State};
 use crate::stored::Stored;
+pub(crate) use clearance::Overlap;
 use forward::{Forward, Velocity};
 use interval::{Interval, Watched};
 use jump_control::container::PlanNode;
@@ -100,6 +101,8 @@ pub struct Audit {
     pub force_error: f64,
     /// All limits, the worst first.
     pub margins: Vec<Margin>,
+    /// Shapes of the robot that pass through each other by more than a plan may, the deepest first.
+    pub(crate) overlaps: Vec<Overlap>,
     /// What heights and gaps are shares of, m.
     leg_length: f64,
 }
@@ -136,6 +139,9 @@ impl Audit {
         let mut margins = limits.margins(&found);
         margins.retain(|margin| margin.value.is_finite());
         margins.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let mut overlaps = found.overlaps;
+        overlaps.retain(|overlap| overlap.gap < -BEYOND * robot.leg_length);
+        overlaps.sort_by(|a, b| a.gap.total_cmp(&b.gap));
         Ok(Self {
             checksum: plan.checksum(),
             flight_orientation_error: so3::log(&turn).norm(),
@@ -145,6 +151,7 @@ impl Audit {
             defect: found.defect,
             force_error: found.force_error,
             margins,
+            overlaps,
             leg_length: robot.leg_length,
         })
     }
@@ -161,6 +168,7 @@ impl Audit {
             defect: [0.0; 2],
             force_error: 0.0,
             margins,
+            overlaps: Vec::new(),
             leg_length: 1.0,
         }
     }

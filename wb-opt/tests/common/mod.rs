@@ -9,8 +9,8 @@ use proptest::array::{uniform, uniform3, uniform4};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use wb_opt::{
-    BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Friction, Phase, Point, Pose, Problem,
-    Robot, State, Weights,
+    Apart, BASE, BaseCoordinates, Clearance, EulerOrder, Foot, Friction, Phase, Point, Pose,
+    Problem, Robot, Segment, State, Weights,
 };
 
 pub(crate) const N: usize = 18;
@@ -32,6 +32,7 @@ pub(crate) fn config(cases: u32, seed: u64) -> Config {
 /// What the problem borrows.
 pub(crate) struct Data {
     pub(crate) clearances: [Clearance<f64>; 12],
+    pub(crate) apart: [Apart<f64>; 2],
     pub(crate) phases: [Phase<f64, FEET>; 3],
     pub(crate) reference: Vec<Pose<f64, N>>,
 }
@@ -63,6 +64,17 @@ pub(crate) fn data() -> Data {
             height: 0.03,
         }
     };
+    // Shanks, and a shank and a foot.
+    let shank = |leg: usize, from: f64| Segment {
+        ends: [from, -0.2].map(|along| Point {
+            link: BASE + 3 * leg + 2,
+            offset_l: Vector3::new(0.01, 0.0, along),
+        }),
+    };
+    let apart = |leg: usize, other: usize, from: f64| Apart {
+        segments: [shank(leg, 0.0), shank(other, from)],
+        distance: 0.04,
+    };
     let phase = |contacts, intervals, dt| Phase {
         contacts,
         intervals,
@@ -70,6 +82,7 @@ pub(crate) fn data() -> Data {
     };
     Data {
         clearances: core::array::from_fn(|i| if i < 8 { corner(i) } else { knee(i - 8) }),
+        apart: [apart(0, 1, -0.02), apart(2, 0, -0.2)],
         phases: [
             phase([true; 4], 12, 0.01),
             phase([false, false, true, true], 8, 0.012),
@@ -118,6 +131,7 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
             radius: 0.0,
         }),
         clearances: &data.clearances,
+        apart: &data.apart,
         swing_height: -0.01,
         swing_rise: 0.0,
         edge: None,
