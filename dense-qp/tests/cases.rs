@@ -407,3 +407,44 @@ fn a_ray_between_lengths_that_are_alike_is_straight() {
     let s = solve(&p, &Settings::default(), &mut w).unwrap();
     assert_eq!(s.status, Status::Unbounded, "{} steps", s.steps);
 }
+
+/// min ½x₀² − x₀ − s x₁ has x₀ = 1, and x₁ as far as its bound or its row lets it, or no end. The slope s is so small beside that of x₀ that it looks
+/// like round-off of a gradient, and a proximal step gains next to nothing by it. But the cost falls by s times the way to the limit, and that is more
+/// than may be left to gain: the share `optimality` of |x₀|(|x₀| + 1) = 2. Only the way to the limit ahead tells so. The one behind is as near as x₁
+/// is when the search begins, or as 1. All this upwards and downwards.
+#[test]
+fn a_small_slope_counts_by_the_way_ahead() {
+    let settings = Settings::<f64>::default();
+    let may_be_left = 2.0 * settings.optimality;
+    for (slope, [behind, ahead], row) in [
+        (8e-13, [0.0, 500.0], INF),
+        (6e-15, [1.0, INF], 1e10),
+        (8e-13, [0.0, INF], INF),
+        (8e-13, [1.0, INF], INF),
+    ] {
+        let fall = slope * ahead.min(row);
+        assert!(slope < 0.01 * settings.optimality && fall >= 2.0 * may_be_left);
+        for up in [true, false] {
+            let sign = if up { 1.0 } else { -1.0 };
+            let [l, u] = if up {
+                [-behind, ahead]
+            } else {
+                [-ahead, behind]
+            };
+            let (lower, upper) = ([-INF, l], [INF, u]);
+            let (h, g) = ([[1.0, 0.0], [0.0; 2]], [-1.0, -sign * slope]);
+            let (a, limit) = ([[0.0, sign]], [row]);
+            let p = Problem::new(&h, &g, &a, &[-INF], &limit).with_bounds(&lower, &upper);
+            run(&p, |s| {
+                let status = if fall < INF {
+                    Status::Solved
+                } else {
+                    Status::Unbounded
+                };
+                assert_eq!(s.status, status, "{slope} up to {ahead}, {up}");
+                let left = p.cost(s.x) + 0.5 + fall;
+                assert!(fall == INF || left.abs() <= may_be_left, "{left} of {fall}");
+            });
+        }
+    }
+}
