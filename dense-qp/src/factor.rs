@@ -2,7 +2,7 @@
 
 use crate::access::{at, head, head_mut, put, span, span_mut};
 use crate::kernels::sub_block;
-use crate::kernels::{ceil4, dot_in, floor4, scale_from};
+use crate::kernels::{ceil4, dot_in, floor4, max_abs, scale_from};
 use crate::settings::{pivot_tolerance, proximal_weight};
 use crate::tiles::{Shares, block, less, load, store, sub_products};
 use core::slice::from_ref;
@@ -36,8 +36,9 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
         }
     }
 
-    /// The least and the largest curvature of a variable, before [`Factor::factorise`]; infinite and zero where there is none.
-    pub(crate) fn curvatures(&self) -> [T; 2] {
+    /// Before [`Factor::factorise`]: the least curvature of a variable, infinite where there is none, and the scale beside which it counts, which is the
+    /// largest, or where all are zero the largest slope, or one.
+    pub(crate) fn curvatures(&self, gradient: &[T; N]) -> [T; 2] {
         let (mut least, mut largest) = (T::INFINITY, T::ZERO);
         for h in self.weight.iter().take(self.dim) {
             if *h < least {
@@ -46,6 +47,10 @@ impl<T: Scalar, const N: usize> Factor<T, N> {
             if *h > largest {
                 largest = *h;
             }
+        }
+        if largest == T::ZERO {
+            let slope = max_abs(gradient);
+            largest = if slope > T::ZERO { slope } else { T::ONE };
         }
         [least, largest]
     }

@@ -172,12 +172,7 @@ impl<'a, 'p, 'w, T: Scalar, const N: usize, const M: usize> Search<'a, 'p, 'w, T
             &mut w.factor.weight,
             &mut w.basis.j,
         );
-        let [least, largest] = w.factor.curvatures();
-        let scale = if largest > T::ZERO {
-            largest
-        } else {
-            or_one(max_abs(self.p.gradient))
-        };
+        let [least, scale] = w.factor.curvatures(self.p.gradient);
         if is_linear(least, scale) {
             self.weigh_linear(scale);
         }
@@ -322,11 +317,6 @@ fn mark_equal<'a, T: Scalar>(
         any |= *state;
     }
     any != 0
-}
-
-/// A size, or one where it is zero.
-fn or_one<T: Scalar>(size: T) -> T {
-    if size > T::ZERO { size } else { T::ONE }
 }
 
 /// Whether l ≤ x ≤ u is a range that numbers can satisfy; false for a NaN.

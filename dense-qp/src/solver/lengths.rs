@@ -30,20 +30,21 @@ impl<T: Scalar, const N: usize, const M: usize> Search<'_, '_, '_, T, N, M> {
             curvature = math::max(curvature, h * length * length);
             slope = math::max(slope, math::abs(g) * length);
         }
-        let are_alike = most <= least * T::of(LIKE);
+        let w = &mut *self.w;
+        w.vec_b.fill(unscaled);
+        if most <= least * T::of(LIKE) {
+            return;
+        }
         let cost = if curvature > T::ZERO {
             curvature
         } else {
             slope
         };
-        let w = &mut *self.w;
         for (own, length) in w.vec_b.iter_mut().zip(&w.step) {
             let weight = cost / (*length * *length);
-            *own = if is_length(weight) && !are_alike {
-                weight
-            } else {
-                unscaled
-            };
+            if is_length(weight) {
+                *own = weight;
+            }
         }
     }
 
