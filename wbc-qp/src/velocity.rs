@@ -262,8 +262,8 @@ impl<T: Scalar, const N: usize, const V: usize, const M: usize> VelocityQp<T, N,
         let z: [T; V] = variables(&answer.velocity);
         let held = self.workspace.active().filter_map(|(constraint, side)| {
             let limit = match constraint {
-                Constraint::Bound(i) if i < N => Limit::Motion(i),
-                Constraint::Bound(_) => return None,
+                // Only joints have bounds: the base and slack are free or fixed.
+                Constraint::Bound(i) => Limit::Motion(i),
                 Constraint::Row(i) => self.rows.number(i).map(Limit::Row)?,
             };
             let extent = Extent::Held(side);
