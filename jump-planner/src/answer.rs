@@ -7,9 +7,8 @@
 use super::Observe;
 use super::audit::Audit;
 use super::bounds::Impossible;
-use super::search::roughly;
 use super::task::{SrbPlan, Task};
-use super::whole_body::{Blocked, Timing, WholeBodyPlan};
+use super::whole_body::{Blocked, WholeBodyPlan};
 use core::ops::ControlFlow;
 use core::time::Duration;
 use nalgebra::Vector3;
@@ -133,7 +132,9 @@ impl Answer {
         Self {
             status: "NotFound",
             because,
-            relaxations: Vec::new(),
+            relaxations: (plan.stronger.iter())
+                .map(|stronger| stronger.told(&task.robot))
+                .collect(),
         }
     }
 
@@ -143,20 +144,6 @@ impl Answer {
     pub fn with_easier_tasks(self, task: &Task, mut observe: impl Observer) -> Self {
         Self {
             relaxations: relaxations(task, &mut observe),
-            ..self
-        }
-    }
-
-    /// With the joints that would give the whole body a plan; `observe` as in [`Answer::with_easier_tasks`].
-    #[must_use]
-    pub fn with_stronger_joints(
-        self,
-        task: &Task,
-        srb: &SrbPlan,
-        mut observe: impl Observer,
-    ) -> Self {
-        Self {
-            relaxations: stronger(task, srb, &mut observe).into_iter().collect(),
             ..self
         }
     }
@@ -365,34 +352,4 @@ fn relaxations(task: &Task, observe: Observe<'_>) -> Vec<String> {
         told.push((easing.tell)(task, &eased, &plan));
     }
     told
-}
-
-/// What the joints would have to give, if that is all that is missing.
-fn stronger(task: &Task, srb: &SrbPlan, observe: Observe<'_>) -> Option<String> {
-    let mut strong = task.clone();
-    strong.limits.torque_shares = [10.0; 3];
-    strong.limits.speed_share *= 10.0;
-    let plan = roughly(&strong, srb, Timing::Given, observe).ok()?;
-    if plan.outcome.status != Status::Solved {
-        return None;
-    }
-    let efforts = plan.intervals.iter().flat_map(|interval| {
-        let joints = interval.sample.effort[wb_opt::BASE..].iter();
-        joints.enumerate().map(|(i, effort)| (effort.abs(), i))
-    });
-    let (peak, i) = efforts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let speeds = plan.intervals.iter().flat_map(|interval| {
-        let joints = interval.sample.v[wb_opt::BASE..].iter();
-        joints.enumerate().map(|(i, speed)| (speed.abs(), i))
-    });
-    let (speed, j) = speeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let bytes = super::stored::store(&strong, &plan).ok()?;
-    let stored = super::stored::open(&bytes, &task.robot).ok()?;
-    let audit = Audit::of(&task.robot, &stored).ok()?;
-    Some(format!(
-        "peak torque of {} would have to be {peak:.0} N m and peak speed of {} {speed:.0} rad/s: joints saturate for {:.1} ms of that plan",
-        super::stored::joint_name(&task.robot, i),
-        super::stored::joint_name(&task.robot, j),
-        audit.any_saturation * 1e3,
-    ))
 }

@@ -8,12 +8,13 @@ use super::setup::{N, NI, NU, NX, Setup, times};
 use super::task::{PHASES, SrbPlan, Task};
 use crate::apart::Separation;
 use crate::audit::Audit;
+use crate::stronger::Stronger;
 use crate::tightening::Tightening;
 use crate::whole_body::{Attempt, Blocked, Interval, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
 use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_rows};
 use std::time::Instant;
-use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
+use wb_opt::{BASE, FreeTiming, Problem, Row, State, TimedState};
 
 /// Most iterations; what is solved takes 10 to 60.
 const PATIENCE: usize = 150;
@@ -24,6 +25,10 @@ const PARTS_PATIENCE: usize = 60;
 /// Iterations in which a motion with less torque has to arrive from one with more. Where that takes longer, it is another motion, and one that
 /// only long intervals have: between their middles it does as it likes.
 const LESS_PATIENCE: usize = 40;
+/// How strong and fast joints are, over what they are, of which weaker ones are sought.
+const STRONGEST: f64 = 3.0;
+/// Strengths by less than this factor apart are the same.
+const CLOSE: f64 = 1.05;
 /// Barrier to begin with where a plan is made again, or on parts of its intervals. With less the first steps go from bound to bound.
 const WARM_MU: f64 = 1e-2;
 /// The same where the task is another one.
@@ -43,6 +48,8 @@ pub(crate) struct Grid<'a> {
     timed: Vec<SparseStage<f64, TimedState<f64, N, PHASES>, TIMED, NU, NI>>,
     /// Share of the torque limits of the last solve.
     torque_share: f64,
+    /// How many times as strong and as fast as they are the joints were in the last solve.
+    strength: f64,
     /// Links that keep apart.
     apart: Separation,
     /// All solves, in order.
@@ -79,6 +86,7 @@ impl<'a> Grid<'a> {
                 Timing::Free => vec![SparseStage::sparse(timed); nodes],
             },
             torque_share: 0.0,
+            strength: 1.0,
             apart: Separation::default(),
             path: Vec::new(),
             setup,
@@ -201,6 +209,46 @@ impl<'a> Grid<'a> {
         Ok(plan)
     }
 
+    /// Plans with the most torque of joints that are stronger and faster than they are, and then of ever weaker ones from there, halving what is
+    /// between those that have a motion and those that have none. The last plan, which is solved where a motion of the robot as it is was
+    /// found so; if it is not, the weakest joints that have one, or none where those [`STRONGEST`] times as strong have none either.
+    pub(crate) fn with_weakest_joints(
+        &mut self,
+        observer: Observe<'_>,
+    ) -> Result<(WholeBodyPlan, Option<Stronger>), String> {
+        self.torque_share = self.task.limits.torque_shares[2];
+        self.strength = STRONGEST;
+        let mut plan = self.descend(observer)?;
+        if plan.outcome.status != Status::Solved {
+            return Ok((plan, None));
+        }
+        let (mut low, mut weakest) = (1.0, Stronger::of(STRONGEST, &plan));
+        loop {
+            self.strength = if weakest.times > CLOSE * low {
+                so3::math::sqrt(weakest.times * low)
+            } else if low == 1.0 {
+                low
+            } else {
+                break;
+            };
+            let before = (self.stages.clone(), self.timed.clone());
+            plan = self.solve(&warm(), &Tightening::default(), observer, &mut |progress| {
+                progress.iteration <= LESS_PATIENCE
+            })?;
+            match plan.outcome.status {
+                Status::Solved if self.strength == 1.0 => return Ok((plan, None)),
+                Status::Solved => weakest = Stronger::of(self.strength, &plan),
+                Status::Cancelled => break,
+                _ if self.strength == 1.0 => break,
+                _ => {
+                    low = self.strength;
+                    (self.stages, self.timed) = before;
+                }
+            }
+        }
+        Ok((plan, Some(weakest)))
+    }
+
     /// Solves from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there take longer than a
     /// search elsewhere.
     fn descend(&mut self, observer: Observe<'_>) -> Result<WholeBodyPlan, String> {
@@ -215,6 +263,14 @@ impl<'a> Grid<'a> {
         };
         let none = Tightening::default();
         self.solve(&settings(), &none, observer, &mut goes_on)
+    }
+
+    /// Allows the most torque from now on; whether that is more than before.
+    pub(crate) fn allow_most_torque(&mut self) -> bool {
+        let [.., most] = self.task.limits.torque_shares;
+        let is_more = most > self.torque_share;
+        self.torque_share = most;
+        is_more
     }
 
     /// Plans from the motion of the long intervals that these are parts of, with its torque.
@@ -271,6 +327,7 @@ impl<'a> Grid<'a> {
             timing: self.timing,
             intervals: plan.intervals.len(),
             torque_share: self.torque_share,
+            strength: self.strength,
             drawn: *drawn,
             apart: self.apart.count(),
             status: plan.outcome.status,
@@ -293,8 +350,15 @@ impl<'a> Grid<'a> {
             apart: &apart,
             ..self.setup.problem(drawn)
         };
-        for limit in problem.robot.limits.iter_mut().skip(BASE) {
-            limit.effort *= self.torque_share;
+        let robot = &mut problem.robot;
+        for (limit, motor) in robot.limits.iter_mut().zip(&mut robot.motors).skip(BASE) {
+            limit.effort *= self.torque_share * self.strength;
+            limit.speed *= self.strength;
+            if let Some(motor) = motor {
+                motor.torque *= self.strength;
+                motor.corner_speed *= self.strength;
+                motor.no_load_speed *= self.strength;
+            }
         }
         let told = |error| format!("task {}: {error}", self.task.name);
         if self.timing == Timing::Given {
@@ -365,7 +429,7 @@ fn free_timing<'a>(
 /// What the stages hold, in physical units.
 fn finish<S: Copy, const X: usize>(
     problem: &Problem<'_, f64, N, FOOT_COUNT>,
-    (outcome, torque_share): (Solution<f64>, f64),
+    (mut outcome, torque_share): (Solution<f64>, f64),
     stages: &[SparseStage<f64, S, X, NU, NI>],
     state: impl Fn(&S) -> &State<f64, N>,
 ) -> Result<WholeBodyPlan, String> {
@@ -399,13 +463,26 @@ fn finish<S: Copy, const X: usize>(
         let violation = (found.violation * unit).abs();
         Some(Blocked { row, violation })
     });
+    let end = *state(&stages.last().ok_or("no nodes")?.state);
+    let off = so3::log(&(problem.goal.rot_wc.inverse() * end.rot_wc)).norm();
+    let blocked = if outcome.status != Status::Solved {
+        blocked.collect()
+    } else if off > core::f64::consts::FRAC_PI_2 {
+        // The goal's rows are sines of the angle from it, which are small half a turn away, too.
+        outcome.status = Status::Stalled;
+        let turn = Row::Goal { axis: BASE - 1 };
+        vec![Blocked {
+            row: turn,
+            violation: off,
+        }]
+    } else {
+        Vec::new()
+    };
     Ok(WholeBodyPlan {
-        end: *state(&stages.last().ok_or("no nodes")?.state),
+        end,
         torque_share,
-        blocked: match outcome.status {
-            Status::Solved => Vec::new(),
-            _ => blocked.collect(),
-        },
+        stronger: None,
+        blocked,
         outcome,
         judged: problem.judge(nodes),
         torque_limit: strongest.fold(0.0, f64::max),

@@ -18,6 +18,7 @@ mod search;
 mod setup;
 mod stops;
 pub mod stored;
+mod stronger;
 pub mod task;
 pub mod terrain;
 mod tightening;

@@ -148,8 +148,7 @@ fn planned(
             let blocked = Answer::no_whole_body_plan(task, &whole.plan);
             Some(
                 match End::of(whole.plan.outcome.status, &late, &mut observe) {
-                    End::Itself => blocked
-                        .with_stronger_joints(task, srb, |p| observe(Step::Relaxations, Some(p))),
+                    End::Itself => blocked,
                     End::Cancelled => Answer::cancelled(),
                     End::Late(within) => blocked.out_of_time(within),
                 },

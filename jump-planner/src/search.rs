@@ -2,7 +2,8 @@
 //!
 //! First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long
 //! intervals, which cost a quarter: with all the torque there is and then with less, in other durations and then in the given ones, for what
-//! a rigid body can do in a time, legs with motors may not. What is found there is the guess on intervals half as long, and so on.
+//! a rigid body can do in a time, legs with motors may not. What is found there is the guess on intervals half as long, and so on. What is not
+//! found is searched for with stronger joints, which are made weaker until they are the robot's or have no motion any more.
 //!
 //! A first try that does not arrive takes seconds. So where it takes longer than those that do, the search on long intervals begins beside
 //! it, on a core of its own if the machine has one. What comes out is the same, since the first try is waited for, and sooner.
@@ -59,19 +60,6 @@ pub(crate) fn searched<'a>(
     })
 }
 
-/// Plans on intervals too long to execute, with all the torque there is or as much less as has a motion: whether there is one.
-///
-/// # Errors
-/// A problem that cannot be begun with.
-pub(crate) fn roughly(
-    task: &Task,
-    srb: &SrbPlan,
-    timing: Timing,
-    observer: Observe<'_>,
-) -> Result<WholeBodyPlan, String> {
-    Grid::new(task, srb, timing, LONG as f64)?.with_most_torque(observer)
-}
-
 /// Whether nothing is to be searched for any more.
 const fn is_decided(plan: &WholeBodyPlan) -> bool {
     matches!(plan.outcome.status, Status::Solved | Status::Cancelled)
@@ -124,39 +112,53 @@ impl<'scope, 'a: 'scope> Beside<'scope, 'a> {
 
 /// The search on long intervals; a motion that it finds is made one on short ones.
 ///
-/// First in durations of its own: what the first try did not find in the given ones, long intervals rarely have in them either.
+/// First in durations of its own: what the first try did not find in the given ones, long intervals rarely have in them either. Where there is
+/// none at all, with stronger joints, and from there with weaker ones: that finds the motion, or how strong they would have to be.
 fn on_long_intervals<'a>(
     task: &'a Task,
     srb: &'a SrbPlan,
     timing: Timing,
     observer: Observe<'_>,
 ) -> Found<'a> {
-    if timing == Timing::Free || task.has_given_durations() {
-        return on_long_intervals_in(task, srb, timing, observer);
+    let is_given = timing == Timing::Given && task.has_given_durations();
+    let own = if is_given { timing } else { Timing::Free };
+    let long = |timing| Grid::new(task, srb, timing, LONG as f64);
+    let (mut grid, mut plan) = split(long(own)?, Grid::with_most_torque, observer)?;
+    if !is_decided(&plan) && own != timing {
+        let (given, again) = split(long(timing)?, Grid::with_most_torque, observer)?;
+        (grid, plan) = (given.after(grid), again);
     }
-    let (free, plan) = on_long_intervals_in(task, srb, Timing::Free, observer)?;
-    if is_decided(&plan) {
-        return Ok((free, plan));
+    let mut ends = grid.path.iter().map(|solve| solve.status);
+    if is_decided(&plan) || ends.any(|status| status == Status::Solved) {
+        return Ok((grid, plan));
     }
-    let (given, plan) = on_long_intervals_in(task, srb, timing, observer)?;
-    Ok((given.after(free), plan))
+    let mut weaker = long(own)?;
+    let (found, stronger) = weaker.with_weakest_joints(observer)?;
+    if found.outcome.status == Status::Cancelled {
+        plan = found;
+    } else if found.outcome.status == Status::Solved && stronger.is_none() {
+        (weaker, plan) = split(weaker, |_, _| Ok(found), observer)?;
+    }
+    plan.stronger = stronger;
+    Ok((weaker.after(grid), plan))
 }
 
-/// The same with durations from one place.
-fn on_long_intervals_in<'a>(
-    task: &'a Task,
-    srb: &'a SrbPlan,
-    timing: Timing,
+/// A plan on long intervals, and, if it is one, on ever shorter ones from there: with its torque, or with the most if they have no motion with that.
+fn split<'a>(
+    mut grid: Grid<'a>,
+    begin: impl FnOnce(&mut Grid<'a>, Observe<'_>) -> Result<WholeBodyPlan, String>,
     observer: Observe<'_>,
 ) -> Found<'a> {
-    let mut grid = Grid::new(task, srb, timing, LONG as f64)?;
-    let mut plan = grid.with_most_torque(observer)?;
+    let mut plan = begin(&mut grid, observer)?;
     let mut left = LONG;
     // In halves: at once in as many parts as there will be, a motion is too far from the next one for half of those jumps.
     while plan.outcome.status == Status::Solved && left > 1 {
         left /= HALVES;
         grid = grid.split(HALVES)?;
         plan = grid.resume(observer)?;
+        if !is_decided(&plan) && grid.allow_most_torque() {
+            plan = grid.resume(observer)?;
+        }
     }
     Ok((grid, plan))
 }

@@ -8,6 +8,7 @@ use crate::audit::Audit;
 use crate::grid::Grid;
 use crate::kept::Kept;
 use crate::search::searched;
+pub use crate::stronger::Stronger;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
 use ocp_solver::{Progress, Solution, Status};
@@ -48,6 +49,8 @@ pub struct WholeBodyPlan {
     pub blocked: Vec<Blocked>,
     /// Share of the torque limits that the plan was allowed.
     pub torque_share: f64,
+    /// Where none was found: the weakest joints that have one, if any have.
+    pub stronger: Option<Stronger>,
 }
 
 /// A row that is violated where the solver stopped.
@@ -81,6 +84,8 @@ pub struct Attempt {
     pub intervals: usize,
     /// Share of the torque limits.
     pub torque_share: f64,
+    /// How many times as strong and as fast as they are the joints were taken to be.
+    pub strength: f64,
     /// Limits that were drawn in after the audit of the attempt before.
     pub drawn: Tightening,
     /// How many pairs of links were kept apart, because they had passed through each other in an attempt before.
@@ -112,11 +117,12 @@ pub struct Audited {
 /// Plans the whole body and audits the plan.
 ///
 /// First with the least torque, on intervals as short as they will be. Where that finds no motion, the search goes on on few long ones, with all
-/// the torque there is and then with less, in other durations and then in the given ones; beside a slow first try, if there is a second core.
+/// the torque there is and then with less, in other durations and then in the given ones; beside a slow first try, if there is a second core. Where
+/// there is none at all, stronger joints are tried, and weaker ones from there ([`Stronger`]).
 ///
 /// Where the audit finds limits exceeded between nodes, they are drawn in by that much and the plan is made again from where it is
-/// ([`Tightening`]). Where that is no remedy, or the flight is not true to the dynamics, the intervals were too long for this robot: they are
-/// halved, once.
+/// ([`Tightening`]); where it finds links that pass through each other, with those kept apart. Where that is no remedy, or the flight is not true
+/// to the dynamics, the intervals were too long for this robot: they are halved, once.
 ///
 /// # Errors
 /// A problem that cannot be begun with, or a plan that cannot be stored.
@@ -256,6 +262,7 @@ impl Attempt {
             },
             "intervals": self.intervals,
             "torque_share": self.torque_share,
+            "strength": self.strength,
             "drawn_in": {
                 "position": drawn.position,
                 "speed": drawn.speed,
@@ -277,6 +284,11 @@ impl core::fmt::Display for Attempt {
             Timing::Given => "the rigid body's durations",
             Timing::Free => "durations of its own",
         };
+        let stronger = if self.strength > 1.0 {
+            format!(" of joints {:.2} times as strong", self.strength)
+        } else {
+            String::new()
+        };
         let apart = match self.apart {
             0 => String::new(),
             1 => ", a pair kept apart".to_owned(),
@@ -284,7 +296,7 @@ impl core::fmt::Display for Attempt {
         };
         write!(
             f,
-            "{durations}, {} intervals, {:.0} % of the torque{}{apart}: {:?} after {} iterations, {:.0} ms",
+            "{durations}, {} intervals, {:.0} % of the torque{stronger}{}{apart}: {:?} after {} iterations, {:.0} ms",
             self.intervals,
             100.0 * self.torque_share,
             self.drawn,

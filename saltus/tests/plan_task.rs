@@ -163,6 +163,37 @@ fn plans_are_made_again_where_the_first_way_ends() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// What no search finds is found with stronger joints, and the answer says how much stronger they would have to be: as little as had a motion.
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn a_jump_beyond_the_robot_says_how_strong_joints_would_have_to_be() {
+    let folder = folder("stronger");
+    let forward = built_in("a1/forward-60");
+    let far = forward.replace("goal_m = [0.6, ", "goal_m = [1.1, ");
+    assert_ne!(far, forward);
+    let path = folder.join("far.toml");
+    std::fs::write(&path, far).unwrap();
+    let output = saltus(&["plan", path.to_str().unwrap(), "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["status"], "NotFound", "{report}");
+    let solves = report["path"].as_array().unwrap();
+    let strength = |solve: &&Value| solve["strength"].as_f64().unwrap();
+    let ended = |status: &'static str| solves.iter().filter(move |solve| solve["status"] == status);
+    let weakest = ended("Solved")
+        .map(|s| strength(&s))
+        .fold(f64::INFINITY, f64::min);
+    assert!(weakest > 1.0 && weakest < 3.0, "{report}");
+    // Weaker ones were tried, and none less than a twentieth weaker is left.
+    let tried = ended("Stalled").map(|s| strength(&s)).fold(0.0, f64::max);
+    assert!(tried < weakest && weakest < 1.06 * tried, "{report}");
+    let told = report["answer"]["relaxations"][0].as_str().unwrap();
+    assert!(
+        told.contains(&format!("{weakest:.2} times as strong")),
+        "{told}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 /// Three quarters of a turn are not found by the first try, so that the search runs beside it on two cores, and after it on one.
 #[test]
 #[cfg(target_os = "linux")]

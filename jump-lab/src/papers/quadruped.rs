@@ -243,13 +243,8 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
             )));
         }
         let plan = whole_body::plan(&task, &srb, Timing::Given, |_| ControlFlow::Continue(()))?;
-        Ok((plan.outcome.status != Status::Solved).then(|| {
-            (
-                Answer::no_whole_body_plan(&task, &plan)
-                    .with_stronger_joints(&task, &srb, |_| ControlFlow::Continue(())),
-                false,
-            )
-        }))
+        Ok((plan.outcome.status != Status::Solved)
+            .then(|| (Answer::no_whole_body_plan(&task, &plan), false)))
     };
     match answer() {
         Ok(Some((answer, true))) => row.ours(
