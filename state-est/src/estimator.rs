@@ -7,7 +7,7 @@ use rbd_core::{
 };
 use so3::{Scalar, math, orthonormalize_step};
 
-use crate::feet::{Seen, consensus, turn_of_feet};
+use crate::feet::{Seen, consensus, turn_of_feet, turn_of_soles};
 use crate::filter::{FEET, Filter, POSITION, VELOCITY};
 use crate::{Fault, Foot, Sample, Settings};
 
@@ -37,6 +37,8 @@ pub struct State<T: Scalar, const F: usize, const S: usize> {
     coasting: T,
     /// Time for which most feet have agreed, s.
     agreed: T,
+    /// Time for which soles have told the gyroscope's bias, s, and that for which its first value counts; up to that of its gain.
+    heard: T,
 }
 
 /// Whether the estimate may be acted on.
@@ -93,6 +95,7 @@ impl<T: Scalar, const F: usize, const S: usize> State<T, F, S> {
             confidence: [T::ZERO; F],
             coasting: T::ZERO,
             agreed: T::ZERO,
+            heard: estimator.settings.agreement,
         }
     }
 
@@ -277,6 +280,7 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
             arm_w: Vector3::zeros(),
             velocity_w: Vector3::zeros(),
             rolling_w: Vector3::zeros(),
+            turning_w: None,
             evidence: T::ZERO,
         }; F];
         let feet = self.feet.iter().zip(&sample.evidence);
@@ -291,8 +295,10 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
             let motion = jacobian.mul(&v);
             let arm_b = kinematics.frame(&foot.frame).translation - self.imu.translation;
             let up = Vector3::z() * foot.radius;
+            let turning_w = state.rot_wb * (omega_b + motion.angular);
             seen.arm_w = state.rot_wb * arm_b;
-            seen.rolling_w = (state.rot_wb * (omega_b + motion.angular)).cross(&up);
+            seen.rolling_w = turning_w.cross(&up);
+            seen.turning_w = (foot.radius == T::ZERO).then_some(turning_w);
             let relative = state.rot_wb * (motion.linear + omega_b.cross(&arm_b));
             seen.velocity_w = seen.rolling_w - relative;
             let usable = !blind
@@ -372,10 +378,17 @@ impl<T: Scalar, const N: usize, const F: usize, const S: usize> Estimator<T, N, 
         // Turning the estimate by f × up brings its vertical to the force.
         let up_b = state.rot_wb.inverse() * Vector3::z();
         let error = (state.force_b / size).cross(&up_b);
-        let missing_w = turn_of_feet(seen, &state.confidence);
+        let (missing_w, gain) = match turn_of_soles(seen, &state.confidence) {
+            // At first the mean of what they have said; nothing with a gain of zero, or of ground that may still give way.
+            Some(missing_w) if s.bias_gain > T::ZERO && state.agreed >= s.agreement => {
+                state.heard = math::min(state.heard + dt, T::ONE / s.bias_gain);
+                (missing_w, T::ONE / state.heard)
+            }
+            _ => (turn_of_feet(seen, &state.confidence), s.bias_gain),
+        };
         let missing_b = state.rot_wb.inverse() * missing_w;
         state.rot_wb *= so3::exp(&(error * (s.tilt_gain * dt)));
-        let bias = state.bias_b - missing_b * (s.bias_gain * dt);
+        let bias = state.bias_b - missing_b * (gain * dt);
         state.bias_b = bias.map(|x| math::clamp(x, -s.max_bias, s.max_bias));
     }
 

@@ -11,7 +11,7 @@ use crate::Settings;
 pub struct Foot<T> {
     /// Where it is.
     pub frame: Frame<T>,
-    /// Radius of the ball, m; zero for a sole.
+    /// Radius of the ball, m; zero for a sole, which neither rolls nor turns while it stands.
     pub radius: T,
 }
 
@@ -49,8 +49,28 @@ pub(crate) struct Seen<T: Scalar> {
     pub(crate) velocity_w: Vector3<T>,
     /// Velocity of a ball's centre while it rolls.
     pub(crate) rolling_w: Vector3<T>,
+    /// Angular velocity of a sole, which would be zero if it stands; none for a ball, which may roll.
+    pub(crate) turning_w: Option<Vector3<T>>,
     /// Evidence of contact; zero where the leg cannot be used.
     pub(crate) evidence: T,
+}
+
+/// Angular velocity, world axes, that the soles in contact miss in the gyroscope's: with it, they would not turn; none without such a sole.
+///
+/// The middles of two soles say nothing about the axis through them ([`turn_of_feet`]), about which a humanoid leans forward; one sole that
+/// stands says all.
+pub(crate) fn turn_of_soles<T: Scalar, const F: usize>(
+    seen: &[Seen<T>; F],
+    confidence: &[T; F],
+) -> Option<Vector3<T>> {
+    let feet = seen.iter().zip(confidence);
+    let standing = feet.filter(|(_, c)| **c > T::HALF);
+    let (mut sum, mut count) = (Vector3::zeros(), T::ZERO);
+    for turning in standing.filter_map(|(foot, _)| foot.turning_w) {
+        sum -= turning;
+        count += T::ONE;
+    }
+    (count > T::ZERO).then(|| sum / count)
 }
 
 /// The velocity on which more than half of all feet agree, if they do.

@@ -22,7 +22,8 @@ pub struct Settings<T> {
     pub agreement: T,
     /// Rate at which gravity corrects the tilt while quasi-static, 1/s.
     pub tilt_gain: T,
-    /// Rate at which feet that stand correct the gyroscope's bias, 1/s.
+    /// Rate at which feet that stand correct the gyroscope's bias, 1/s. Until soles have stood for its inverse, the bias is the mean of what they
+    /// have told and of none for the time of [`Settings::agreement`].
     pub bias_gain: T,
     /// Largest bias that is believed, rad/s.
     pub max_bias: T,

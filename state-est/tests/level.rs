@@ -4,7 +4,7 @@ use a1_model::A1;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use so3::math;
-use state_est::{Estimate, Settings, State};
+use state_est::{Estimate, Foot, Settings, State};
 
 use crate::common::{World, config, feet, vector, world};
 
@@ -183,6 +183,75 @@ proptest! {
         let unlearnt = estimate.velocity.angular - left;
         prop_assert!(unlearnt.amax() < 1e-3, "{unlearnt} {left}");
     }
+}
+
+/// Angular velocity that is estimated for a crouched robot on its front feet, of this radius, after samples of its gyroscope.
+fn estimated_rate(
+    radius: f64,
+    rates: &[Vector3<f64>],
+    (bias_gain, agreement): (f64, f64),
+) -> Vector3<f64> {
+    let mut world = World::crouched();
+    let mut settings = trusting();
+    (settings.tilt_gain, settings.bias_gain) = (0.0, bias_gain);
+    (settings.agreement, settings.max_bias) = (agreement, 1.0);
+    let [left, right, ..] = feet();
+    let feet = [left, right].map(|foot| Foot { radius, ..foot });
+    let estimator = world.estimator::<2, 4>(feet, settings);
+    let mut state = State::new(&estimator, &A1, &world.q);
+    let mut rate = Vector3::zeros();
+    for told in rates {
+        world.omega_b = *told;
+        let sample = world.sample(&world.held(), [1.0; 2]);
+        let estimate = estimator.step(&A1, &mut state, Some(&sample), DT);
+        rate = estimate.velocity.angular;
+    }
+    rate
+}
+
+proptest! {
+    #![proptest_config(config(64, 18))]
+
+    /// What soles that stand have told of the bias is the mean of what the gyroscope said, about the axis through them, too.
+    #[test]
+    fn soles_tell_the_mean_of_the_gyroscope(rates in prop::collection::vec(vector(0.1), 1..200)) {
+        let last = rates.last().copied().unwrap_or_default();
+        let mean = rates.iter().sum::<Vector3<f64>>() / rates.len() as f64;
+        let left = estimated_rate(0.0, &rates, (1.0, 0.0));
+        prop_assert!((left - (last - mean)).amax() < 1e-9, "{left} {last} {mean}");
+    }
+}
+
+/// Two balls say nothing about the axis through them, two soles say all; with a gain of zero nothing is believed.
+#[test]
+fn soles_show_the_bias_about_the_axis_through_them() {
+    let bias = [Vector3::new(0.01, 0.02, -0.03); 100];
+    let ball = estimated_rate(0.02, &bias, (1.0, 0.0));
+    assert!((ball.y - 0.02).abs() < 1e-3, "{ball}");
+    let sole = estimated_rate(0.0, &bias, (1.0, 0.0));
+    assert!(sole.amax() < 1e-9, "{sole}");
+    assert_eq!(estimated_rate(0.0, &bias, (0.0, 0.0)), bias[0]);
+}
+
+/// Soles are heard once the feet have agreed for 50 ms, beside as much time without a bias.
+#[test]
+fn soles_are_heard_when_the_ground_no_longer_gives_way() {
+    let bias = [Vector3::y() * 0.02; 500];
+    for (time, share) in [(45, 1.0), (100, 0.5), (500, 0.1)] {
+        let left = estimated_rate(0.0, &bias[..time], (1.0, 0.05)).y / 0.02;
+        assert!((left - share).abs() < 0.02, "{left} after {time} ms");
+    }
+}
+
+/// After its gain's time the bias is followed at that gain.
+#[test]
+fn soles_are_heard_at_the_gain_in_the_end() {
+    let mut rates = vec![Vector3::zeros(); 200];
+    rates.extend([Vector3::y() * 0.1; 50]);
+    let left = estimated_rate(0.0, &rates, (10.0, 0.0)).y;
+    // 0.1 s of zeros and more; then 0.05 s of the new rate.
+    let expected = (0..50).fold(0.1, |left, _| left * (1.0 - 10.0 * DT));
+    assert!((left - expected).abs() < 1e-9, "{left} {expected}");
 }
 
 /// While the accelerometer is out, the last force is held for the motion, and is no news of the tilt.
