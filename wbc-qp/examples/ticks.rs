@@ -50,7 +50,7 @@ impl Controller<23, 12, 35, 55> for Humanoid {
         s.update(&icub_model::Icub23, q, v);
         let contacts = icub_model::SOLES.map(|sole| Contact::new(&sole, 0.5, 1000.0));
         let joints = (&icub_model::LIMITS, &icub_model::MOTORS);
-        let tick = jump.tick(&icub_model::Icub23, s, &contacts, joints, wanted);
+        let tick = jump.tick(&icub_model::Icub23, s, &contacts, joints, wanted, 1e-3);
         tick.unwrap().answer
     }
     fn program(&self) -> &TorqueQp<f64, 23, 12, 35, 55> {

@@ -7,6 +7,7 @@ mod contacts;
 mod fixed_base;
 mod paper_b;
 mod rows;
+mod surplus;
 mod tasks;
 mod torque;
 mod velocity;

@@ -108,7 +108,7 @@ fn torque_control() {
         let settings = profile::TORQUE;
         let mut controller = TorqueJump::<f64, N, K, V, M>::new(settings, q.joints);
         let tick = controller
-            .tick(&Icub23, &s, &contacts(), (&LIMITS, &MOTORS), &goal)
+            .tick(&Icub23, &s, &contacts(), (&LIMITS, &MOTORS), &goal, 1e-3)
             .unwrap();
         let a = &tick.answer.acceleration;
         // ν̇ with the bias: rates of momentum and of its linear part.
@@ -159,7 +159,7 @@ fn without_weight_the_momentum_is_not_held() {
         };
         let mut controller = TorqueJump::<f64, N, K, V, M>::new(settings, q.joints);
         let joints = (&LIMITS, &MOTORS);
-        let tick = controller.tick(&Icub23, &s, &contacts(), joints, &wanted(&s));
+        let tick = controller.tick(&Icub23, &s, &contacts(), joints, &wanted(&s), 1e-3);
         let acceleration = tick.unwrap().answer.acceleration;
         angular_momentum(&s, &acceleration) + bias
     };
@@ -214,7 +214,7 @@ fn posture_of_the_torque_program() {
     let posture = core::array::from_fn(|i| q.joints[i] + 0.001 * (i as f64 - 11.0));
     let mut controller = TorqueJump::<f64, N, 0, 23, 29>::new(settings, posture);
     let tick = controller
-        .tick(&Icub23, &s, &[], (&LIMITS, &MOTORS), &wanted(&s))
+        .tick(&Icub23, &s, &[], (&LIMITS, &MOTORS), &wanted(&s), 1e-3)
         .unwrap();
     let gains = settings.posture;
     for (i, goal) in posture.iter().enumerate() {

@@ -96,7 +96,7 @@ impl<
         // Nothing hides it from torques: a foot that rocks would look like the whole robot rocking.
         snapshot.update(self.model, &now.q, &now.v);
         let joints = (&self.settings.limits, &self.settings.motors);
-        let tick = program.tick(self.model, snapshot, &self.feet, joints, wanted);
+        let tick = program.tick(self.model, snapshot, &self.feet, joints, wanted, now.dt);
         // The servos only follow, to be ready for the flight.
         self.servo = now.q.joints;
         let solved = self.take(tick);

@@ -6,6 +6,7 @@
 //! all. How far each was from holding is part of the answer ([`Residuals`]).
 
 mod landing;
+mod surplus;
 mod torque;
 mod velocity;
 

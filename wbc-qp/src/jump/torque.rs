@@ -5,11 +5,15 @@
 //! it is a slip of the pen; s̈* = −K_d ṡ − K_p (s − s_d) here. Likewise K_p and K_d of eq. (6b) act on the errors in
 //! position and velocity, with a minus sign each. Its A f = −K H_ω is Ḣ_ω = −K H_ω written in forces: the program's elimination of
 //! the base turns the one into the other.
+//!
+//! Both laws are for the robot as it moves, not as its model does: what was seen to accelerate it besides is taken off before the program is
+//! asked (`surplus`).
 
 use nalgebra::Vector3;
 use rbd_core::{JointLimits, Motor, Tree, joint_friction};
 use so3::Scalar;
 
+use super::surplus::Surplus;
 use super::{ComReference, Residuals, distance};
 use crate::task::position_error;
 use crate::{Contact, Error, Gains, Horizon, Snapshot, TorqueAnswer, TorqueQp, torque_range};
@@ -21,6 +25,8 @@ pub struct TorqueJumpSettings<T, const N: usize> {
     pub com: Gains<T>,
     /// K of eq. (6d), 1/s.
     pub momentum_gain: T,
+    /// How fast it is found what accelerates centre of mass and angular momentum besides the program, such as a payload, 1/s; zero for never.
+    pub surplus_gain: T,
     /// Of the posture, eq. (6a).
     pub posture: Gains<T>,
     /// Λ of eq. (6a), per joint.
@@ -54,6 +60,7 @@ impl<const N: usize> TorqueJumpSettings<f64, N> {
         TorqueJumpSettings {
             com: self.com.cast(),
             momentum_gain: T::of(self.momentum_gain),
+            surplus_gain: T::of(self.surplus_gain),
             posture: self.posture.cast(),
             posture_weight: self.posture_weight.map(T::of),
             continuity_weight: T::of(self.continuity_weight),
@@ -78,6 +85,8 @@ pub struct TorqueJump<T: Scalar, const N: usize, const K: usize, const V: usize,
     pub posture: [T; N],
     qp: TorqueQp<T, N, K, V, M>,
     previous: Option<[T; N]>,
+    /// Of the centre of mass and of the angular momentum.
+    surplus: [Surplus<T, 3>; 2],
 }
 
 /// The result of a tick.
@@ -100,13 +109,15 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             posture,
             qp: TorqueQp::new(),
             previous: None,
+            surplus: [Surplus::NONE; 2],
         }
     }
 
-    /// At rest again in a posture: the torques of earlier ticks are forgotten.
+    /// At rest again in a posture: torques and motion of earlier ticks are forgotten.
     pub const fn restart(&mut self, posture: &[T; N]) {
         self.posture = *posture;
         self.previous = None;
+        self.surplus = [Surplus::NONE; 2];
     }
 
     /// The program of the last tick: for a log, or another solver's opinion.
@@ -115,7 +126,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         &self.qp
     }
 
-    /// One tick.
+    /// One tick, `dt` after the last.
     ///
     /// # Errors
     /// As [`TorqueQp::solve`]; the last command, or damping, is then safe.
@@ -126,6 +137,7 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         contacts: &[Contact<T>],
         joints: (&[JointLimits<T>; N], &[Motor<T>; N]),
         wanted: &ComReference<T>,
+        dt: T,
     ) -> Result<TorqueTick<T, N, K>, Error> {
         let s = &self.settings;
         let (limits, motors) = joints;
@@ -137,12 +149,14 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         };
         self.qp.begin(model, snapshot, contacts, &friction)?; // (6c), (6f)
         let com = snapshot.com(); // (6b)
+        let [of_com, of_momentum] = &mut self.surplus;
         let com_target = com.acceleration(
             wanted.acceleration_w.into(),
             wanted.velocity_w.into(),
             position_error(&wanted.position_w, &snapshot.com_w()),
             s.com,
         );
+        let com_target = less(com_target, of_com.observe(&com.rate, s.surplus_gain, dt));
         if s.strict {
             self.qp.hold(&com, &com_target)?;
         } else {
@@ -150,7 +164,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
         }
         let momentum = snapshot.angular_momentum(); // (6d)
         let rate: Vector3<T> = -snapshot.momentum_w.angular * s.momentum_gain;
-        let momentum_target = rate.into();
+        let surplus = of_momentum.observe(&momentum.rate, s.surplus_gain, dt);
+        let momentum_target = less(rate.into(), surplus);
         if s.strict && s.momentum_weight > T::ZERO {
             self.qp.hold(&momentum, &momentum_target)?;
         } else {
@@ -180,6 +195,8 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             com.reached(&answer.acceleration),
             momentum.reached(&answer.acceleration),
         );
+        of_com.reached(&com);
+        of_momentum.reached(&momentum);
         Ok(TorqueTick {
             answer,
             residuals: Residuals {
@@ -188,4 +205,12 @@ impl<T: Scalar, const N: usize, const K: usize, const V: usize, const M: usize>
             },
         })
     }
+}
+
+/// a − b.
+fn less<T: Scalar, const R: usize>(mut a: [T; R], b: [T; R]) -> [T; R] {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a -= b;
+    }
+    a
 }

@@ -108,7 +108,7 @@ fn push_offs<T: Real, R: Recorder>(
         for contacts in [contacts, contacts] {
             let input = (&mut jump, snapshot, contacts);
             on.call("TorqueJump::tick", input, |(jump, s, contacts)| {
-                let tick = jump.tick(model, s, contacts, (limits, motors), &wanted);
+                let tick = jump.tick(model, s, contacts, (limits, motors), &wanted, T::of(1e-3));
                 tick.map(|t| (t.answer, (t.residuals.com, t.residuals.momentum)))
                     .ok()
             });

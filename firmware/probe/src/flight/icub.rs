@@ -199,7 +199,7 @@ fn wild<R: Recorder>(recorder: &mut R) {
             |(program, snapshot)| {
                 snapshot.update(&ROBOT, &q, &v);
                 let joints = (&SETTINGS.limits, &MOTORS);
-                let tick = program.tick(&ROBOT, snapshot, &contacts, joints, &wanted);
+                let tick = program.tick(&ROBOT, snapshot, &contacts, joints, &wanted, 1e-3);
                 let answer = tick.ok()?.answer;
                 Some((answer.torques, f64::from(answer.iterations), answer.capped))
             },
