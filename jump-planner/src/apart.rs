@@ -4,9 +4,8 @@
 //! audit, which looks at all of them between the nodes too, finds the few that count: those are rows of the next plan.
 
 use crate::audit::Overlap;
-use crate::robot::State;
+use crate::robot::{Quadruped, State};
 use crate::setup::{N, PAIRS};
-use crate::task::Task;
 use rbd_core::{Frame, Shape};
 use wb_opt::{Apart, Robot, Segment};
 
@@ -38,17 +37,9 @@ impl Separation {
         has_room
     }
 
-    /// The pairs as rows: not farther apart than the robot has them where it starts and as it lands, which no plan can choose.
-    ///
-    /// # Errors
-    /// As [`landing_joints`](crate::robot::Quadruped::landing_joints).
-    pub(crate) fn rows(&self, task: &Task) -> Result<Vec<Apart<f64>>, String> {
-        let (robot, start) = (&task.robot, task.start);
-        let landing = State {
-            joints: robot.landing_joints(&start)?,
-            ..start
-        };
-        let given = [start, landing].map(|posture| robot.poses(&posture));
+    /// The pairs as rows: not farther apart than the robot has them in these postures, which no plan can choose: where it starts, and as it lands.
+    pub(crate) fn rows(&self, robot: &Quadruped, given: [State; 2]) -> Vec<Apart<f64>> {
+        let given = given.map(|posture| robot.poses(&posture));
         let row = |(shapes, margin): &([usize; 2], f64)| {
             let pair = shapes.map(|i| &robot.shapes[i]);
             let gaps = given.iter().map(|at| contact_sim::gap(at, pair));
@@ -57,7 +48,7 @@ impl Separation {
                 distance: pair[0].radius + pair[1].radius + gaps.fold(*margin, f64::min),
             }
         };
-        Ok(self.0.iter().map(row).collect())
+        self.0.iter().map(row).collect()
     }
 }
 
@@ -99,7 +90,7 @@ mod tests {
             .0
             .iter()
             .map(|([a, b], _)| radius(*a) + radius(*b));
-        let rows = separation.rows(&task).unwrap();
+        let rows = separation.rows(&task.robot, [task.start; 2]);
         let pairs = rows.iter().zip(touching);
         pairs
             .map(|(row, touching)| row.distance - touching)

@@ -186,22 +186,19 @@ impl<'a> Grid<'a> {
     ) -> Result<WholeBodyPlan, String> {
         let [least, middle, most] = self.task.limits.torque_shares;
         self.torque_share = most;
-        let none = Tightening::default();
         let mut plan = self.descend(observer)?;
         for share in [middle, least] {
             if plan.outcome.status != Status::Solved || share >= self.torque_share {
                 break;
             }
-            let before = (self.torque_share, self.stages.clone(), self.timed.clone());
+            let before = self.torque_share;
             self.torque_share = share;
-            let less = self.solve(&warm(), &none, observer, &mut |progress| {
-                progress.iteration <= LESS_PATIENCE
-            })?;
+            let less = self.harder(observer)?;
             match less.outcome.status {
                 // Nothing is to be done with what there was before, either.
                 Status::Solved | Status::Cancelled => plan = less,
                 _ => {
-                    (self.torque_share, self.stages, self.timed) = before;
+                    self.torque_share = before;
                     break;
                 }
             }
@@ -231,22 +228,28 @@ impl<'a> Grid<'a> {
             } else {
                 break;
             };
-            let before = (self.stages.clone(), self.timed.clone());
-            plan = self.solve(&warm(), &Tightening::default(), observer, &mut |progress| {
-                progress.iteration <= LESS_PATIENCE
-            })?;
+            plan = self.harder(observer)?;
             match plan.outcome.status {
                 Status::Solved if self.strength == 1.0 => return Ok((plan, None)),
                 Status::Solved => weakest = Stronger::of(self.strength, &plan),
                 Status::Cancelled => break,
                 _ if self.strength == 1.0 => break,
-                _ => {
-                    low = self.strength;
-                    (self.stages, self.timed) = before;
-                }
+                _ => low = self.strength,
             }
         }
         Ok((plan, Some(weakest)))
+    }
+
+    /// Solves a somewhat harder problem from the motion of the last one, which the stages keep where there is none for it.
+    fn harder(&mut self, observer: Observe<'_>) -> Result<WholeBodyPlan, String> {
+        let before = (self.stages.clone(), self.timed.clone());
+        let plan = self.solve(&warm(), &Tightening::default(), observer, &mut |progress| {
+            progress.iteration <= LESS_PATIENCE
+        })?;
+        if !matches!(plan.outcome.status, Status::Solved | Status::Cancelled) {
+            (self.stages, self.timed) = before;
+        }
+        Ok(plan)
     }
 
     /// Solves from the guess, as long as the solver keeps up: where its first descent does not arrive, others from there take longer than a
@@ -344,7 +347,7 @@ impl<'a> Grid<'a> {
         watch: Observe<'_>,
     ) -> Result<WholeBodyPlan, String> {
         let clearances = self.setup.clearances(drawn);
-        let apart = self.apart.rows(self.task)?;
+        let apart = self.apart.rows(&self.task.robot, self.setup.given());
         let mut problem = Problem {
             clearances: &clearances,
             apart: &apart,

@@ -4,6 +4,7 @@ pub mod answer;
 mod apart;
 pub mod audit;
 pub mod bounds;
+mod edge;
 pub mod file;
 mod grid;
 mod kept;

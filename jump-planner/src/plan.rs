@@ -124,9 +124,15 @@ fn planned(
             let srb = &*out.srb.insert(found);
             if srb.status != Status::Solved {
                 let blocked = Answer::no_body_plan(task, srb);
-                out.answer = Some(match End::of(srb.status, &late, &mut observe) {
+                out.answer = Some(match End::of(srb.status, &late) {
                     End::Itself => {
-                        blocked.with_easier_tasks(task, |p| observe(Step::Relaxations, Some(p)))
+                        let is_ended = observe(Step::Relaxations, None).is_break();
+                        if is_ended && late.get().is_none() {
+                            Answer::cancelled()
+                        } else {
+                            let watch = |p: &_| observe(Step::Relaxations, Some(p));
+                            blocked.with_easier_tasks(task, watch)
+                        }
                     }
                     End::Cancelled => Answer::cancelled(),
                     End::Late(within) => blocked.out_of_time(within),
@@ -146,13 +152,11 @@ fn planned(
         Some(audit) => Some(Answer::failed(audit)),
         None => {
             let blocked = Answer::no_whole_body_plan(task, &whole.plan);
-            Some(
-                match End::of(whole.plan.outcome.status, &late, &mut observe) {
-                    End::Itself => blocked,
-                    End::Cancelled => Answer::cancelled(),
-                    End::Late(within) => blocked.out_of_time(within),
-                },
-            )
+            Some(match End::of(whole.plan.outcome.status, &late) {
+                End::Itself => blocked,
+                End::Cancelled => Answer::cancelled(),
+                End::Late(within) => blocked.out_of_time(within),
+            })
         }
     };
     (out.wall_ms, out.bytes, out.audit) = (whole.wall_ms, whole.bytes, whole.audit);
@@ -186,13 +190,10 @@ enum End {
 }
 
 impl End {
-    /// After a solve that ended so. A solver that found nothing is asked for easier tasks, unless the observer wants no more.
-    fn of(status: Status, late: &Cell<Option<Duration>>, observe: ObserveSteps<'_>) -> Self {
+    /// After a solve that ended so.
+    fn of(status: Status, late: &Cell<Option<Duration>>) -> Self {
         if status == Status::Cancelled {
-            return late.get().map_or(Self::Cancelled, Self::Late);
-        }
-        if observe(Step::Relaxations, None).is_break() && late.get().is_none() {
-            Self::Cancelled
+            late.get().map_or(Self::Cancelled, Self::Late)
         } else {
             Self::Itself
         }

@@ -19,18 +19,21 @@ pub struct Stronger {
 impl Stronger {
     /// Of a plan with joints so many times as strong.
     pub(crate) fn of(times: f64, plan: &WholeBodyPlan) -> Self {
-        let most = |values: &dyn Fn(usize) -> f64| {
-            let joints = (0..crate::JOINTS).map(|i| (i, values(i)));
-            joints.fold((0, 0.0), |most, of| if of.1 > most.1 { of } else { most })
-        };
-        let peak = |value: &dyn Fn(&crate::whole_body::Interval) -> f64| {
-            let values = plan.intervals.iter().map(value);
-            values.fold(0.0, |most, value| f64::max(most, value.abs()))
-        };
+        let [mut torque, mut speed] = [(0, 0.0); 2];
+        for sample in plan.intervals.iter().map(|interval| &interval.sample) {
+            let joints = sample.effort.iter().zip(&sample.v).skip(BASE);
+            for (i, (effort, v)) in joints.enumerate() {
+                for (most, value) in [(&mut torque, effort.abs()), (&mut speed, v.abs())] {
+                    if value > most.1 {
+                        *most = (i, value);
+                    }
+                }
+            }
+        }
         Self {
             times,
-            torque: most(&|i| peak(&|interval| interval.sample.effort[BASE + i])),
-            speed: most(&|i| peak(&|interval| interval.sample.v[BASE + i])),
+            torque,
+            speed,
         }
     }
 
