@@ -6,6 +6,7 @@ pub mod audit;
 pub mod bounds;
 mod edge;
 pub mod file;
+mod folding;
 mod grid;
 mod kept;
 mod pace;

@@ -5,6 +5,7 @@ use core::f64::consts::FRAC_PI_8;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::edge::cautious;
+use crate::folding::Folding;
 use crate::robot::State;
 use crate::stops::keep_away;
 use crate::tightening::Tightening;
@@ -170,14 +171,16 @@ impl<'a> Setup<'a> {
         let times = times(&phases);
         let flight = phases.last().map_or(0, |phase| phase.intervals);
         let take_off = times.len() - 1 - flight;
+        let folding = Folding::new((&task.robot, &task.start), (&rigid.axis, rigid.angle))?;
+        let ends = [times[take_off], times[times.len() - 1]];
         let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
         for (k, time) in times.iter().enumerate() {
             let joints = if k <= take_off {
-                &task.start.joints
+                task.start.joints
             } else {
-                &landing_joints
+                folding.joints(*time, ends)
             };
-            nodes.push(pose(&track.at(*time), joints));
+            nodes.push(pose(&track.at(*time), &joints));
         }
         let moved = rigid.goal_w - rigid.start_w;
         let goal = Transform::new(

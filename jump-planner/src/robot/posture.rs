@@ -15,6 +15,8 @@ pub type State = Configuration<f64, JOINTS>;
 const LANDING_LEG: f64 = 0.725;
 /// Foot outside its hip in the pre-landing posture, as a share of the leg.
 const LANDING_WIDTH: f64 = 0.1;
+/// Foot below its hip in folded legs, as a share of the leg: knees of A1 are 0.38 rad from their stops.
+const FOLDED_LEG: f64 = 0.4;
 /// How far joints may be beyond their limits in a posture, rad: round-off of solved postures.
 const SLACK: f64 = 1e-9;
 
@@ -144,22 +146,44 @@ impl Quadruped {
     /// # Errors
     /// As [`Quadruped::stand`].
     pub fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
+        self.joints_with(near, &self.landing_feet())
+    }
+
+    /// Joints of folded legs: the feet drawn up below where they land.
+    ///
+    /// # Errors
+    /// As [`Quadruped::stand`].
+    pub(crate) fn folded_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
+        self.joints_with(near, &self.feet_below(FOLDED_LEG))
+    }
+
+    /// Joints that put the feet there, in base axes from the base's origin, m.
+    fn joints_with(
+        &self,
+        near: &State,
+        feet_b: &[Vector3<f64>; LEGS],
+    ) -> Result<[f64; JOINTS], String> {
         let q = State {
             base: Transform::IDENTITY,
             joints: near.joints,
         };
-        let q = self.place_feet(q, &self.landing_feet())?;
+        let q = self.place_feet(q, feet_b)?;
         Ok(self.within_limits(q)?.joints)
     }
 
     /// Feet in the pre-landing posture, in base axes from the base's origin, m.
     pub(crate) fn landing_feet(&self) -> [Vector3<f64>; LEGS] {
+        self.feet_below(LANDING_LEG)
+    }
+
+    /// Feet outside the hips and below them by this share of the leg, in base axes from the base's origin, m.
+    fn feet_below(&self, share: f64) -> [Vector3<f64>; LEGS] {
         let width = LANDING_WIDTH * self.leg_length;
         self.hips.map(|hip| {
             Vector3::new(
                 hip.x,
                 hip.y + width * hip.y.signum(),
-                hip.z - LANDING_LEG * self.leg_length,
+                hip.z - share * self.leg_length,
             )
         })
     }

@@ -182,7 +182,7 @@ impl Default for LimitsTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WeightsTable {
-    /// Rigid body: angular velocity, s²/rad².
+    /// Rigid body: angular velocity, s²/rad², of a turn about the level axis with most inertia; of others by their share of its energy.
     pub omega: f64,
     /// Rigid body: forces, N⁻².
     pub force: f64,

@@ -12,6 +12,7 @@ mod values;
 use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
 use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
+use crate::folding::Folding;
 use crate::range::{Unusable, require, within};
 use crate::robot::{PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
@@ -169,6 +170,8 @@ impl Task {
         let com_b = start_w - start.base.translation;
         let leg = robot.leg_length;
         let (axis, angle) = turn(file)?;
+        let folding = Folding::new((&robot, &start), (&axis, angle));
+        let energy = folding.map_or(1.0, |folding| folding.energy());
         let edge = edge(file, &points_w)?;
         let total = file.total;
         check_total(total.min_s, total.max_s)?;
@@ -199,7 +202,7 @@ impl Task {
             min_final_trace: 2.5,
             reference,
             weights: Weights {
-                omega: file.weights.omega,
+                omega: file.weights.omega * energy,
                 force: file.weights.force,
                 rotation: file.weights.rotation,
             },
