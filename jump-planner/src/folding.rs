@@ -26,6 +26,7 @@ const WHOLLY: f64 = core::f64::consts::PI;
 const TIME: f64 = 0.12;
 
 /// The legs' reference in flight.
+#[derive(Clone)]
 pub(crate) struct Folding {
     /// Joints of the landing posture, rad.
     landing: [f64; JOINTS],
@@ -71,6 +72,11 @@ impl Folding {
         })
     }
 
+    /// Joints of the landing posture, rad.
+    pub(crate) const fn landing(&self) -> &[f64; JOINTS] {
+        &self.landing
+    }
+
     /// Energy of the turn with the legs out over that of an equally fast one that they cannot help, about the level axis with most inertia: at most 1.
     pub(crate) const fn energy(&self) -> f64 {
         self.energy
@@ -98,7 +104,7 @@ mod tests {
     /// How far the legs of A1 are from their landing posture at most, rad, in the middle of a flight with this turn, and the turn's energy.
     fn folded(axis: Vector3<f64>, angle: f64) -> [f64; 2] {
         let task = Task::load("a1/lateral").unwrap();
-        let landing = task.robot.landing_joints(&task.start).unwrap();
+        let landing = *task.landing_joints();
         let folding = Folding::new((&task.robot, &task.start), (&axis, angle)).unwrap();
         let joints = |time| folding.joints(time, [1.0, 1.5]);
         for rest in [0.0, 1.0, 1.5 - POSED, 1.5, 9.0] {

@@ -58,15 +58,10 @@ pub(crate) struct Grid<'a> {
 
 impl<'a> Grid<'a> {
     /// On intervals of this many usual lengths, with the motion of the rigid body as the guess.
-    pub(crate) fn new(
-        task: &'a Task,
-        srb: &'a SrbPlan,
-        timing: Timing,
-        lengths: f64,
-    ) -> Result<Self, String> {
-        let mut grid = Self::of(task, timing, Setup::new(task, srb, lengths)?);
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: f64) -> Self {
+        let mut grid = Self::of(task, timing, Setup::new(task, srb, lengths));
         grid.guess();
-        Ok(grid)
+        grid
     }
 
     fn of(task: &'a Task, timing: Timing, setup: Setup<'a>) -> Self {
@@ -94,13 +89,13 @@ impl<'a> Grid<'a> {
     }
 
     /// On the intervals of an earlier plan, from its motion and multipliers.
-    pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Result<Self, String> {
-        let setup = Setup::on(task, srb, &kept.intervals, (kept.lengths, kept.lift))?;
+    pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Self {
+        let setup = Setup::on(task, srb, &kept.intervals, (kept.lengths, kept.lift));
         let mut grid = Self::of(task, Timing::Given, setup);
         grid.stages.clone_from(&kept.stages);
         grid.torque_share = kept.torque_share;
         grid.apart.clone_from(&kept.apart);
-        Ok(grid)
+        grid
     }
 
     /// What the last solve leaves for a task like this one, within these limits; nothing where there was no motion, or where the durations
@@ -136,12 +131,12 @@ impl<'a> Grid<'a> {
     }
 
     /// The grid with each interval split into equal parts, from the motion that was found on this one.
-    pub(crate) fn split(self, parts: usize) -> Result<Self, String> {
+    pub(crate) fn split(self, parts: usize) -> Self {
         let motion: Vec<_> = match self.timing {
             Timing::Given => self.stages.iter().map(|s| (s.state, s.control)).collect(),
             Timing::Free => (self.timed.iter().map(|s| (s.state.state, s.control))).collect(),
         };
-        let setup = self.setup.split(parts, &self.durations())?;
+        let setup = self.setup.split(parts, &self.durations());
         let mut fine = Self::of(self.task, self.timing, setup);
         (fine.torque_share, fine.path) = (self.torque_share, self.path);
         fine.apart = self.apart;
@@ -150,7 +145,7 @@ impl<'a> Grid<'a> {
         free_timing(self.task, problem).write_guess(&fine.stages, &mut fine.timed);
         take_over(&mut fine.stages, &self.stages, parts);
         take_over(&mut fine.timed, &self.timed, parts);
-        Ok(fine)
+        fine
     }
 
     /// This grid, whose solves were made after those of another one.

@@ -125,14 +125,14 @@ fn planned(
             if srb.status != Status::Solved {
                 let blocked = Answer::no_body_plan(task, srb);
                 out.answer = Some(match End::of(srb.status, &late) {
+                    End::Itself
+                        if observe(Step::Relaxations, None).is_break() && late.get().is_none() =>
+                    {
+                        Answer::cancelled()
+                    }
                     End::Itself => {
-                        let is_ended = observe(Step::Relaxations, None).is_break();
-                        if is_ended && late.get().is_none() {
-                            Answer::cancelled()
-                        } else {
-                            let watch = |p: &_| observe(Step::Relaxations, Some(p));
-                            blocked.with_easier_tasks(task, watch)
-                        }
+                        let watch = |p: &_| observe(Step::Relaxations, Some(p));
+                        blocked.with_easier_tasks(task, watch)
                     }
                     End::Cancelled => Answer::cancelled(),
                     End::Late(within) => blocked.out_of_time(within),

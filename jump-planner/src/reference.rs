@@ -257,7 +257,7 @@ fn roll(
 pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
     let robot = &task.robot;
     let intervals = intervals(task, &plan.stages);
-    let landing_joints = task.robot.landing_joints(&task.start)?;
+    let landing_joints = task.landing_joints();
     let mut q = task.start;
     let mut swing = [0.0; JOINTS];
     let mut nodes = Vec::new();
@@ -302,7 +302,7 @@ pub fn build(task: &Task, plan: &SrbPlan) -> Result<Reference, String> {
         flight,
         &q,
         [takeoff, posing],
-        &landing_joints,
+        landing_joints,
     );
     let bytes = container(task, &intervals, nodes, posing)?;
     Ok(Reference {

@@ -37,7 +37,7 @@ pub(crate) fn searched<'a>(
     timing: Timing,
     observer: Observe<'_>,
 ) -> Found<'a> {
-    let mut grid = Grid::new(task, srb, timing, 1.0)?;
+    let mut grid = Grid::new(task, srb, timing, 1.0);
     let is_alone = crate::threads() == 1;
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
@@ -123,16 +123,16 @@ fn on_long_intervals<'a>(
     let is_given = timing == Timing::Given && task.has_given_durations();
     let own = if is_given { timing } else { Timing::Free };
     let long = |timing| Grid::new(task, srb, timing, LONG as f64);
-    let (mut grid, mut plan) = split(long(own)?, Grid::with_most_torque, observer)?;
+    let (mut grid, mut plan) = split(long(own), Grid::with_most_torque, observer)?;
     if !is_decided(&plan) && own != timing {
-        let (given, again) = split(long(timing)?, Grid::with_most_torque, observer)?;
+        let (given, again) = split(long(timing), Grid::with_most_torque, observer)?;
         (grid, plan) = (given.after(grid), again);
     }
     let mut ends = grid.path.iter().map(|solve| solve.status);
     if is_decided(&plan) || ends.any(|status| status == Status::Solved) {
         return Ok((grid, plan));
     }
-    let mut weaker = long(own)?;
+    let mut weaker = long(own);
     let (found, stronger) = weaker.with_weakest_joints(observer)?;
     if found.outcome.status == Status::Cancelled {
         plan = found;
@@ -154,7 +154,7 @@ fn split<'a>(
     // In halves: at once in as many parts as there will be, a motion is too far from the next one for half of those jumps.
     while plan.outcome.status == Status::Solved && left > 1 {
         left /= HALVES;
-        grid = grid.split(HALVES)?;
+        grid = grid.split(HALVES);
         plan = grid.resume(observer)?;
         if !is_decided(&plan) && grid.allow_most_torque() {
             plan = grid.resume(observer)?;

@@ -5,7 +5,6 @@ use core::f64::consts::FRAC_PI_8;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::edge::cautious;
-use crate::folding::Folding;
 use crate::robot::State;
 use crate::stops::keep_away;
 use crate::tightening::Tightening;
@@ -97,7 +96,7 @@ pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
 
 impl<'a> Setup<'a> {
     /// On intervals of this many usual lengths.
-    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, lengths: f64) -> Result<Self, String> {
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, lengths: f64) -> Self {
         let rigid = &task.problem;
         let mut phases = Vec::new();
         for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
@@ -130,7 +129,7 @@ impl<'a> Setup<'a> {
         srb: &'a SrbPlan,
         intervals: &[usize],
         (lengths, lift): (f64, f64),
-    ) -> Result<Self, String> {
+    ) -> Self {
         let phases = task.problem.used_phases().iter();
         let phases = phases.zip(durations(srb)).zip(intervals);
         let phases = phases.map(|((phase, duration), intervals)| Phase {
@@ -142,7 +141,7 @@ impl<'a> Setup<'a> {
     }
 
     /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.
-    pub(crate) fn split(&self, parts: usize, durations: &[f64]) -> Result<Self, String> {
+    pub(crate) fn split(&self, parts: usize, durations: &[f64]) -> Self {
         let shorter = |phase: &Phase<f64, FOOT_COUNT>| Phase {
             intervals: parts * phase.intervals,
             dt: phase.dt / parts as f64,
@@ -150,12 +149,12 @@ impl<'a> Setup<'a> {
         };
         let phases = self.phases.iter().map(shorter).collect();
         let lengths = self.lengths / parts as f64;
-        let mut split = Self::along(self.task, self.srb, phases, (lengths, self.lift))?;
+        let mut split = Self::along(self.task, self.srb, phases, (lengths, self.lift));
         split.landing_intervals = parts * self.landing_intervals;
         for (phase, duration) in split.phases.iter_mut().zip(durations) {
             phase.dt = duration / phase.intervals as f64;
         }
-        Ok(split)
+        split
     }
 
     /// Along the motion of the rigid body, on the intervals of these phases, of so many usual lengths, with feet that keep so high, m.
@@ -164,21 +163,19 @@ impl<'a> Setup<'a> {
         srb: &'a SrbPlan,
         phases: Vec<Phase<f64, FOOT_COUNT>>,
         (lengths, lift): (f64, f64),
-    ) -> Result<Self, String> {
+    ) -> Self {
         let rigid = &task.problem;
-        let landing_joints = task.robot.landing_joints(&task.start)?;
         let track = track(task, srb);
         let times = times(&phases);
         let flight = phases.last().map_or(0, |phase| phase.intervals);
         let take_off = times.len() - 1 - flight;
-        let folding = Folding::new((&task.robot, &task.start), (&rigid.axis, rigid.angle))?;
         let ends = [times[take_off], times[times.len() - 1]];
         let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
         for (k, time) in times.iter().enumerate() {
             let joints = if k <= take_off {
                 task.start.joints
             } else {
-                folding.joints(*time, ends)
+                task.folding.joints(*time, ends)
             };
             nodes.push(pose(&track.at(*time), &joints));
         }
@@ -194,7 +191,7 @@ impl<'a> Setup<'a> {
                 rot_wc: turn.at(0.5),
             }
         };
-        Ok(Self {
+        Self {
             task,
             srb,
             track,
@@ -203,11 +200,11 @@ impl<'a> Setup<'a> {
             times,
             nodes,
             clearances: clearances(task),
-            goal: pose(&goal, &landing_joints),
+            goal: pose(&goal, task.landing_joints()),
             landing_intervals: (POSED / (lengths * FLIGHT_DT)).ceil() as usize,
             lengths,
             lift,
-        })
+        }
     }
 
     /// Postures that no plan can choose: at the start, and as the robot lands.
@@ -349,9 +346,10 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::Setup;
+    use super::{BASE, N, Setup};
     use crate::task::Task;
     use crate::tightening::Tightening;
+    use wb_opt::Pose;
 
     #[test]
     fn forces_keep_to_the_planned_share_of_friction_whichever_way_they_point() {
@@ -359,7 +357,7 @@ mod tests {
         let srb = task.guess().unwrap();
         let planned = task.problem.friction;
         let friction = |task: &Task| {
-            let setup = Setup::new(task, &srb, 4.0).unwrap();
+            let setup = Setup::new(task, &srb, 4.0);
             setup.problem(&Tightening::default()).friction
         };
         // The eight sides of a regular octagon are as far out along the axes as between them.
@@ -375,10 +373,33 @@ mod tests {
     }
 
     #[test]
+    fn a_roll_is_guessed_with_folded_legs_and_ends_with_legs_out() {
+        for (name, folds) in [("a1/barrel-roll", true), ("a1/lateral", false)] {
+            let task = Task::load(name).unwrap();
+            let srb = task.guess().unwrap();
+            let setup = Setup::new(&task, &srb, 1.0);
+            let flight = setup.phases.last().unwrap().intervals;
+            let (stance, flight) = setup.nodes.split_at(setup.nodes.len() - flight);
+            assert!(
+                stance
+                    .iter()
+                    .all(|pose| pose.q[BASE..] == task.start.joints)
+            );
+            let from_landing = |pose: &Pose<f64, N>| {
+                let pairs = pose.q[BASE..].iter().zip(task.landing_joints());
+                pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+            };
+            let most = flight.iter().map(from_landing).fold(0.0, f64::max);
+            assert_eq!(most > 0.7, folds, "{name}: {most}");
+            assert_eq!(from_landing(flight.last().unwrap()), 0.0);
+        }
+    }
+
+    #[test]
     fn heights_that_are_drawn_in_are_higher() {
         let task = Task::load("a1/lateral").unwrap();
         let srb = task.guess().unwrap();
-        let setup = Setup::new(&task, &srb, 4.0).unwrap();
+        let setup = Setup::new(&task, &srb, 4.0);
         let drawn = Tightening {
             height: 0.1,
             ..Tightening::default()

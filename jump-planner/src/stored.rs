@@ -100,7 +100,7 @@ impl Content<'_> {
             margins: margins(task, self.torque_share as f32),
             goal_w: goal(task).0,
             heading: goal(task).1,
-            landing_joints: robot.landing_joints(&task.start)?.map(|x| x as f32),
+            landing_joints: task.landing_joints().map(|x| x as f32),
             // What is written counts them.
             nodes: 0,
         })
@@ -150,8 +150,7 @@ pub fn agree(header: &Header<'_, JOINTS>, task: &Task) -> Result<(), String> {
     if !known {
         return other("the plan keeps to other margins");
     }
-    let landing = task.robot.landing_joints(&task.start)?;
-    let pairs = header.landing_joints.iter().zip(landing);
+    let pairs = header.landing_joints.iter().zip(task.landing_joints());
     let gap = pairs.fold(0.0, |m: f64, (a, b)| m.max((f64::from(*a) - b).abs()));
     if gap > SAME_POSTURE {
         return other("the plan lands in another posture");

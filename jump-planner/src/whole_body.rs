@@ -156,7 +156,7 @@ pub(crate) fn audited_near(
     observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let clock = Instant::now();
-    let mut near = Grid::near(task, srb, kept)?;
+    let mut near = Grid::near(task, srb, kept);
     let plan = near.moved(&kept.drawn, observer)?;
     if matches!(plan.outcome.status, Status::Solved | Status::Cancelled) {
         return finished(clock, task, near, (plan, kept.drawn), observer);
@@ -177,7 +177,7 @@ fn finished<'a>(
     let mut told = tightened(task, &mut grid, (plan, &mut drawn), observer)?;
     // Shorter intervals make no link thinner.
     if !told.audit.as_ref().is_none_or(Audit::is_a_motion) {
-        grid = grid.split(2)?;
+        grid = grid.split(2);
         drawn = Tightening::default();
         let plan = grid.again(&drawn, observer)?;
         let fine = tightened(task, &mut grid, (plan, &mut drawn), observer)?;

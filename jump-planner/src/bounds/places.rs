@@ -126,7 +126,7 @@ pub(super) fn landing(task: &Task) -> Option<Impossible> {
     let robot = &task.robot;
     let moved = task.problem.goal_w - task.problem.start_w;
     let base = Transform::new(task.rot_goal, task.start.base.translation + moved);
-    let joints = robot.landing_joints(&task.start).ok()?;
+    let joints = *task.landing_joints();
     let poses = robot.poses(&State { base, joints });
     let short = robot.feet.iter().enumerate().map(|(i, frame)| {
         let foot = poses.frame(frame).translation;

@@ -14,7 +14,7 @@ use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
 use crate::folding::Folding;
 use crate::range::{Unusable, require, within};
-use crate::robot::{PLACES, Quadruped, RobotError, State};
+use crate::robot::{JOINTS, PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
 use ocp_solver::{Stage, Status};
 use srb_opt::{Edge, Exponential, Phase, Problem, Reference, Weights};
@@ -69,6 +69,8 @@ pub struct Task {
     pub problem: Problem<f64, FOOT_COUNT, PHASES>,
     /// Standing at the start.
     pub start: State,
+    /// Legs in flight.
+    pub(crate) folding: Folding,
     /// Wanted displacement of the base, m.
     pub goal: Vector3<f64>,
     /// Wanted heading at the end, rad.
@@ -170,8 +172,8 @@ impl Task {
         let com_b = start_w - start.base.translation;
         let leg = robot.leg_length;
         let (axis, angle) = turn(file)?;
-        let folding = Folding::new((&robot, &start), (&axis, angle));
-        let energy = folding.map_or(1.0, |folding| folding.energy());
+        let folding = Folding::new((&robot, &start), (&axis, angle))
+            .map_err(|what| (culprit.to_owned(), format!("to land, {what}")))?;
         let edge = edge(file, &points_w)?;
         let total = file.total;
         check_total(total.min_s, total.max_s)?;
@@ -202,7 +204,7 @@ impl Task {
             min_final_trace: 2.5,
             reference,
             weights: Weights {
-                omega: file.weights.omega * energy,
+                omega: file.weights.omega * folding.energy(),
                 force: file.weights.force,
                 rotation: file.weights.rotation,
             },
@@ -215,6 +217,7 @@ impl Task {
             edge,
             problem,
             start,
+            folding,
             goal,
             rot_goal: so3::exp(&(axis * angle)),
             heading: if axis.z.abs() > 0.5 {
@@ -257,6 +260,12 @@ impl Task {
         // Wide: a bound on the sum that fixed durations just meet would only be in the solver's way.
         (self.problem.min_total, self.problem.max_total) = (0.5 * total, 2.0 * total);
         Ok(())
+    }
+
+    /// Joints with which the robot lands, rad: feet below and outside the hips.
+    #[must_use]
+    pub const fn landing_joints(&self) -> &[f64; JOINTS] {
+        self.folding.landing()
     }
 
     /// Name of a phase: the feet on the ground.
