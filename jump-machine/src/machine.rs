@@ -130,11 +130,12 @@ impl<'a, T: Scalar, M: Tree<T, N>, const N: usize, const F: usize> Machine<'a, T
 
     /// One tick of 1 kHz at the time `now`, s, on a clock of the caller that only goes forward.
     ///
-    /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old. A
-    /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
+    /// `heard` is what has arrived since the last tick. `None` is a stale sensor: the last measurement is used until it is too old, and the
+    /// joints are damped where there has been none yet. A missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`].
     pub fn tick(&mut self, now: T, heard: Option<&Observation<T, N, F>>) -> Tick {
         let work = match self.supervisor.hear(now, heard, &mut None) {
-            Ok((inputs, dt)) => self.act(now - self.start, inputs, dt),
+            Ok(Some((inputs, dt))) => self.act(now - self.start, inputs, dt),
+            Ok(None) => Work::Damping,
             Err(fault) => self.abort(fault),
         };
         self.supervisor.ticked(work)

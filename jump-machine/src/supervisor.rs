@@ -40,6 +40,8 @@ pub(crate) struct Supervisor<T: Scalar, const N: usize, const F: usize> {
     least_up: T,
     limits: Limits<T>,
     heard: Option<Observation<T, N, F>>,
+    /// Time of ticks before the first observation, s.
+    unheard: T,
     /// Time since the command was made, s.
     silence: T,
     slew: Slew<T, N>,
@@ -57,6 +59,7 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
             upright: true,
             least_up: math::cos(limits.most_tilt),
             heard: None,
+            unheard: T::ZERO,
             silence: T::ZERO,
             slew: Slew::new(limits.slew),
             limits,
@@ -103,14 +106,14 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         Event::Misplaced
     }
 
-    /// The latest observation with its age now, and the time since the last tick. `old` is memory for an observation of an earlier tick, so that one of this
-    /// tick is not copied.
+    /// The latest observation with its age now, and the time since the last tick; `None` before the first, which may be as late as others may be
+    /// old. `old` is memory for an observation of an earlier tick, so that one of this tick is not copied.
     pub(crate) fn hear<'h>(
         &mut self,
         now: T,
         heard: Option<&'h Observation<T, N, F>>,
         old: &'h mut Option<Observation<T, N, F>>,
-    ) -> Result<(&'h Observation<T, N, F>, T), Fault> {
+    ) -> Result<Option<(&'h Observation<T, N, F>, T)>, Fault> {
         let s = &self.limits;
         let passed = self.last_tick.map_or(s.period, |last| now - last);
         // Also false for NaN.
@@ -133,7 +136,14 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
                 last.measured.age += dt;
                 old.insert(last)
             }
-            (None, None) => return Err(Fault::Stale),
+            (None, None) => {
+                self.unheard += dt;
+                return if self.unheard <= s.max_age {
+                    Ok(None)
+                } else {
+                    Err(Fault::Stale)
+                };
+            }
         };
         self.heard = Some(*observed);
         // Also false for NaN.
@@ -141,7 +151,7 @@ impl<T: Scalar, const N: usize, const F: usize> Supervisor<T, N, F> {
         let watch = Watch { max_age: s.max_age };
         watch
             .fault(&observed.measured)
-            .map_or(Ok((observed, dt)), Err)
+            .map_or(Ok(Some((observed, dt))), Err)
     }
 
     /// The phase after an event.

@@ -300,6 +300,15 @@ fn a_start_before_the_gains_are_computed_is_refused() {
 fn missing_measurements_are_bridged_for_ten_milliseconds_and_ticks_for_five_and_then_named() {
     let still = [0.0; 12];
     let good = inputs();
+    // The first measurement may be as late as others may be old.
+    let mut workspace = Workspace::new();
+    let mut m = machine(&mut workspace);
+    for k in 0..9 {
+        let tick = m.tick(f64::from(k) * 1e-3, None);
+        assert_eq!((tick.fault, tick.work), (None, Work::Damping));
+    }
+    m.tick(0.009, None);
+    assert_eq!(m.tick(0.010, None).fault, Some(Fault::Stale));
     let mut workspace = Workspace::new();
     let mut m = machine(&mut workspace);
     run(&mut m, 0, 20, &good);

@@ -5,10 +5,10 @@
 
 use a1_model::{MOTORS, a1};
 use contact_sim::Terrain;
-use jump_control::{Node, Phase, Plan, Torques};
+use jump_control::{Fault, Node, Phase, Plan, Torques};
 use jump_lab::Sim;
 use jump_lab::closed_loop::{Feet, Recorder, Step};
-use jump_lab::lab::Ground;
+use jump_lab::lab::{Disturbance, Ground, Key};
 use jump_lab::noise::Noise;
 use jump_lab::quadruped::execute::{Trial, closed, feet};
 use jump_lab::quadruped::plant::simulator;
@@ -62,6 +62,10 @@ pub struct Drop {
     pub sideways: f64,
     /// A foot with a bad sensor.
     pub fault: Option<(usize, Wrong)>,
+    /// How robot, sensors and ground differ from what the machine knows.
+    pub plant: Disturbance,
+    /// Of the noise.
+    pub seed: u64,
 }
 
 /// What a drop ended in.
@@ -69,8 +73,8 @@ pub struct Drop {
 pub struct End {
     /// Tilt below 10° after three seconds.
     pub upright: bool,
-    /// The trunk touched the ground at any time.
-    pub trunk_touched: bool,
+    /// What touched the ground at any time, in the order of [`Quadruped::owners`].
+    pub touched: [bool; OWNERS],
     /// Slower than 5 cm/s after three seconds.
     pub at_rest: bool,
     /// Ticks at which the force program had no answer.
@@ -81,13 +85,23 @@ pub struct End {
     pub faulty: [bool; FOOT_COUNT],
     /// Where the machine was after three seconds.
     pub phase: Phase,
+    /// Why it gave up, where it did.
+    pub fault: Option<Fault>,
 }
 
 impl End {
     /// Upright, at rest, trunk untouched.
     #[must_use]
     pub const fn good(&self) -> bool {
-        self.upright && !self.trunk_touched && self.at_rest
+        let [.., trunk_touched] = self.touched;
+        self.upright && !trunk_touched && self.at_rest
+    }
+
+    /// Links that touched the ground and are no feet.
+    pub fn links(&self, robot: &Quadruped) -> impl Iterator<Item = &'static str> {
+        let owners = robot.owners.into_iter().zip(self.touched);
+        let links = owners.skip(FOOT_COUNT).filter(|(_, touched)| *touched);
+        links.map(|(owner, _)| owner)
     }
 }
 
@@ -95,7 +109,8 @@ impl End {
 /// at up to 0.5 m/s sideways.
 #[must_use]
 pub fn drawn(seed: u64, index: u64, [low, high]: [f64; 2]) -> Drop {
-    let mut noise = Noise::new(seed ^ index.wrapping_mul(0xd134_2543_de82_ef95), 0.0);
+    let seed = seed ^ index.wrapping_mul(0xd134_2543_de82_ef95);
+    let mut noise = Noise::new(seed, 0.0);
     let mut between = |a: f64, b: f64| a + (b - a) * noise.uniform();
     let tilt = between(0.0, 20.0).to_radians();
     let about = between(0.0, core::f64::consts::TAU);
@@ -105,6 +120,8 @@ pub fn drawn(seed: u64, index: u64, [low, high]: [f64; 2]) -> Drop {
         pitch: tilt * so3::math::sin(about),
         sideways: between(-0.5, 0.5),
         fault: None,
+        plant: Disturbance::NOMINAL,
+        seed,
     }
 }
 
@@ -203,17 +220,19 @@ impl Recorder<Lander<'_>, JOINTS, FOOT_COUNT, OWNERS> for Watcher {
             Work::Landing(Outcome::Failed(_) | Outcome::BadData) => end.failures += 1,
             _ => {}
         }
-        end.phase = tick.phase;
+        (end.phase, end.fault) = (tick.phase, machine.fault());
     }
 
     fn stepped(&mut self, _: &Step<JOINTS>, _: &Lander<'_>, world: &World) {
-        let [.., trunk] = world.plant().contact_forces_w();
-        self.end.trunk_touched |= *trunk != Vector3::zeros();
+        let forces_w = world.plant().contact_forces_w();
+        for (ever, force_w) in self.end.touched.iter_mut().zip(forces_w) {
+            *ever |= *force_w != Vector3::zeros();
+        }
     }
 }
 
-/// Drops the robot in a simulator and lets it settle for three seconds. Motors, sensors and estimator are those of a nominal run: without
-/// error, and never the truth about the base. Contact counts from 60 ms after the release, as it counts from the pre-landing posture on in a
+/// Drops the robot in a simulator and lets it settle for three seconds. The machine has its estimator, and never the truth about the base; in the
+/// air nobody weighs the robot, so that it knows of no payload. Contact counts from 60 ms after the release, as it counts from the pre-landing posture on in a
 /// jump.
 ///
 /// # Errors
@@ -235,7 +254,11 @@ pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
     let armed = machine.arm(jump, 0.0);
     armed.map_err(|refusal| refusal.to_string())?;
 
-    let trial = Trial::nominal(sim);
+    let trial = Trial {
+        disturbance: drop.plant,
+        seed: drop.seed,
+        ..Trial::nominal(sim)
+    };
     let over = (&Terrain::FLAT, &start.0);
     let mut plant = simulator(sim, robot, over, &trial.disturbance)?;
     plant.reset(&start.0, &start.1);
@@ -244,19 +267,25 @@ pub fn run(robot: &Quadruped, sim: Sim, drop: &Drop) -> Result<End, String> {
         settling: 0,
         ..feet(robot)
     };
-    let mut closed = closed((*robot, feet), machine, Ground::new(plant, 0.0), &trial);
+    let mut closed = closed(
+        (*robot, feet),
+        machine,
+        Ground::new(plant, drop.plant.get(Key::GroundHeight)),
+        &trial,
+    );
     let mut watcher = Watcher {
         fault: drop.fault,
-        // Another chattering for every drop.
-        noise: Noise::new(drop.height.to_bits() ^ 7, 0.0),
+        // Another chattering for every height, too.
+        noise: Noise::new(drop.seed ^ drop.height.to_bits() ^ 7, 0.0),
         end: End {
             upright: false,
-            trunk_touched: false,
+            touched: [false; OWNERS],
             at_rest: false,
             failures: 0,
             capped: 0,
             faulty: [false; FOOT_COUNT],
             phase: Phase::Stand,
+            fault: None,
         },
     };
     closed.run((0.0, END), &mut watcher, |_, _| {})?;
@@ -291,6 +320,8 @@ pub fn eighteen(height: f64) -> impl Iterator<Item = Drop> {
                 pitch: pitch.to_radians(),
                 sideways,
                 fault: None,
+                plant: Disturbance::NOMINAL,
+                seed: 0,
             })
         })
 }

@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests")]
 
 use jump_lab::Sim;
+use jump_lab::lab::Disturbance;
 use jump_planner::robot::Quadruped;
 use saltus_tests::drops::{Drop, Wrong, eighteen, run};
 
@@ -58,6 +59,8 @@ fn a_bad_foot_sensor_does_not_fell_the_robot_and_is_named() {
                 pitch: 0.0,
                 sideways: 0.0,
                 fault: Some((foot, wrong)),
+                plant: Disturbance::NOMINAL,
+                seed: 0,
             };
             let end = run(&robot, Sim::Native, &drop).unwrap();
             assert!(end.good(), "{drop:?}: {end:?}");

@@ -132,12 +132,13 @@ impl<
 
     /// One tick of 1 kHz at the time `now`, s, on a clock of the caller that only goes forward.
     ///
-    /// `observed` is what has arrived since the last tick. `None` is a stale sensor: the last observation is used until it is too old. A
-    /// missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`]. So does a
+    /// `observed` is what has arrived since the last tick. `None` is a stale sensor: the last observation is used until it is too old, and the
+    /// joints are damped where there has been none yet. A missed tick is bridged likewise. They end in [`Phase::Abort`] after [`Settings::max_age`] and [`Settings::max_silence`]. So does a
     /// program without an answer; until then its last command stays.
     pub fn tick(&mut self, now: T, observed: Option<&Observation<T, N, F>>) -> Tick<Work<T>> {
         let work = match self.supervisor.hear(now, observed, &mut None) {
-            Ok((observed, dt)) => self.act(now - self.start, observed, dt),
+            Ok(Some((observed, dt))) => self.act(now - self.start, observed, dt),
+            Ok(None) => Work::Damping,
             Err(fault) => self.abort(fault),
         };
         self.supervisor.ticked(work)
