@@ -5,6 +5,7 @@ use jump_planner::robot::{JOINTS, Quadruped};
 use jump_planner::stored::open_for;
 use jump_planner::task::Task;
 use jump_planner::task::file::TaskFile;
+use nalgebra::Vector3;
 use rbd_core::Model;
 use std::path::{Path, PathBuf};
 
@@ -92,7 +93,16 @@ fn files_that_are_no_quadruped_are_told_what_they_lack() {
         footless = without(&footless, &format!("<link name=\"{leg}_foot\">"), "</link>");
     }
     let negative = a1().replacen("ixx=\"0.0158533\"", "ixx=\"-1\"", 1);
-    assert_ne!(negative, a1());
+    let uneven = a1().replacen("<sphere radius=\"0.02\"/>", "<sphere radius=\"0.05\"/>", 1);
+    let follows = r#"<joint name="FL_calf_joint" type="revolute">"#;
+    let mimic = a1().replacen(
+        follows,
+        &format!("{follows}<mimic joint=\"FR_calf_joint\"/>"),
+        1,
+    );
+    for changed in [&negative, &uneven, &mimic] {
+        assert_ne!(*changed, a1());
+    }
     // Its root stands 0.3 m before its legs.
     let aside = r#"<link name="dummy"/><joint name="aside" type="fixed"><parent link="dummy"/><child link="base"/>
         <origin xyz="-0.3 0 0.5"/></joint></robot>"#;
@@ -111,6 +121,18 @@ fn files_that_are_no_quadruped_are_told_what_they_lack() {
             "out of reach",
         ),
         (negative, &[], &["trunk", "negative"], "--inertia"),
+        (
+            uneven,
+            &[],
+            &["foot's radius", "0.05", "0.02", "calf_joint"],
+            "node",
+        ),
+        (
+            mimic,
+            &[],
+            &["FL_calf_joint", "<mimic>", "motor of its own"],
+            "--lock",
+        ),
         (
             "<mujoco/>".to_owned(),
             &[],
@@ -139,6 +161,33 @@ fn files_that_are_no_quadruped_are_told_what_they_lack() {
         }
         assert!(!error.contains(never), "{never}: {error}");
     }
+}
+
+/// A trunk's box stands as its file turns it: on its side it is as high as it was wide.
+#[test]
+fn the_box_of_a_trunk_may_be_turned() {
+    let folder = Folder::new("turned");
+    let size = "<box size=\"0.267 0.194 0.114\"/>";
+    let level =
+        "<collision>\n      <origin rpy=\"0 0 0\" xyz=\"0 0 0\"/>\n      <geometry>\n        "
+            .to_owned()
+            + size;
+    let turned = a1().replacen(
+        &level,
+        &level.replace("rpy=\"0", "rpy=\"1.5707963267948966"),
+        1,
+    );
+    assert_ne!(turned, a1());
+    let most = |text: &str| -> Vector3<f64> {
+        let robot = folder.load("robot.urdf", text, &[]).unwrap();
+        let corners = robot.corners.iter().map(Vector3::abs);
+        corners.fold(Vector3::zeros(), |most: Vector3<f64>, corner| {
+            most.sup(&corner)
+        })
+    };
+    let half: Vector3<f64> = Vector3::new(0.267, 0.194, 0.114) * 0.5;
+    assert!((most(&a1()) - half).norm() < 1e-12);
+    assert!((most(&turned) - half.xzy()).norm() < 1e-12);
 }
 
 /// A name that is neither built in nor a file.

@@ -148,10 +148,12 @@ impl<'h> Rules<'h> {
         must(within(FAR, from.numbers::<N>()?), "joints")?;
         must(within(FAR, from.numbers::<N>()?), "joint velocities")?;
         must(within(f32::MAX, from.numbers::<N>()?), "torques")?;
+        // Before its jump begins the robot waits on all its feet, whichever stand in the first phase.
+        let waits = time < 0.0;
         let forces = from.vectors::<F>()?;
         must(within(f32::MAX, forces.as_flattened()), "forces")?;
         for (foot, force) in forces.iter().enumerate() {
-            let stands = (u32::from(now.contacts) >> foot) & 1 == 1;
+            let stands = waits || (u32::from(now.contacts) >> foot) & 1 == 1;
             must(last || self.pushes(vector(force), stands), "forces")?;
         }
         let mut feet = |what| must(within(FAR, from.vectors::<F>()?.as_flattened()), what);

@@ -377,6 +377,28 @@ fn nobody_stands_on_feet_that_are_not_there() {
     assert_eq!(checked(&|_| ()), Ok(()));
 }
 
+/// Before its jump begins a robot waits on its feet, also where the first phase lifts them; once it has begun, what is lifted bears nothing.
+#[test]
+fn a_robot_waits_on_feet_that_its_first_phase_lifts() {
+    let mut lifted = header();
+    lifted.phases[0].contacts = 0;
+    for (time, what) in [(-1e-3, Ok(())), (0.0, Err(Some(0)))] {
+        let mut nodes = nodes();
+        nodes[0].time = time;
+        nodes[1].forces_w = [[0.0; 3]];
+        let stored = written(&lifted, &nodes);
+        let container = (Container::open(&stored, ROBOT) as Opened<'_>).unwrap();
+        let checked = container.check().map_err(|error| match error {
+            ContainerError::Value { node, what } => {
+                assert_eq!(what, "forces");
+                node
+            }
+            _ => None,
+        });
+        assert_eq!(checked, what, "{time}");
+    }
+}
+
 /// Parts of a node are those of the whole, and zeros elsewhere: for any parts that are asked for.
 #[test]
 fn parts_of_a_node_are_the_wholes() {

@@ -307,7 +307,7 @@ pub fn plant(
     let mut settings = Settings::new(&limits, &task.motors());
     settings.contact.friction = disturbance.get(Key::Friction);
     settings.contact.time_constant = disturbance.seconds(Key::Ground);
-    let robot = lab::robot(disturbance, &ROBOT)?;
+    let robot = lab::robot(disturbance, &ROBOT).map_err(|error| error.to_string())?;
     let mut plant: Plant = match sim {
         Sim::Native => {
             let (balls, links) = (spheres(), links());

@@ -2,7 +2,7 @@
 
 use super::{Disturbance, Key};
 use nalgebra::Vector3;
-use rbd_core::{BaseBody, BaseKind, Body, Symmetric3, TableModel, Tree};
+use rbd_core::{BaseBody, BaseKind, Body, Symmetric3, TableError, TableModel, Tree};
 
 /// The robot that stands in the lab where `planned` was planned with.
 ///
@@ -14,7 +14,7 @@ use rbd_core::{BaseBody, BaseKind, Body, Symmetric3, TableModel, Tree};
 pub fn robot<M: Tree<f64, N>, const N: usize>(
     disturbance: &Disturbance,
     planned: &M,
-) -> Result<TableModel<f64, N>, String> {
+) -> Result<TableModel<f64, N>, TableError> {
     let mut base: BaseBody<f64> = *planned.base();
     let mut bodies: [Body<f64>; N] = *planned.bodies();
     let scale = disturbance.get(Key::Mass);
@@ -36,7 +36,7 @@ pub fn robot<M: Tree<f64, N>, const N: usize>(
         disturbance.get(Key::Payload),
         &Vector3::from(place),
     );
-    TableModel::new(BaseKind::Floating, base, &bodies).map_err(|error| error.to_string())
+    TableModel::new(BaseKind::Floating, base, &bodies)
 }
 
 /// Moves the centre of mass by `shift` over the base's mass, kg m; what the mass does about it stays.

@@ -75,7 +75,9 @@ pub struct Run {
     pub final_phase: Phase,
     /// Why the machine gave up, where it did.
     pub fault: Option<Fault>,
-    /// When a foot touched the ground after the flight, s.
+    /// Whether no foot has touched the ground after the push-off, for a moment at least.
+    pub took_off: bool,
+    /// When a foot touched the ground after that, s.
     pub first_contact: Option<f64>,
     /// What the run asked of motors, joints and supply.
     pub hardware: Hardware<JOINTS>,
@@ -106,6 +108,7 @@ impl Run {
             weight,
             final_phase: Phase::Hold,
             fault: None,
+            took_off: false,
             first_contact: None,
             hardware: Hardware::new(
                 robot.budgets,
@@ -156,6 +159,8 @@ impl Run {
         let foot = feet.fold(0.0, f64::max);
         self.peak_foot_force = self.peak_foot_force.max(foot);
         let looking = matches!(phase, Phase::PreLanding | Phase::Landing);
+        self.took_off |= (looking || phase == Phase::Flight) && foot <= TOUCHDOWN;
+        let looking = looking && self.took_off;
         if self.first_contact.is_none() && looking && foot > TOUCHDOWN {
             self.first_contact = Some(step.time);
         }

@@ -113,8 +113,12 @@ impl Judged {
                 "fault",
                 fault.to_string(),
             ));
+        } else if !run.took_off {
+            let found = "the feet did not leave the ground";
+            gravest.push(Failure::new(end, "no_takeoff", found));
         } else if run.first_contact.is_none() {
-            gravest.push(Failure::new(end, "no_touchdown", "the ground did not come"));
+            let found = "no foot touched the ground after the flight";
+            gravest.push(Failure::new(end, "no_touchdown", found));
         }
         let allowed: &[&str] = if task.trunk_may_touch {
             &["trunk"]
@@ -133,7 +137,8 @@ impl Judged {
         let turned = |s: &Sample| between(&task.rot_goal, &s.orientation.to_rotation_matrix());
         Self {
             verdict: Verdict::new(
-                flight(&task.robot, reference, &run.samples),
+                // Of a run that ended before its flight there is none to tell of.
+                flight(&task.robot, reference, &run.samples).filter(|_| run.took_off),
                 stand,
                 run.hardware.found(allowed),
                 gravest,
@@ -153,8 +158,8 @@ impl Judged {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
-    use crate::quadruped::OWNERS;
+    use super::{Judged, Quadruped, Run, SETTLE, Sample, State, Task, middle_of_feet, stand};
+    use crate::quadruped::{OWNERS, Planned};
     use crate::verdict::{Found, Verdict};
     use jump_control::Phase;
     use nalgebra::Vector3;
@@ -203,6 +208,28 @@ mod tests {
         assert!((leaning.base.translation - there.base.translation).norm() < 1e-12);
         let verdict = Verdict::new(None, Some(bad), Found::default(), Vec::new());
         assert_eq!(verdict.outcome(), "stand.feet_m", "{}", bad.feet);
+    }
+
+    /// A push-off too weak to lift the feet is no jump, and one that nobody lands has no stand; of neither a flight is told that there was not.
+    #[test]
+    fn a_robot_that_stays_on_the_ground_has_not_landed() {
+        const PLAN: &[u8] = include_bytes!("../../../firmware/probe/plans/a1-double-backflip.bin");
+        let planned = Planned::open(&Quadruped::a1().unwrap(), PLAN, Task::load).unwrap();
+        let (task, reference) = (&planned.task, &planned.reference);
+        let mut run = Run::new(task, 0, 1e-4);
+        run.final_phase = Phase::Stand;
+        run.samples = vec![sample(task, &task.start, reference.touchdown + SETTLE)];
+        let stays = Judged::of(task, reference, &run);
+        assert_eq!(stays.verdict.outcome(), "no_takeoff");
+        assert!(!stays.landed && stays.verdict.flight.is_none());
+        run.took_off = true;
+        let lost = Judged::of(task, reference, &run).verdict;
+        assert!(lost.flight.is_some() && lost.stand.is_none());
+        assert!(
+            lost.failures
+                .iter()
+                .any(|failure| failure.name == "no_touchdown")
+        );
     }
 
     #[test]

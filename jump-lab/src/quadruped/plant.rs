@@ -7,7 +7,7 @@ use contact_sim::{Geom, MujocoSimulator, NativeSimulator, Settings, Terrain};
 use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
 use jump_planner::terrain::terrain;
-use rbd_core::{Model, Tangent};
+use rbd_core::{Model, TableError, Tangent};
 
 /// A simulator of a quadruped.
 pub type Plant = lab::Plant<JOINTS, OWNERS>;
@@ -50,6 +50,18 @@ pub fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, 
     Ok(World::new(plant, moves))
 }
 
+/// What is wrong with a link whose inertia a plan does with, and a simulator does not.
+fn impossible(robot: &Quadruped, body: usize) -> String {
+    let moved = Model::joint_names(robot).get(body);
+    let link = moved.map_or_else(
+        || "the trunk".to_owned(),
+        |joint| format!("the link that {joint} moves"),
+    );
+    format!(
+        "{link} cannot be simulated: no body has its moments of inertia, of which each must be at most the sum of the two others; correct them in the URDF"
+    )
+}
+
 /// A robot over a ground, all of whose links collide: with the ground, and with each other but for those that touch in the posture
 /// `free`, in which the robot is known to stand free.
 ///
@@ -63,7 +75,10 @@ pub fn simulator(
 ) -> Result<Plant, String> {
     let mut settings = settings(robot, disturbance);
     let pairs = contact_sim::self_contacts(robot, &robot.shapes, free);
-    let disturbed = lab::robot(disturbance, robot)?;
+    let disturbed = lab::robot(disturbance, robot).map_err(|error| match error {
+        TableError::BadInertia { body } => impossible(robot, body),
+        error => error.to_string(),
+    })?;
     match sim {
         Sim::Native => {
             let native = NativeSimulator::new(disturbed, robot.shapes, *terrain, settings);

@@ -156,9 +156,6 @@ impl Verdict {
             );
         }
         if let Some(s) = &stand {
-            if !s.upright {
-                judge(s.time, "stand.upright", f64::NAN, FALLEN, "deg");
-            }
             judge(s.time, "stand.feet_m", s.feet, limits.feet, "m");
             judge(s.time, "stand.heading_deg", s.heading, limits.angle, "deg");
             judge(s.time, "stand.height_m", s.height, limits.height, "m");
@@ -169,6 +166,9 @@ impl Verdict {
                 limits.angle,
                 "deg",
             );
+        }
+        if let Some(fallen) = stand.filter(|stand| !stand.upright) {
+            failures.push(Failure::new(fallen.time, "stand.upright", "fell"));
         }
         failures.sort_by(|a, b| a.time.total_cmp(&b.time));
         Self {

@@ -69,6 +69,11 @@ pub enum RobotError {
         "joint {0} does not belong to a leg: four legs of three revolute joints must hang from the base"
     )]
     NotALeg(String),
+    /// A joint without a motor of its own.
+    #[error(
+        "joint {0} follows another one (<mimic>): every joint of a leg needs a motor of its own"
+    )]
+    Follows(String),
     /// Nothing tells how long a shank is.
     #[error(
         "joint {0}: nothing on the link that it moves tells where the foot is; give the foot a link of its own, fixed to it, or a sphere in the <collision> of the link"

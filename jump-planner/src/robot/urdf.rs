@@ -17,6 +17,7 @@ use rbd_core::{
     forward_kinematics,
 };
 use roxmltree::{Document, Node};
+use so3::euler::RollPitchYaw;
 use std::path::Path;
 
 /// Leg below its hip in the posture from which standing postures are searched, as a share of the leg.
@@ -155,6 +156,9 @@ fn check_legs(robot: &Robot) -> Result<(), RobotError> {
             names: names().collect::<Vec<_>>().join(", "),
         });
     }
+    if let Some(i) = robot.couplings.iter().position(Option::is_some) {
+        return Err(RobotError::Follows(robot.joints[i].name.clone()));
+    }
     for (i, body) in robot.bodies.iter().enumerate() {
         let parent = match i % 3 {
             0 => Link::Base,
@@ -170,7 +174,7 @@ fn check_legs(robot: &Robot) -> Result<(), RobotError> {
 /// The feet and their radius: of each leg the frame farthest from the last joint, or the ball there.
 fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f64), RobotError> {
     let mut feet = [Frame::IDENTITY; LEGS];
-    let mut foot_radius = POINT;
+    let mut radii = [POINT; LEGS];
     for (leg, foot) in feet.iter_mut().enumerate() {
         let last = Link::Joint(3 * leg + 2);
         let reach = |frame: &Frame<f64>| Vector3::from(frame.offset).norm();
@@ -180,7 +184,7 @@ fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f
             .ok_or_else(|| RobotError::NotALeg(robot.joints[3 * leg + 2].name.clone()))?;
         *foot = tip.frame;
         if let Some((radius, centre)) = ball(document, &tip.name)? {
-            foot_radius = radius;
+            radii[leg] = radius;
             foot.offset = tip.frame.placement().point(&centre).into();
         }
         let thigh = Vector3::from(robot.bodies[3 * leg + 2].offset).norm();
@@ -190,7 +194,19 @@ fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f
         }
         foot.rotation = Frame::IDENTITY.rotation;
     }
-    Ok((feet, foot_radius))
+    let [first, ..] = radii;
+    match radii.iter().position(|radius| *radius != first) {
+        None => Ok((feet, first)),
+        Some(leg) => Err(RobotError::Size {
+            what: "foot's radius, m",
+            error: format!(
+                "must be that of all four feet, not {first} with joint {} and {} with joint {}",
+                robot.joints[2].name,
+                radii[leg],
+                robot.joints[3 * leg + 2].name
+            ),
+        }),
+    }
 }
 
 /// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.
@@ -283,11 +299,11 @@ fn vector(node: Option<Node<'_, '_>>, name: &str) -> Vector3<f64> {
     Vector3::from_iterator(numbers.chain([0.0; 3]).take(3))
 }
 
-/// Shapes in the collision elements of a link, with the centre of each in the link's frame, m.
+/// Shapes in the collision elements of a link, with the place of each in the link's frame, m.
 fn shapes<'a>(
     document: &'a Document<'a>,
     link: &'a str,
-) -> impl Iterator<Item = (Node<'a, 'a>, Vector3<f64>)> {
+) -> impl Iterator<Item = (Node<'a, 'a>, Transform<f64>)> {
     let is_link = move |node: &Node<'_, '_>| {
         node.has_tag_name("link") && node.attribute("name") == Some(link)
     };
@@ -297,18 +313,19 @@ fn shapes<'a>(
     collisions.filter_map(|collision| {
         let child = |name: &'static str| collision.children().find(|n| n.has_tag_name(name));
         let shape = child("geometry")?.children().find(Node::is_element)?;
-        Some((shape, vector(child("origin"), "xyz")))
+        let [xyz, rpy] = ["xyz", "rpy"].map(|name| vector(child("origin"), name));
+        Some((shape, Transform::new(RollPitchYaw::Zyx.rotation(&rpy), xyz)))
     })
 }
 
 /// Radius and centre of the ball of a foot, in the frame of its link, m.
 fn ball(document: &Document<'_>, link: &str) -> Result<Option<(f64, Vector3<f64>)>, RobotError> {
     let sphere = shapes(document, link).find(|(shape, _)| shape.has_tag_name("sphere"));
-    let Some((shape, centre)) = sphere else {
+    let Some((shape, place)) = sphere else {
         return Ok(None);
     };
     let [radius] = measures(shape, link, "radius")?;
-    Ok(Some((radius, centre)))
+    Ok(Some((radius, place.translation)))
 }
 
 /// Measures of a collision shape, m.
@@ -350,7 +367,7 @@ fn trunk(
     let mut pose = Transform::IDENTITY;
     let mut largest = 0.0;
     for frame in robot.frames.iter().filter(|f| f.frame.link == Link::Base) {
-        for (shape, centre) in shapes(document, &frame.name) {
+        for (shape, place) in shapes(document, &frame.name) {
             if !shape.has_tag_name("box") {
                 continue;
             }
@@ -358,8 +375,7 @@ fn trunk(
             if size.product() > largest {
                 largest = size.product();
                 half = size * 0.5;
-                pose = frame.frame.placement();
-                pose.translation = pose.point(&centre);
+                pose = frame.frame.placement().compose(&place);
             }
         }
     }

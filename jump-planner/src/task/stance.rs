@@ -27,7 +27,26 @@ pub(super) fn points(
             *point = Vector3::new(*x, *y, 0.0);
         }
     }
+    apart(robot, &points_w).map_err(|what| ("feet_m".to_owned(), what))?;
     Ok(points_w)
+}
+
+/// Refuses feet that stand in each other: a simulator would take them for free.
+fn apart(robot: &Quadruped, points_w: &[Vector3<f64>; FOOT_COUNT]) -> Result<(), String> {
+    let wide = 2.0 * robot.foot_radius;
+    for (i, one) in points_w.iter().enumerate() {
+        for (j, other) in points_w.iter().enumerate().skip(i + 1) {
+            let far = (one - other).norm();
+            if far < wide {
+                return Err(format!(
+                    "{} and {} would stand {far:.3} m apart, and their feet are {wide:.3} m wide: put them farther apart",
+                    robot.place(i),
+                    robot.place(j)
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The robot standing on its feet, its centre of mass over the origin, and that.
@@ -67,10 +86,11 @@ impl Task {
     /// mass begins and ends where it did.
     ///
     /// # Errors
-    /// A sentence: a foot that no leg reaches, or a joint beyond its limit.
+    /// A sentence: feet in each other, a foot that no leg reaches, or a joint beyond its limit.
     pub fn from_feet(&self, feet_w: &[Vector3<f64>; FOOT_COUNT]) -> Result<Self, String> {
         let mut task = self.clone();
         let points_w = feet_w.map(|foot| Vector3::new(foot.x, foot.y, 0.0));
+        apart(&self.robot, &points_w)?;
         let (robot, problem) = (&self.robot, &mut task.problem);
         task.start = robot.stand(&problem.start_w, &points_w)?;
         let com_b = problem.start_w - task.start.base.translation;
@@ -133,6 +153,32 @@ mod tests {
             file.feet_m = Some([[0.18, 0.13], [0.18, -0.13], [-0.18, far], [-0.18, -0.13]]);
             let refused = Task::from_file("mine", &file, robot).err().unwrap();
             assert!(refused.to_string().contains("feet_m"), "{refused}");
+        }
+    }
+
+    #[test]
+    fn feet_in_each_other_are_refused_by_name() {
+        let (mut file, _) = TaskFile::load("a1/lateral").unwrap();
+        let robot = Quadruped::a1().unwrap();
+        let task = Task::from_file("below", &file, robot).unwrap();
+        for (gap, stands) in [(0.041, true), (0.039, false), (0.0, false)] {
+            let feet = [
+                [0.18, 0.13],
+                [0.18, -0.13],
+                [-0.18, 0.5 * gap],
+                [-0.18, -0.5 * gap],
+            ];
+            file.feet_m = Some(feet);
+            let by_file = Task::from_file("mine", &file, robot);
+            let by_call = task.from_feet(&feet.map(|[x, y]| Vector3::new(x, y, 0.0)));
+            assert_eq!(
+                (by_file.is_ok(), by_call.is_ok()),
+                (stands, stands),
+                "{gap}"
+            );
+            if let Err(refused) = by_file {
+                assert!(refused.to_string().contains("RL and RR"), "{refused}");
+            }
         }
     }
 

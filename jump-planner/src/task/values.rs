@@ -3,7 +3,7 @@
 
 use super::file::{LimitsTable, WeightsTable};
 use crate::range::Range::{self, Above, From};
-use crate::range::{Unusable, within};
+use crate::range::{Unusable, require, within};
 
 /// Lengths and displacements, m.
 pub(crate) const LENGTH: Range = From(-100.0, 100.0);
@@ -33,7 +33,12 @@ pub(crate) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
     let shares = limits.torque_shares.iter();
     shares
         .copied()
-        .try_for_each(|x| within(x, SHARE, "limits.torque_shares"))
+        .try_for_each(|x| within(x, SHARE, "limits.torque_shares"))?;
+    require(
+        limits.torque_shares.is_sorted(),
+        "limits.torque_shares",
+        &format!("must be rising, not {:?}", limits.torque_shares),
+    )
 }
 
 pub(crate) fn weights(weights: &WeightsTable) -> Result<(), Unusable> {
