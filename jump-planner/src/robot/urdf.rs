@@ -84,7 +84,7 @@ impl Quadruped {
         size("mass, kg", Range::Above(0.01, 1e4), robot.mass())?;
         let table: TableModel<f64, JOINTS> = robot.model()?;
         let document = Document::parse(text)?;
-        let (feet, foot_radius) = feet(robot, &document)?;
+        let (feet, radii) = feet(robot, &document)?;
         // Where joints and feet are with all joints at zero: frames of links need not be parallel to the base's.
         let mut zero: Kinematics<f64, JOINTS> = Kinematics::IDENTITY;
         forward_kinematics(&table, &Posture::new(&table, &State::NEUTRAL), &mut zero);
@@ -101,6 +101,8 @@ impl Quadruped {
         };
         let leg_length = (0..LEGS).map(length).fold(f64::INFINITY, f64::min);
         size("leg's length, m", Range::Above(0.01, 100.0), leg_length)?;
+        let ball = Range::Above(0.0, leg_length);
+        let foot_radius = one_radius(robot, &radii, ball)?;
         let limits: [JointLimits<f64>; JOINTS] = core::array::from_fn(|i| robot.joints[i].limits);
         let strongest = limits
             .iter()
@@ -131,7 +133,6 @@ impl Quadruped {
         named
             .into_iter()
             .try_for_each(|(name, limits)| check_limits(name, limits))?;
-        let ball = Range::Above(0.0, leg_length);
         size("foot's radius, m", ball, data.foot_radius)?;
         data.seed = seed(&data)?;
         data.shapes = hardware::shapes(&data);
@@ -171,8 +172,11 @@ fn check_legs(robot: &Robot) -> Result<(), RobotError> {
     Ok(())
 }
 
-/// The feet and their radius: of each leg the frame farthest from the last joint, or the ball there.
-fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f64), RobotError> {
+/// The feet and their radii: of each leg the frame farthest from the last joint, or the ball there.
+fn feet(
+    robot: &Robot,
+    document: &Document<'_>,
+) -> Result<([Frame<f64>; LEGS], [f64; LEGS]), RobotError> {
     let mut feet = [Frame::IDENTITY; LEGS];
     let mut radii = [POINT; LEGS];
     for (leg, foot) in feet.iter_mut().enumerate() {
@@ -194,19 +198,28 @@ fn feet(robot: &Robot, document: &Document<'_>) -> Result<([Frame<f64>; LEGS], f
         }
         foot.rotation = Frame::IDENTITY.rotation;
     }
-    let [first, ..] = radii;
-    match radii.iter().position(|radius| *radius != first) {
-        None => Ok((feet, first)),
-        Some(leg) => Err(RobotError::Size {
-            what: "foot's radius, m",
-            error: format!(
-                "must be that of all four feet, not {first} with joint {} and {} with joint {}",
-                robot.joints[2].name,
-                radii[leg],
-                robot.joints[3 * leg + 2].name
-            ),
-        }),
-    }
+    Ok((feet, radii))
+}
+
+/// The radius of all feet, m.
+fn one_radius(robot: &Robot, radii: &[f64; LEGS], ball: Range) -> Result<f64, RobotError> {
+    let what = "foot's radius, m";
+    radii
+        .iter()
+        .try_for_each(|radius| size(what, ball, *radius))?;
+    let [first, ..] = *radii;
+    let Some(leg) = radii.iter().position(|radius| *radius != first) else {
+        return Ok(first);
+    };
+    Err(RobotError::Size {
+        what,
+        error: format!(
+            "must be that of all four feet, not {first} with joint {} and {} with joint {}",
+            robot.joints[2].name,
+            radii[leg],
+            robot.joints[3 * leg + 2].name
+        ),
+    })
 }
 
 /// Limits that the plan keeps to: without them, or with those of no motor, it would promise anything.
