@@ -73,7 +73,7 @@ pub struct Drop {
 pub struct End {
     /// Tilt below 10° after three seconds.
     pub upright: bool,
-    /// What touched the ground at any time, in the order of [`Quadruped::owners`].
+    /// What touched the ground at any time, in the order of the `owners` of a [`Quadruped`].
     pub touched: [bool; OWNERS],
     /// Slower than 5 cm/s after three seconds.
     pub at_rest: bool,
