@@ -124,12 +124,12 @@ fn planned(
             let srb = &*out.srb.insert(found);
             if srb.status != Status::Solved {
                 let blocked = Answer::no_body_plan(task, srb);
-                out.answer = Some(match End::of(srb.status, &late) {
-                    End::Itself
-                        if observe(Step::Relaxations, None).is_break() && late.get().is_none() =>
-                    {
-                        Answer::cancelled()
-                    }
+                let end = End::of(srb.status, &late);
+                let unwanted = matches!(end, End::Itself)
+                    && observe(Step::Relaxations, None).is_break()
+                    && late.get().is_none();
+                out.answer = Some(match end {
+                    End::Itself if unwanted => Answer::cancelled(),
                     End::Itself => {
                         let watch = |p: &_| observe(Step::Relaxations, Some(p));
                         blocked.with_easier_tasks(task, watch)

@@ -19,6 +19,7 @@ mod verdict;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use serde_json::json;
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
@@ -121,6 +122,10 @@ fn grammar(error: &clap::Error) -> ExitCode {
     // Help is as long as it is; what repeats an argument is cut, and then goes without colours.
     let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     let told = cmd::failure::brief(&text);
+    // What is refused is not read any further, so that nobody else knows that JSON was asked for.
+    if error.use_stderr() && !is_help && std::env::args_os().any(|word| word == "--json") {
+        say!("{}", json!({ "status": "Error", "error": told.trim_end() }));
+    }
     if is_help || !error.use_stderr() || told.len() + text.lines().count() >= text.len() {
         stream::clap(error);
     } else {

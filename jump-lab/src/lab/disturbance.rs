@@ -64,6 +64,13 @@ impl Disturbance {
         self
     }
 
+    /// This, on ground of this friction where nothing else was said.
+    #[must_use]
+    pub fn on_ground(mut self, friction: f64) -> Self {
+        self.0[Key::Friction as usize].get_or_insert(friction);
+        self
+    }
+
     fn set(&mut self, item: &str, name: &str, value: &str) -> Result<(), String> {
         let row = ROWS.iter().find(|row| row.name == name).ok_or_else(|| {
             let names: Vec<&str> = ROWS.iter().map(|row| row.name).collect();

@@ -32,12 +32,13 @@ pub fn ground(task: &Task, disturbance: &Disturbance) -> Terrain<f64> {
     terrain(task, height_error(disturbance))
 }
 
-/// The plant at the start of a task.
+/// The plant at the start of a task, on ground as rough as the task says unless `disturbance` says otherwise.
 ///
 /// # Errors
 /// What stands against the disturbed robot or the simulator.
 pub fn plant(sim: Sim, task: &Task, disturbance: &Disturbance) -> Result<World, String> {
     let terrain = ground(task, disturbance);
+    let disturbance = &disturbance.on_ground(task.limits.friction);
     let mut plant = simulator(sim, &task.robot, (&terrain, &task.start), disturbance)?;
     plant.reset(&task.start, &Tangent::ZERO);
     // A box has its own height; a floor that is start and landing has to move.

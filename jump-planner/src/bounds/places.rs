@@ -9,6 +9,9 @@ use nalgebra::{Matrix3, Vector3};
 use rbd_core::Transform;
 use srb_opt::Foot;
 
+/// How much farther beyond an edge a goal is sought that has room, m.
+const FAR: f64 = 2.0;
+
 pub(super) fn feet<const P: usize>(problem: &Body<P>, facts: &Facts) -> Option<Impossible> {
     let edge = problem.edge.filter(|edge| edge.drop != 0.0)?;
     let stands = |i: usize| problem.used_phases().iter().any(|phase| phase.contacts[i]);
@@ -114,10 +117,39 @@ pub(super) fn goal<const P: usize>(problem: &Body<P>, _: &Facts) -> Option<Impos
         because: format!(
             "at the goal the trunk is {below:.3} m lower than the ground and the clearance allow"
         ),
-        relaxation: format!(
-            "the goal would have to be at least {below:.3} m higher, or the box that much lower"
-        ),
+        relaxation: match beyond_edge(problem, turn.matrix()) {
+            Some(missing) => {
+                format!("the goal would have to be {missing:.3} m farther beyond the edge")
+            }
+            None => format!(
+                "the goal would have to be at least {below:.3} m higher, or the clearance that much less"
+            ),
+        },
     })
+}
+
+/// How much farther beyond the edge of its box the goal has room for the trunk, m; none without a box, or where there is none within
+/// [`FAR`].
+fn beyond_edge<const P: usize>(problem: &Body<P>, rot_wb: &Matrix3<f64>) -> Option<f64> {
+    let edge = problem.edge?;
+    let has_room = |farther: f64| {
+        let mut goal_w = problem.goal_w;
+        goal_w[edge.axis] += edge.sign * farther;
+        trunk_below(problem, &goal_w, rot_wb) <= SLACK
+    };
+    let (mut low, mut high) = (0.0, FAR);
+    if !has_room(high) {
+        return None;
+    }
+    while high - low > 1e-3 {
+        let middle = 0.5 * (low + high);
+        if has_room(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high)
 }
 
 /// Feet that come down before the edge of a box, in the posture in which the legs land: beyond what the goal's tolerance forgives.

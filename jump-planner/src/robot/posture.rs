@@ -145,7 +145,7 @@ impl Quadruped {
     ///
     /// # Errors
     /// As [`Quadruped::stand`].
-    pub fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
+    pub(crate) fn landing_joints(&self, near: &State) -> Result<[f64; JOINTS], String> {
         self.joints_with(near, &self.landing_feet())
     }
 

@@ -178,6 +178,11 @@ impl BudgetsTable {
             *slot = time("saturation_ms", Some(*x), 0.0)?;
         }
         let any = Above(0.0, f64::INFINITY);
+        if self.winding_heat_j.is_some() && self.resistance_ohm.is_none() && rule.resistance == 0.0
+        {
+            let what = "is a budget of what motors lose in their windings: give resistance_ohm and torque_constant_nm_a too";
+            return Err(("budgets.winding_heat_j".to_owned(), what.to_owned()));
+        }
         Ok(Budgets {
             saturation,
             stop_time: time("stop_ms", self.stop_ms, rule.stop_time)?,
@@ -404,6 +409,11 @@ mod tests {
                 "stop_ms = 10",
                 "stop_ms = -1",
                 ["budgets.stop_ms", "from 0"],
+            ),
+            (
+                "resistance_ohm",
+                "# resistance_ohm",
+                ["budgets.winding_heat_j", "give resistance_ohm"],
             ),
             ("mass_kg", "mass", ["mass_kg", "line"]),
             (

@@ -27,7 +27,8 @@ pub(super) fn points(
             *point = Vector3::new(*x, *y, 0.0);
         }
     }
-    apart(robot, &points_w).map_err(|what| ("feet_m".to_owned(), what))?;
+    let culprit = file.feet_m.map_or("robot", |_| "feet_m");
+    apart(robot, &points_w).map_err(|what| (culprit.to_owned(), what))?;
     Ok(points_w)
 }
 

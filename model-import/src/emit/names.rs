@@ -28,7 +28,8 @@ pub fn type_name(name: &str) -> String {
         .map(|w| w[..1].to_ascii_uppercase() + &w[1..])
         .collect();
     match text.chars().next() {
-        Some(c) if c.is_ascii_alphabetic() => text,
+        // `Self` is the one keyword that is written like a type.
+        Some(c) if c.is_ascii_alphabetic() && text != "Self" => text,
         _ => format!("Robot{text}"),
     }
 }
@@ -61,6 +62,7 @@ mod tests {
         assert_eq!(constant("_x"), "N_X");
         assert_eq!(type_name("icub-23 arm_v2"), "Icub23ArmV2");
         assert_eq!(type_name("7dof"), "Robot7dof");
+        assert_eq!(type_name("self"), "RobotSelf");
         let names = distinct(["a-b", "a_b", "a.b"].into_iter());
         assert_eq!(names, ["A_B", "A_B_2", "A_B_3"]);
     }

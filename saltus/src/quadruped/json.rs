@@ -26,7 +26,7 @@ pub(crate) fn json(
         "interface": trial.interface.to_string(),
         "robot": task.robot.name,
         "placeholders": task.robot.placeholders(),
-        "plant": plant::json(&trial.disturbance),
+        "plant": plant::json(&trial.disturbance.on_ground(task.limits.friction)),
         "on_target": verdict.on_target(),
         "verdict": verdict.json(),
         "landed": judged.landed,

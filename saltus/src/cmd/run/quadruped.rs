@@ -18,7 +18,7 @@ use jump_planner::bounds::impossible;
 use jump_planner::planned::{Origin, Planner};
 use jump_planner::reference::Reference;
 use jump_planner::robot::{JOINTS, Quadruped};
-use jump_planner::stored::{joint_name, open_for};
+use jump_planner::stored::{Stored, joint_name, open_for};
 use jump_planner::task::{SrbPlan, Task};
 use serde_json::json;
 use std::path::Path;
@@ -142,14 +142,11 @@ fn refusal(robot: &Quadruped, reference: &Reference) -> Result<Option<String>, S
 fn read(path: &Path, args: &Args) -> Result<Made, String> {
     let bytes = jump_planner::file::read(path).map_err(|error| describe(path, &error))?;
     let show = |error: &dyn core::fmt::Display| format!("{}: {error}", path.display());
-    let robot = args
-        .robot
-        .as_deref()
-        .map_or_else(Quadruped::a1, |urdf| Quadruped::load(urdf, &args.lock));
-    let robot = robot.map_err(|error| match &args.robot {
-        Some(urdf) => format!("{}: {error}", urdf.display()),
-        None => error.to_string(),
-    })?;
+    let robot = match &args.robot {
+        Some(urdf) => Quadruped::load(urdf, &args.lock)
+            .map_err(|error| format!("{}: {error}", urdf.display()))?,
+        None => own_robot(&bytes, args)?,
+    };
     let planned = Planned::open(&robot, &bytes, |stored| {
         let name = args.task.as_deref().unwrap_or(stored);
         Task::load_for(name, args.robot.as_deref(), &args.lock)
@@ -162,6 +159,18 @@ fn read(path: &Path, args: &Args) -> Result<Made, String> {
         reference,
         complaint: None,
     })
+}
+
+/// The robot of a stored plan's task, where that can be read, and A1 where not.
+fn own_robot(bytes: &[u8], args: &Args) -> Result<Quadruped, String> {
+    let stored = Stored::read(bytes).ok();
+    let stored = stored.as_ref().map(|plan| plan.header().task);
+    let name = args.task.as_deref().or(stored);
+    let task = name.and_then(|name| Task::load_for(name, None, &args.lock).ok());
+    match task {
+        Some(task) => Ok(task.robot),
+        None => Quadruped::a1().map_err(|error| error.to_string()),
+    }
 }
 
 /// Tells why there is nothing to execute.
