@@ -4,7 +4,7 @@ use super::FOOT_COUNT;
 use super::Observe;
 use super::kept::Kept;
 use super::pace::Pace;
-use super::setup::{N, NI, NU, NX, Setup, times};
+use super::setup::{N, NI, NU, NX, Setup, times, whole};
 use super::task::{PHASES, SrbPlan, Task};
 use crate::apart::Separation;
 use crate::audit::Audit;
@@ -59,7 +59,7 @@ pub(crate) struct Grid<'a> {
 impl<'a> Grid<'a> {
     /// On intervals of this many usual lengths, with the motion of the rigid body as the guess.
     pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: f64) -> Self {
-        let mut grid = Self::of(task, timing, Setup::new(task, srb, lengths));
+        let mut grid = Self::of(task, timing, Setup::new(task, srb, timing, lengths));
         grid.guess();
         grid
     }
@@ -90,7 +90,7 @@ impl<'a> Grid<'a> {
 
     /// On the intervals of an earlier plan, from its motion and multipliers.
     pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Self {
-        let setup = Setup::on(task, srb, &kept.intervals, (kept.lengths, kept.lift));
+        let setup = Setup::on(task, srb, &kept.intervals, kept.lift);
         let mut grid = Self::of(task, Timing::Given, setup);
         grid.stages.clone_from(&kept.stages);
         grid.torque_share = kept.torque_share;
@@ -102,11 +102,11 @@ impl<'a> Grid<'a> {
     /// were unknowns.
     pub(crate) fn kept(self, drawn: Tightening) -> Option<Kept> {
         let solved = self.path.last()?.status == Status::Solved;
+        let phases = self.task.problem.used_phases().iter();
         (solved && self.timing == Timing::Given).then(|| Kept {
             body: self.setup.srb.stages.clone(),
-            contacts: self.setup.phases.iter().map(|p| p.contacts).collect(),
+            contacts: phases.map(|phase| phase.contacts).collect(),
             intervals: self.setup.phases.iter().map(|p| p.intervals).collect(),
-            lengths: self.setup.lengths,
             lift: self.setup.lift,
             stages: self.stages,
             torque_share: self.torque_share,
@@ -119,6 +119,13 @@ impl<'a> Grid<'a> {
     pub(crate) fn keep_apart(&mut self, audit: &Audit) -> bool {
         let kept = audit.overlaps.iter().map(|pair| self.apart.keep(pair));
         kept.fold(false, |any, kept| any | kept)
+    }
+
+    /// What an audit has against the last solve.
+    pub(crate) fn note(&mut self, audit: Option<&Audit>) {
+        if let (Some(last), Some(audit)) = (self.path.last_mut(), audit) {
+            last.complaint = (!audit.passes()).then(|| audit.complaint());
+        }
     }
 
     /// The motion of the rigid body.
@@ -329,6 +336,7 @@ impl<'a> Grid<'a> {
             drawn: *drawn,
             apart: self.apart.count(),
             status: plan.outcome.status,
+            complaint: None,
             iterations: plan.outcome.iterations,
             wall_ms: clock.elapsed().as_secs_f64() * 1e3,
         });
@@ -362,7 +370,7 @@ impl<'a> Grid<'a> {
         if self.timing == Timing::Given {
             let outcome = problem.plan(settings, &mut self.stages, watch);
             let outcome = (outcome.map_err(told)?, self.torque_share);
-            return finish(&problem, outcome, &self.stages, |state| state);
+            return finish((self.task, &problem), outcome, &self.stages, |state| state);
         }
         let free = free_timing(self.task, problem);
         let outcome = free.plan(settings, &mut self.timed, watch);
@@ -375,7 +383,9 @@ impl<'a> Grid<'a> {
             phases: &phases,
             ..problem
         };
-        finish(&problem, outcome, &self.timed, |state| &state.state)
+        finish((self.task, &problem), outcome, &self.timed, |state| {
+            &state.state
+        })
     }
 }
 
@@ -426,7 +436,7 @@ fn free_timing<'a>(
 
 /// What the stages hold, in physical units.
 fn finish<S: Copy, const X: usize>(
-    problem: &Problem<'_, f64, N, FOOT_COUNT>,
+    (task, problem): (&Task, &Problem<'_, f64, N, FOOT_COUNT>),
     (mut outcome, torque_share): (Solution<f64>, f64),
     stages: &[SparseStage<f64, S, X, NU, NI>],
     state: impl Fn(&S) -> &State<f64, N>,
@@ -485,6 +495,6 @@ fn finish<S: Copy, const X: usize>(
         judged: problem.judge(nodes),
         torque_limit: strongest.fold(0.0, f64::max),
         intervals: intervals.collect(),
-        phases: problem.phases.to_vec(),
+        phases: whole(task, problem.phases),
     })
 }

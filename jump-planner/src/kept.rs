@@ -15,11 +15,10 @@ use wb_opt::State;
 pub struct Kept {
     /// Nodes of the rigid body's plan.
     pub(crate) body: Vec<SrbStage>,
-    /// Feet on the ground, and number of intervals, of every phase.
+    /// Feet on the ground in every phase.
     pub(crate) contacts: Vec<[bool; FOOT_COUNT]>,
+    /// Number of intervals of every part of the phases.
     pub(crate) intervals: Vec<usize>,
-    /// Length of the intervals over the usual one.
-    pub(crate) lengths: f64,
     /// Height over the ground that feet keep on their way, m.
     pub(crate) lift: f64,
     /// Nodes of the whole body's plan.

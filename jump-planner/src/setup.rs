@@ -9,6 +9,7 @@ use crate::robot::State;
 use crate::stops::keep_away;
 use crate::tightening::Tightening;
 use crate::track::Track;
+use crate::whole_body::Timing;
 use nalgebra::Vector3;
 use rbd_core::Transform;
 use so3::math;
@@ -26,10 +27,21 @@ const CLEARANCES: usize = 12;
 pub(crate) const PAIRS: usize = 12;
 pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES + PAIRS, true);
 
-/// Longest interval in contact, s. Plans on twice the length pass their audit, but fewer of them survive the lab.
-const CONTACT_DT: f64 = 0.005;
-/// Longest interval in flight, s: no forces change, but the turn must be right. At twice the length a double turn is 1.2° off.
-const FLIGHT_DT: f64 = 0.005;
+/// Length of the intervals that the weights of tasks are for, s, and the longest one where the motion is fast. With twice the length throughout,
+/// plans pass their audit, but fewer of them survive the lab.
+const FAST_DT: f64 = 0.005;
+/// Longest interval in the crouch, s, where forces hardly change. With 10 ms far jumps take twice the iterations.
+const CROUCH_DT: f64 = 0.0075;
+/// Longest interval in flight, s, where there are no forces.
+const FLIGHT_DT: f64 = 0.01;
+/// Share of the first phase, at its end, in which the robot pushes off.
+const PUSHING: f64 = 0.4;
+/// Share of the flight, at its beginning, in which the legs are drawn up: in long intervals a light shank would turn faster between nodes than
+/// it may.
+const LEAVING: f64 = 0.3;
+/// Farthest that a plan turns in a long interval of its flight, rad: what its end is wrong by grows with the square of that, to 1 degree of
+/// two turns.
+const MOST_TURN: f64 = 0.08;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub const POSED: f64 = 0.05;
 /// Height over the ground that feet keep on their way, m: ground that gives way would catch what hovers.
@@ -53,6 +65,73 @@ pub const FRICTION_SMOOTHING: f64 = 0.3;
 /// [`goal`](crate::task::file::WeightsTable::goal) weight: at a robot's limit all, otherwise millimetres.
 pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 
+/// A part of a task's time with intervals of one length.
+struct Span {
+    contacts: [bool; FOOT_COUNT],
+    duration: f64,
+    /// Longest interval, s.
+    longest: f64,
+}
+
+impl Span {
+    /// On this many intervals.
+    fn phase(&self, intervals: usize) -> Phase<f64, FOOT_COUNT> {
+        let dt = self.duration / intervals as f64;
+        Phase {
+            contacts: self.contacts,
+            intervals,
+            dt,
+            weight: dt / FAST_DT,
+        }
+    }
+}
+
+/// The phases of a task in order, all with intervals of one length; or the first and the last one in two parts, of which the slow one has longer
+/// ones: the robot crouches and pushes off, draws up its legs and flies.
+fn spans(task: &Task, srb: &SrbPlan, is_graded: bool) -> Vec<Span> {
+    let phases = task.problem.used_phases();
+    let is_graded = is_graded && phases.len() > 1;
+    let last = phases.len().saturating_sub(1);
+    let spans = phases.iter().zip(durations(srb)).enumerate();
+    let parts = spans.flat_map(|(i, (phase, duration))| {
+        let span = |share: f64, longest: f64| Span {
+            contacts: phase.contacts,
+            duration: share * duration,
+            longest,
+        };
+        let flying = FLIGHT_DT.min(MOST_TURN * duration / task.problem.angle.abs());
+        if is_graded && i == 0 {
+            vec![span(1.0 - PUSHING, CROUCH_DT), span(PUSHING, FAST_DT)]
+        } else if is_graded && i == last {
+            let leaving = span(LEAVING, FAST_DT.min(flying));
+            vec![leaving, span(1.0 - LEAVING, flying)]
+        } else {
+            vec![span(1.0, FAST_DT)]
+        }
+    });
+    parts.collect()
+}
+
+/// The phases of a task that these parts are of, with the mean length of their intervals.
+pub(crate) fn whole(task: &Task, parts: &[Phase<f64, FOOT_COUNT>]) -> Vec<Phase<f64, FOOT_COUNT>> {
+    if parts.len() <= task.problem.used_phases().len() {
+        return parts.to_vec();
+    }
+    let (first, others) = parts.split_at(2);
+    let (middle, last) = others.split_at(others.len() - 2);
+    let phases = [first].into_iter().chain(middle.chunks(1)).chain([last]);
+    let together = phases.map(|parts| {
+        let intervals = parts.iter().map(|part| part.intervals).sum();
+        let duration: f64 = parts.iter().map(|p| p.dt * p.intervals as f64).sum();
+        Phase {
+            intervals,
+            dt: duration / intervals as f64,
+            ..parts[0]
+        }
+    });
+    together.collect()
+}
+
 /// What the problem borrows, and the guess that comes with it.
 pub(crate) struct Setup<'a> {
     task: &'a Task,
@@ -67,8 +146,6 @@ pub(crate) struct Setup<'a> {
     clearances: Vec<Clearance<f64>>,
     goal: Pose<f64, N>,
     landing_intervals: usize,
-    /// Length of the intervals over the usual one.
-    pub(crate) lengths: f64,
     /// Height over the ground that feet keep on their way, m.
     pub(crate) lift: f64,
 }
@@ -96,22 +173,14 @@ pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
 
 impl<'a> Setup<'a> {
     /// On intervals of this many usual lengths.
-    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, lengths: f64) -> Self {
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: f64) -> Self {
         let rigid = &task.problem;
-        let mut phases = Vec::new();
-        for (phase, duration) in rigid.used_phases().iter().zip(durations(srb)) {
-            let longest = if phase.contacts.contains(&true) {
-                CONTACT_DT
-            } else {
-                FLIGHT_DT
-            };
-            let intervals = (duration / (lengths * longest)).ceil().max(1.0);
-            phases.push(Phase {
-                contacts: phase.contacts,
-                intervals: intervals as usize,
-                dt: duration / intervals,
+        let phases = spans(task, srb, lengths == 1.0 && timing == Timing::Given)
+            .into_iter()
+            .map(|span| {
+                let intervals = (span.duration / (lengths * span.longest)).ceil().max(1.0);
+                span.phase(intervals as usize)
             });
-        }
         // On long intervals begins the search for a jump that has no room for it.
         let lift = if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
             ONTO_LIFT
@@ -120,24 +189,19 @@ impl<'a> Setup<'a> {
         } else {
             LIFT
         };
-        Self::along(task, srb, phases, (lengths, lift))
+        Self::along(task, srb, phases.collect(), lift)
     }
 
-    /// On as many intervals as there were in every phase, of so many usual lengths, with feet that keep so high, m.
-    pub(crate) fn on(
-        task: &'a Task,
-        srb: &'a SrbPlan,
-        intervals: &[usize],
-        (lengths, lift): (f64, f64),
-    ) -> Self {
-        let phases = task.problem.used_phases().iter();
-        let phases = phases.zip(durations(srb)).zip(intervals);
-        let phases = phases.map(|((phase, duration), intervals)| Phase {
-            contacts: phase.contacts,
-            intervals: *intervals,
-            dt: duration / *intervals as f64,
-        });
-        Self::along(task, srb, phases.collect(), (lengths, lift))
+    /// In given durations, on as many intervals as there were in every part of them, with feet that keep so high, m.
+    pub(crate) fn on(task: &'a Task, srb: &'a SrbPlan, intervals: &[usize], lift: f64) -> Self {
+        let spans = spans(
+            task,
+            srb,
+            intervals.len() > task.problem.used_phases().len(),
+        );
+        let phases = spans.iter().zip(intervals);
+        let phases = phases.map(|(span, intervals)| span.phase(*intervals));
+        Self::along(task, srb, phases.collect(), lift)
     }
 
     /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.
@@ -145,11 +209,11 @@ impl<'a> Setup<'a> {
         let shorter = |phase: &Phase<f64, FOOT_COUNT>| Phase {
             intervals: parts * phase.intervals,
             dt: phase.dt / parts as f64,
+            weight: phase.weight / parts as f64,
             ..*phase
         };
         let phases = self.phases.iter().map(shorter).collect();
-        let lengths = self.lengths / parts as f64;
-        let mut split = Self::along(self.task, self.srb, phases, (lengths, self.lift));
+        let mut split = Self::along(self.task, self.srb, phases, self.lift);
         split.landing_intervals = parts * self.landing_intervals;
         for (phase, duration) in split.phases.iter_mut().zip(durations) {
             phase.dt = duration / phase.intervals as f64;
@@ -157,17 +221,20 @@ impl<'a> Setup<'a> {
         split
     }
 
-    /// Along the motion of the rigid body, on the intervals of these phases, of so many usual lengths, with feet that keep so high, m.
+    /// Along the motion of the rigid body, on the intervals of these phases, with feet that keep so high, m.
     fn along(
         task: &'a Task,
         srb: &'a SrbPlan,
         phases: Vec<Phase<f64, FOOT_COUNT>>,
-        (lengths, lift): (f64, f64),
+        lift: f64,
     ) -> Self {
         let rigid = &task.problem;
         let track = track(task, srb);
         let times = times(&phases);
-        let flight = phases.last().map_or(0, |phase| phase.intervals);
+        let flying = phases.iter().rev();
+        let flying = flying.take_while(|phase| !phase.contacts.contains(&true));
+        let flight: usize = flying.map(|phase| phase.intervals).sum();
+        let dt = phases.last().map_or(FLIGHT_DT, |phase| phase.dt);
         let take_off = times.len() - 1 - flight;
         let ends = [times[take_off], times[times.len() - 1]];
         let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
@@ -201,8 +268,8 @@ impl<'a> Setup<'a> {
             nodes,
             clearances: clearances(task),
             goal: pose(&goal, task.landing_joints()),
-            landing_intervals: (POSED / (lengths * FLIGHT_DT)).ceil() as usize,
-            lengths,
+            // Rounding is no interval.
+            landing_intervals: (POSED / dt - 1e-6).ceil() as usize,
             lift,
         }
     }
@@ -257,6 +324,7 @@ impl<'a> Setup<'a> {
             goal_tolerance: GOAL_TOLERANCE,
             least_force: LEAST_FORCE * rigid.mass * rigid.gravity,
             release: build.force(RELEASE) / build.time(1.0),
+            max_force: (task.limits.force_weights).map_or(f64::INFINITY, |_| rigid.max_force),
             landing_intervals: self.landing_intervals,
             friction_smoothing: FRICTION_SMOOTHING,
             friction: Friction {
@@ -267,8 +335,7 @@ impl<'a> Setup<'a> {
             weights: Weights {
                 position: task.weights.position,
                 effort: task.weights.torque,
-                // Every interval costs the same, so that on long ones there is less cost before the goal.
-                goal: task.weights.goal / self.lengths,
+                goal: task.weights.goal,
             },
         };
         let robot = &mut problem.robot;
@@ -346,7 +413,7 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{BASE, N, Setup};
+    use super::{BASE, FOOT_COUNT, N, Phase, Setup, Timing};
     use crate::task::Task;
     use crate::tightening::Tightening;
     use wb_opt::Pose;
@@ -357,7 +424,7 @@ mod tests {
         let srb = task.guess().unwrap();
         let planned = task.problem.friction;
         let friction = |task: &Task| {
-            let setup = Setup::new(task, &srb, 4.0);
+            let setup = Setup::new(task, &srb, Timing::Given, 4.0);
             setup.problem(&Tightening::default()).friction
         };
         // The eight sides of a regular octagon are as far out along the axes as between them.
@@ -377,8 +444,14 @@ mod tests {
         for (name, folds) in [("a1/barrel-roll", true), ("a1/lateral", false)] {
             let task = Task::load(name).unwrap();
             let srb = task.guess().unwrap();
-            let setup = Setup::new(&task, &srb, 1.0);
-            let flight = setup.phases.last().unwrap().intervals;
+            let setup = Setup::new(&task, &srb, Timing::Given, 1.0);
+            let flies = |phase: &&Phase<f64, FOOT_COUNT>| !phase.contacts.contains(&true);
+            let flight = setup
+                .phases
+                .iter()
+                .filter(flies)
+                .map(|p| p.intervals)
+                .sum::<usize>();
             let (stance, flight) = setup.nodes.split_at(setup.nodes.len() - flight);
             assert!(
                 stance
@@ -399,7 +472,7 @@ mod tests {
     fn heights_that_are_drawn_in_are_higher() {
         let task = Task::load("a1/lateral").unwrap();
         let srb = task.guess().unwrap();
-        let setup = Setup::new(&task, &srb, 4.0);
+        let setup = Setup::new(&task, &srb, Timing::Given, 4.0);
         let drawn = Tightening {
             height: 0.1,
             ..Tightening::default()

@@ -39,7 +39,7 @@ pub struct WholeBodyPlan {
     pub judged: Judgement<f64>,
     /// Torque that the plan was allowed of the strongest joint, N m.
     pub torque_limit: f64,
-    /// Contact phases with their durations.
+    /// Contact phases with their durations; the length of an interval is the mean one.
     pub phases: Vec<Phase<f64, FOOT_COUNT>>,
     /// All intervals in order.
     pub intervals: Vec<Interval>,
@@ -92,6 +92,8 @@ pub struct Attempt {
     pub apart: usize,
     /// How it ended.
     pub status: Status,
+    /// What the audit has against the motion, if there is one and it has.
+    pub complaint: Option<String>,
     /// Iterations.
     pub iterations: usize,
     /// Time, ms.
@@ -199,6 +201,7 @@ fn tightened(
     observer: Observe<'_>,
 ) -> Result<Audited, String> {
     let mut told = plan.audited(task)?;
+    grid.note(told.audit.as_ref());
     for round in 0..SEPARATIONS {
         let Some(audit) = told.audit.as_ref().filter(|audit| !audit.passes()) else {
             break;
@@ -209,6 +212,7 @@ fn tightened(
         }
         *drawn = next.unwrap_or(*drawn);
         let again = grid.again(drawn, observer)?.audited(task)?;
+        grid.note(again.audit.as_ref());
         if again.audit.is_none() {
             break;
         }
@@ -272,6 +276,7 @@ impl Attempt {
             },
             "kept_apart": self.apart,
             "status": format!("{:?}", self.status),
+            "audit": self.complaint,
             "iterations": self.iterations,
             "wall_ms": self.wall_ms,
         })
@@ -303,6 +308,10 @@ impl core::fmt::Display for Attempt {
             self.status,
             self.iterations,
             self.wall_ms
-        )
+        )?;
+        match &self.complaint {
+            Some(complaint) => write!(f, "; {complaint}"),
+            None => Ok(()),
+        }
     }
 }

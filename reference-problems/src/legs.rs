@@ -157,6 +157,7 @@ impl Data {
             goal_tolerance: GOAL_TOLERANCE,
             least_force: 0.0,
             release: f64::INFINITY,
+            max_force: f64::INFINITY,
             landing_intervals: LANDING_INTERVALS,
             friction_smoothing: FRICTION_SMOOTHING,
             friction: Friction::pyramid(self.friction),
@@ -190,6 +191,7 @@ fn rounded(contacts: &[srb_opt::Phase<f64, FEET>], durations: &[f64]) -> Vec<Pha
         contacts: phase.contacts,
         intervals: (duration / DT).round_ties_even().max(1.0) as usize,
         dt: DT,
+        weight: 1.0,
     };
     contacts.iter().zip(durations).map(phase).collect()
 }

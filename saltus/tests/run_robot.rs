@@ -84,6 +84,56 @@ fn torque_is_told_beside_the_limit_of_its_joint() {
     assert!(line.ends_with("of 0.70"), "{line}");
 }
 
+/// What a task says of its robot, of where that stands, of the ground and of forces is what is planned, flown and judged.
+#[test]
+fn a_stored_plan_is_flown_as_its_task_says() {
+    let folder = folder("says");
+    fs::write(
+        folder.join("robot.urdf"),
+        urdf().replace("name=\"a1\"", "name=\"own\""),
+    )
+    .unwrap();
+    let task = "robot = \"robot.urdf\"\ngoal_m = [0.0, 0.2, 0.0]\n\
+        feet_m = [[0.292, 0.13], [0.292, -0.13], [-0.052, 0.13], [-0.052, -0.13]]\n\
+        [[phase]]\nfeet = [\"FL\", \"FR\", \"RL\", \"RR\"]\nguess_s = 0.5\n\
+        [[phase]]\nfeet = []\nguess_s = 0.35\n\
+        [limits]\nfriction = 0.7\nforce_weights = 0.9\n";
+    fs::write(folder.join("own.toml"), task).unwrap();
+    let saltus = |args: &[&str]| {
+        let command = Command::new(env!("CARGO_BIN_EXE_saltus"))
+            .args(args)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&command.stdout).into_owned();
+        assert_eq!(command.status.code(), Some(0), "{said}");
+        said
+    };
+    saltus(&["plan", "own.toml", "--out", "plan"]);
+    let said = saltus(&["run", "plan/plan.bin", "--json", "--out", "run"]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(json["on_target"], true, "{}", json["verdict"]);
+    assert_eq!(json["plant"]["friction"], 0.7);
+    let log = fs::read_to_string(folder.join("run/log.csv")).unwrap();
+    let mut lines = log.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let is_force = |name: &str| name.starts_with("f_plan_") && name.ends_with("_z");
+    let forces: Vec<_> = (0..header.len()).filter(|i| is_force(header[*i])).collect();
+    assert_eq!(forces.len(), 4);
+    let planned = lines.flat_map(|line| {
+        forces
+            .iter()
+            .map(|i| line[*i].parse().unwrap())
+            .collect::<Vec<f64>>()
+    });
+    let most = planned.fold(0.0, f64::max);
+    let limit = 0.9 * 13.741 * 9.81;
+    assert!(
+        (0.9 * limit..=1.01 * limit).contains(&most),
+        "{most} of {limit}"
+    );
+}
+
 /// A plan that `saltus plan` would refuse for what its links pass through is flown, and that is told.
 #[test]
 fn what_the_audit_refuses_is_told_where_it_is_flown() {

@@ -43,11 +43,13 @@ fn main() -> Result<(), wb_opt::Error> {
             contacts: [true; 4],
             intervals: 25,
             dt: 0.01,
+            weight: 1.0,
         },
         Phase {
             contacts: [false; 4],
             intervals: 15,
             dt: 0.01,
+            weight: 1.0,
         },
     ];
     let reference = vec![crouch; 40];
@@ -66,6 +68,7 @@ fn main() -> Result<(), wb_opt::Error> {
         goal_tolerance: [0.02; BASE],
         least_force: 0.0,
         release: f64::INFINITY,
+        max_force: f64::INFINITY,
         landing_intervals: 5,
         friction_smoothing: 0.5,
         friction: Friction::pyramid(0.6),

@@ -77,7 +77,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         d: &mut Derivatives<T, NX, NU, NI>,
     ) {
         let units = Units::new();
-        let weights = &self.problem.weights;
+        let weights = self.problem.interval_weights(self.k);
         let mut effort = [T::ZERO; N];
         self.sweep.effort(&self.mid.a, self.contacts, &mut effort);
         self.problem.add_friction(&self.mid.v, &mut effort);
@@ -280,7 +280,7 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let Some(reference) = self.problem.reference.get(self.k) else {
             return;
         };
-        let weight = self.problem.weights.position;
+        let weight = self.problem.interval_weights(self.k).position;
         let two = T::TWO * weight;
         for (i, reference) in reference.q.iter().enumerate() {
             cost.q[i] += two * (self.mid.q[i] - *reference);

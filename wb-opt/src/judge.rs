@@ -135,15 +135,16 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
             let sweep = mid.sweep(&self.robot.bodies);
             let sample = self.sampled(k, &mid, &sweep);
+            let weights = self.interval_weights(k);
             if let Some(reference) = self.reference.get(k) {
                 let distance = reference.distance_squared(&mid.q, &mid.rot_wc);
-                cost += self.weights.position * distance;
+                cost += weights.position * distance;
             }
             for (i, effort) in sample.effort.iter().enumerate() {
                 if i < BASE {
                     above(abs(*effort));
                 } else {
-                    cost += self.weights.effort * *effort * *effort;
+                    cost += weights.effort * *effort * *effort;
                     peak_effort = max(peak_effort, abs(*effort));
                 }
             }

@@ -41,6 +41,8 @@ pub struct Phase<T, const FEET: usize> {
     pub intervals: usize,
     /// Length of an interval, s.
     pub dt: T,
+    /// How much an interval costs, over what the weights say: 1 for a sum over all intervals, proportional to their lengths for an integral.
+    pub weight: T,
 }
 
 /// Weights of the cost.
@@ -100,6 +102,8 @@ pub struct Problem<'a, T: Scalar, const N: usize, const FEET: usize> {
     /// Fastest that the normal force of a foot falls to nothing before it leaves the ground, N/s; infinite is no limit. Motors and soft ground
     /// cannot let go at once, and what is still there when the foot should have left turns the body.
     pub release: T,
+    /// Largest normal force of a foot, N; infinite is no limit but that of the joints.
+    pub max_force: T,
     /// How far a foot in contact may be from its place, per axis, m.
     pub drift: T,
     /// Weights.
@@ -156,23 +160,35 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         self.swing_height + math::min(self.swing_rise, nearest * T::of(CLIMB))
     }
 
-    /// Largest normal force of a foot in contact in the middle of interval `k`, N: what falls to nothing, at [`Self::release`], until it leaves
-    /// the ground; infinite for a foot that never does.
+    /// Largest normal force of a foot in contact in the middle of interval `k`, N: [`Self::max_force`], and what falls to nothing, at
+    /// [`Self::release`], until it leaves the ground.
     pub(crate) fn most_force(&self, k: usize, foot: usize) -> T {
         let on = |k: &usize| self.contacts(*k).get(foot).is_some_and(|on| *on);
         let after = k.saturating_add(1)..self.intervals();
         if after.clone().all(|k| on(&k)) {
-            return T::INFINITY;
+            return self.max_force;
         }
         let half = self.dt(k) * T::HALF;
         let standing = after.take_while(on);
-        self.release * standing.fold(half, |time, k| time + self.dt(k))
+        let released = self.release * standing.fold(half, |time, k| time + self.dt(k));
+        // From the least force it may let go at once.
+        math::max(math::min(released, self.max_force), self.least_force)
     }
 
     /// Length of interval `k`, s; 0 at the last node.
     #[must_use]
     pub fn dt(&self, k: usize) -> T {
         self.phase_of(k).map_or(T::ZERO, |phase| phase.dt)
+    }
+
+    /// Weights of the cost of interval `k`.
+    pub(crate) fn interval_weights(&self, k: usize) -> Weights<T> {
+        let interval = self.phase_of(k).map_or(T::ONE, |phase| phase.weight);
+        Weights {
+            position: self.weights.position * interval,
+            effort: self.weights.effort * interval,
+            ..self.weights
+        }
     }
 
     /// Times of the ends of interval `k` from its midpoint, s.
@@ -247,6 +263,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             // An infinite one is no limit.
             (self.release > T::ZERO, "release: must be positive"),
             (
+                self.max_force > self.least_force,
+                "max_force: must be above least_force",
+            ),
+            (
                 natural(self.friction.apex),
                 "friction.apex: must not be negative",
             ),
@@ -303,6 +323,10 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         require(
             self.phases.iter().all(|phase| positive(phase.dt)),
             "phases.dt: must be positive",
+        )?;
+        require(
+            self.phases.iter().all(|phase| positive(phase.weight)),
+            "phases.weight: must be positive",
         )?;
         let total = self
             .phases

@@ -10,10 +10,17 @@ use crate::state::State;
 use core::ops::ControlFlow;
 use ocp_solver::{
     Derivatives, Dims, Evaluated, Problem as Ocp, Progress, Settings, Solution, Solver,
-    SparseStage, Values,
+    SparseStage, Status, Values,
 };
 use so3::Scalar;
 use so3::math::max;
+
+/// Times that a motion is solved again whose durations moved its bounds.
+const REPEATS: usize = 6;
+/// How far a motion may break bounds in the durations that it found, in the units of [`Problem::judge`].
+const KEPT: f64 = 1e-3;
+/// Barrier to begin with when it is solved again.
+const AGAIN_MU: f64 = 1e-4;
 
 /// A whole-body problem whose phases may be shorter or longer; each keeps its number of intervals.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +83,7 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
             contacts: [false; FEET],
             intervals: 0,
             dt: T::ZERO,
+            weight: T::ONE,
         }; PHASES];
         let given = self.problem.phases.iter().zip(durations);
         for (slot, (phase, duration)) in phases.iter_mut().zip(given) {
@@ -123,6 +131,9 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
 
     /// Plans motion and durations from the guess in the stages and leaves them there.
     ///
+    /// Two bounds ask how long a foot stands or hovers yet ([`Problem::release`], [`Problem::swing_rise`]) and are those of the durations
+    /// that a solve begins with. Where a motion breaks them in the durations that it found, it is solved again from there, with those.
+    ///
     /// # Errors
     /// [`Error::Parameter`] for unusable data, [`Error::Capacity`] for const sizes that are too small,
     /// [`Error::Solver`] for what the solver refuses.
@@ -130,7 +141,7 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
         &self,
         settings: &Settings<T>,
         stages: &mut [TimedStage<T, N, PHASES, NX, NU, NI>],
-        observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
+        mut observer: impl FnMut(&Progress<T>) -> ControlFlow<()>,
     ) -> Result<Solution<T>, Error> {
         self.problem.check()?;
         let problem = &self.problem;
@@ -156,7 +167,29 @@ impl<T: Scalar, const N: usize, const FEET: usize, const PHASES: usize>
         if !fits {
             return Err(Error::Capacity);
         }
-        Ok(Solver::new(*settings).solve(self, stages, observer)?)
+        let mut solution = Solver::new(*settings).solve(self, stages, &mut observer)?;
+        let mut again = *settings;
+        (again.warm_start, again.initial_mu) = (true, T::of(AGAIN_MU));
+        for _ in 0..REPEATS {
+            let nodes = stages.iter().map(|stage| (&stage.state, &stage.control));
+            let judged = self.judge(nodes);
+            let Some(first) = stages.first() else { break };
+            if solution.status != Status::Solved || judged.max_violation <= T::of(KEPT) {
+                break;
+            }
+            let iterations = solution.iterations;
+            let durations = first.state.durations;
+            solution = self.with(&durations, |problem| {
+                let timed = FreeTiming {
+                    problem: *problem,
+                    durations: self.durations,
+                    total: self.total,
+                };
+                Solver::new(again).solve(&timed, stages, &mut observer)
+            })?;
+            solution.iterations = solution.iterations.saturating_add(iterations);
+        }
+        Ok(solution)
     }
 
     /// Judges a motion in physical units, its durations included.

@@ -32,8 +32,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
             reference.distance_squared(&mid.q, &mid.rot_wc)
         });
         let efforts = effort.iter().skip(BASE).copied();
-        self.weights.position * distance
-            + self.weights.effort * efforts.fold(T::ZERO, |sum, x| sum + x * x)
+        let weights = self.interval_weights(k);
+        weights.position * distance + weights.effort * efforts.fold(T::ZERO, |sum, x| sum + x * x)
     }
 
     /// Values of the mixed rows of interval `k`.

@@ -55,6 +55,41 @@ fn a_foot_bears_what_it_can_let_go_of_until_it_leaves() {
     }
 }
 
+/// A largest force holds for feet that stand to the end too; and whatever they let go by, feet may push with the least force.
+#[test]
+fn forces_keep_between_the_least_and_the_largest() {
+    let mut standing = data();
+    for phase in &mut standing.phases[1..] {
+        phase.contacts = [false, true, true, false];
+    }
+    let mut problem = jump(&standing, BASES[2]);
+    problem.max_force = 60.0;
+    let near = |found: Vec<f64>, wanted: &[f64]| {
+        let pairs = found.iter().zip(wanted);
+        assert!(
+            found.len() == wanted.len() && pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9),
+            "{found:?} {wanted:?}"
+        );
+    };
+    let upper = |problem: &Problem<'_, f64, N, FEET>, k: usize| {
+        let (mut lower, mut upper) = ([0.0; NI], [0.0; NI]);
+        Ocp::<f64, NX, NU, NI>::bounds(problem, k, &mut lower, &mut upper);
+        let least = problem.least_force / 50.0;
+        let forces = lower.iter().zip(upper).filter(|(low, _)| **low == least);
+        forces.map(|(_, high)| 50.0 * high).collect::<Vec<_>>()
+    };
+    problem.least_force = 3.0;
+    problem.release = 1e3;
+    near(upper(&problem, 5), &[60.0, 60.0, 60.0, 60.0]);
+    near(upper(&problem, 11), &[5.0, 60.0, 60.0, 5.0]);
+    problem.release = 1e2;
+    near(upper(&problem, 11), &[3.0, 60.0, 60.0, 3.0]);
+    for bad in [0.0, 3.0, -1.0, f64::NAN] {
+        problem.max_force = bad;
+        assert!(problem.check().is_err(), "{bad}");
+    }
+}
+
 /// A robot that stands on four feet, then on two: those that leave bear a quarter of the weight to the last.
 #[test]
 fn the_judge_sees_feet_that_let_go_too_fast() {

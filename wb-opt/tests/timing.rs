@@ -132,26 +132,53 @@ fn second_derivatives_at(
     assert!(worst.0 < 2e-4 * size, "{base:?} {k}: {worst:?} of {size}");
 }
 
+type TimedStage = SparseStage<f64, TimedState<f64, N, PHASES>, NX, NU, NI>;
+
+/// A robot that stands, for as long as the problem's intervals are.
+fn standing(timed: &FreeTiming<'_, f64, N, FEET, PHASES>) -> Vec<TimedStage> {
+    let problem = timed.problem;
+    let nodes = vec![problem.start; problem.intervals() + 1];
+    let start = State::at_rest(problem.start);
+    let mut given =
+        vec![SparseStage::<f64, State<f64, N>, { 2 * N }, NU, NI>::sparse(start); nodes.len()];
+    let stand = Vector3::new(0.0, 0.0, 30.0);
+    problem.write_guess(&mut given, &nodes, |_, _| stand, || 0.0);
+    let start = TimedState {
+        state: start,
+        durations: timed.guessed(),
+    };
+    let mut guess = vec![SparseStage::sparse(start); given.len()];
+    timed.write_guess(&given, &mut guess);
+    guess
+}
+
+/// Feet let go in time, and rise in time, in the durations that were found and not in those of the guess.
+#[test]
+fn bounds_that_ask_for_time_are_kept_in_the_durations_found() {
+    let data = data();
+    for (release, swing_rise) in [(2e3, 0.0), (f64::INFINITY, 0.01), (2e3, 0.01)] {
+        let timed = free(Problem {
+            release,
+            swing_rise,
+            ..jump(&data, BaseCoordinates::Rotation)
+        });
+        let mut stages = standing(&timed);
+        let go = |_: &_| ControlFlow::Continue(());
+        let solution = timed.plan(&wb_opt::settings(), &mut stages, go).unwrap();
+        assert_eq!(solution.status, Status::Solved, "{solution:?}");
+        let judged = timed.judge(stages.iter().map(|s| (&s.state, &s.control)));
+        assert!(
+            judged.max_violation <= 1e-3,
+            "{release} {swing_rise}: {judged:?}"
+        );
+    }
+}
+
 #[test]
 fn a_jump_finds_its_timing() {
     let data = data();
-    let problem = jump(&data, BaseCoordinates::Rotation);
-    let nodes = vec![problem.start; problem.intervals() + 1];
-    let mut given = vec![
-        SparseStage::<f64, State<f64, N>, { 2 * N }, NU, NI>::sparse(
-            State::at_rest(problem.start)
-        );
-        problem.intervals() + 1
-    ];
-    let stand = Vector3::new(0.0, 0.0, 30.0);
-    problem.write_guess(&mut given, &nodes, |_, _| stand, || 0.0);
-    let mut timed = free(problem);
-    let start = TimedState {
-        state: State::at_rest(problem.start),
-        durations: timed.guessed(),
-    };
-    let mut guess = vec![SparseStage::<f64, _, NX, NU, NI>::sparse(start); given.len()];
-    timed.write_guess(&given, &mut guess);
+    let mut timed = free(jump(&data, BaseCoordinates::Rotation));
+    let guess = standing(&timed);
     let plan = |timed: &FreeTiming<'_, f64, N, FEET, PHASES>,
                 guess: &[SparseStage<_, _, NX, NU, NI>]| {
         let mut stages = guess.to_vec();

@@ -40,6 +40,8 @@ const DEFECT: [f64; 2] = [5e-3, 0.5];
 const FORCE: f64 = 0.02;
 /// How far a limit may be exceeded between nodes, as a share of its range.
 const BEYOND: f64 = 0.01;
+/// How deep links may be in the ground or in each other between nodes, m.
+const DEEPEST: f64 = 1e-3;
 
 /// What a margin is one of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +142,7 @@ impl Audit {
         margins.retain(|margin| margin.value.is_finite());
         margins.sort_by(|a, b| a.value.total_cmp(&b.value));
         let mut overlaps = found.overlaps;
-        overlaps.retain(|overlap| overlap.gap < -BEYOND * robot.leg_length);
+        overlaps.retain(|overlap| overlap.gap < -DEEPEST);
         overlaps.sort_by(|a, b| a.gap.total_cmp(&b.gap));
         Ok(Self {
             checksum: plan.checksum(),
@@ -176,7 +178,8 @@ impl Audit {
     /// Whether the plan may be called solved.
     #[must_use]
     pub fn passes(&self) -> bool {
-        self.is_a_motion() && self.margins.iter().all(|margin| margin.value >= -BEYOND)
+        self.exceeded()
+            .is_some_and(|mut beyond| beyond.next().is_none())
     }
 
     /// Whether the robot could move so if its links passed through the ground and each other. A plan that only fails there is worth a
@@ -192,8 +195,20 @@ impl Audit {
         let is_true = self.flight_orientation_error <= ORIENTATION
             && self.flight_position_error <= POSITION
             && self.agrees();
-        let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
-        is_true.then_some(beyond)
+        is_true.then(|| self.beyond())
+    }
+
+    /// The margins that are too far below zero.
+    fn beyond(&self) -> impl Iterator<Item = &Margin> {
+        let deepest = DEEPEST / self.leg_length;
+        self.margins.iter().filter(move |margin| {
+            let most = if margin.limit.is_gap() {
+                deepest
+            } else {
+                BEYOND
+            };
+            margin.value < -most
+        })
     }
 
     /// Whether the nodes are those of one motion, and the forces those that move it.
@@ -238,8 +253,7 @@ impl Audit {
                 100.0 * self.force_error
             ));
         }
-        let beyond = self.margins.iter().filter(|m| m.value < -BEYOND);
-        told.extend(beyond.map(|m| {
+        told.extend(self.beyond().map(|m| {
             if m.limit.is_gap() {
                 let deep = -1e3 * m.value * self.leg_length;
                 let through = m.name.replace(" to ", " passes through ");

@@ -155,8 +155,9 @@ pub struct LimitsTable {
     pub friction: f64,
     /// Share of it that the plan may use.
     pub friction_share: f64,
-    /// Normal force per foot in weights of the robot.
-    pub force_weights: f64,
+    /// Largest normal force per foot in weights of the robot; by default the rigid body, which knows no torques, has paper A's, and the whole body
+    /// what its joints give.
+    pub force_weights: Option<f64>,
     /// Least height of the trunk over the ground, m.
     pub clearance_m: f64,
     /// Shares of the joints' torque limits, rising: the least with which the task is solved.
@@ -170,7 +171,7 @@ impl Default for LimitsTable {
         Self {
             friction: 0.6,
             friction_share: 0.75,
-            force_weights: 1.18695,
+            force_weights: None,
             clearance_m: 0.03,
             torque_shares: [24.0 / 33.5, 28.0 / 33.5, 30.0 / 33.5],
             speed_share: 0.85,

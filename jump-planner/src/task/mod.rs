@@ -10,7 +10,7 @@ mod stance;
 mod values;
 
 use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTable};
-use self::values::{AXIS, DURATION, LENGTH, TOTAL, TURN};
+use self::values::{AXIS, BODY_FORCE, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
 use crate::folding::Folding;
 use crate::range::{Unusable, require, within};
@@ -189,7 +189,7 @@ impl Task {
             reach_lower: Vector3::new(-FRONT_REACH, -SIDE_REACH, -LONGEST_LEG) * leg,
             reach_upper: Vector3::new(FRONT_REACH, SIDE_REACH, -SHORTEST_LEG) * leg,
             friction: limits.friction * limits.friction_share,
-            max_force: limits.force_weights * robot.mass() * 9.81,
+            max_force: limits.force_weights.unwrap_or(BODY_FORCE) * robot.mass() * 9.81,
             corners: robot.corners.map(|corner| corner - com_b),
             clearance: limits.clearance_m,
             edge,

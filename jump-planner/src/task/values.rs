@@ -15,6 +15,8 @@ pub(crate) const AXIS: Range = From(1e-6, 1e6);
 pub(crate) const DURATION: Range = Above(0.0, 5.0);
 /// Duration of a jump, s: intervals of milliseconds are held in memory.
 pub(crate) const TOTAL: Range = Above(0.0, 10.0);
+/// Largest normal force of a foot of the rigid body where none is given, in weights of the robot: paper A's, Table I.
+pub(crate) const BODY_FORCE: f64 = 1.18695;
 /// A share of what there is.
 const SHARE: Range = Above(0.0, 1.0);
 /// Weights of costs.
@@ -24,7 +26,7 @@ pub(crate) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
     within(limits.friction, From(0.0, 10.0), "limits.friction")?;
     within(limits.friction_share, SHARE, "limits.friction_share")?;
     within(
-        limits.force_weights,
+        limits.force_weights.unwrap_or(BODY_FORCE),
         Above(0.0, 100.0),
         "limits.force_weights",
     )?;

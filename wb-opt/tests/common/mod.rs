@@ -79,6 +79,7 @@ pub(crate) fn data() -> Data {
         contacts,
         intervals,
         dt,
+        weight: 100.0 * dt,
     };
     Data {
         clearances: core::array::from_fn(|i| if i < 8 { corner(i) } else { knee(i - 8) }),
@@ -142,6 +143,7 @@ pub(crate) fn jump(data: &Data, base: BaseCoordinates) -> Problem<'_, f64, N, FE
         goal_tolerance: [0.02, 0.02, 0.02, 0.05, 0.05, 0.05],
         least_force: 0.0,
         release: f64::INFINITY,
+        max_force: f64::INFINITY,
         landing_intervals: 5,
         friction_smoothing: 0.5,
         friction: Friction::pyramid(0.6),
