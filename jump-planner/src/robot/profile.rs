@@ -178,8 +178,8 @@ impl BudgetsTable {
             *slot = time("saturation_ms", Some(*x), 0.0)?;
         }
         let any = Above(0.0, f64::INFINITY);
-        if self.winding_heat_j.is_some() && self.resistance_ohm.is_none() && rule.resistance == 0.0
-        {
+        let is_known = self.resistance_ohm.is_some() && self.torque_constant_nm_a.is_some();
+        if self.winding_heat_j.is_some() && !is_known {
             let what = "is a budget of what motors lose in their windings: give resistance_ohm and torque_constant_nm_a too";
             return Err(("budgets.winding_heat_j".to_owned(), what.to_owned()));
         }
