@@ -1,6 +1,6 @@
 //! How fast a foot lets go before it leaves the ground.
 
-use crate::common::{BASES, FEET, N, NI, NU, NX, data, jump};
+use crate::common::{BASES, Data, FEET, N, NI, NU, NX, data, jump};
 use nalgebra::Vector3;
 use ocp_solver::{Problem as Ocp, SparseStage};
 use wb_opt::{Problem, State};
@@ -23,6 +23,15 @@ fn most(problem: &mut Problem<'_, f64, N, FEET>, k: usize, release: f64) -> Vec<
     .collect()
 }
 
+/// A jump in which two feet never leave the ground.
+fn standing_on_two() -> Data {
+    let mut data = data();
+    for phase in &mut data.phases[1..] {
+        phase.contacts = [false, true, true, false];
+    }
+    data
+}
+
 #[test]
 fn a_foot_bears_what_it_can_let_go_of_until_it_leaves() {
     // Twelve intervals of 10 ms on four feet, eight of 12 ms on the rear ones, then flight.
@@ -42,10 +51,7 @@ fn a_foot_bears_what_it_can_let_go_of_until_it_leaves() {
         }
     }
     // Nothing asks a foot to let go that stands to the end.
-    let mut standing = data;
-    for phase in &mut standing.phases[1..] {
-        phase.contacts = [false, true, true, false];
-    }
+    let standing = standing_on_two();
     let mut problem = jump(&standing, BASES[2]);
     assert_eq!(most(&mut problem, 5, 3e4).len(), 2);
     assert!(most(&mut problem, 15, 3e4).is_empty());
@@ -58,10 +64,7 @@ fn a_foot_bears_what_it_can_let_go_of_until_it_leaves() {
 /// A largest force holds for feet that stand to the end too; and whatever they let go by, feet may push with the least force.
 #[test]
 fn forces_keep_between_the_least_and_the_largest() {
-    let mut standing = data();
-    for phase in &mut standing.phases[1..] {
-        phase.contacts = [false, true, true, false];
-    }
+    let standing = standing_on_two();
     let mut problem = jump(&standing, BASES[2]);
     problem.max_force = 60.0;
     let near = |found: Vec<f64>, wanted: &[f64]| {
@@ -93,10 +96,7 @@ fn forces_keep_between_the_least_and_the_largest() {
 /// A robot that stands on four feet, then on two: those that leave bear a quarter of the weight to the last.
 #[test]
 fn the_judge_sees_feet_that_let_go_too_fast() {
-    let mut data = data();
-    for phase in &mut data.phases[1..] {
-        phase.contacts = [false, true, true, false];
-    }
+    let data = standing_on_two();
     let mut problem = jump(&data, BASES[2]);
     let weight = 12.453 * 9.81;
     let mut stages =
