@@ -4,17 +4,18 @@ use super::FOOT_COUNT;
 use super::Observe;
 use super::kept::Kept;
 use super::pace::Pace;
-use super::setup::{N, NI, NU, NX, Setup, times, whole};
+use super::setup::{N, NI, NU, NX, Setup};
 use super::task::{PHASES, SrbPlan, Task};
 use crate::apart::Separation;
 use crate::audit::Audit;
+use crate::lengths::Lengths;
 use crate::stronger::Stronger;
 use crate::tightening::Tightening;
-use crate::whole_body::{Attempt, Blocked, Interval, Timing, WholeBodyPlan};
+use crate::whole_body::{Attempt, Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
-use ocp_solver::{Progress, Settings, Solution, SparseStage, Status, blocking_rows};
+use ocp_solver::{Progress, Settings, SparseStage, Status};
 use std::time::Instant;
-use wb_opt::{BASE, FreeTiming, Problem, Row, State, TimedState};
+use wb_opt::{BASE, FreeTiming, Problem, State, TimedState};
 
 /// Most iterations; what is solved takes 10 to 60.
 const PATIENCE: usize = 150;
@@ -57,9 +58,9 @@ pub(crate) struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    /// On intervals of this many usual lengths, with the motion of the rigid body as the guess.
-    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: f64) -> Self {
-        let mut grid = Self::of(task, timing, Setup::new(task, srb, timing, lengths));
+    /// On intervals of these lengths, with the motion of the rigid body as the guess.
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: Lengths) -> Self {
+        let mut grid = Self::of(task, timing, Setup::new(task, srb, lengths));
         grid.guess();
         grid
     }
@@ -90,7 +91,7 @@ impl<'a> Grid<'a> {
 
     /// On the intervals of an earlier plan, from its motion and multipliers.
     pub(crate) fn near(task: &'a Task, srb: &'a SrbPlan, kept: &Kept) -> Self {
-        let setup = Setup::on(task, srb, &kept.intervals, kept.lift);
+        let setup = Setup::on(task, srb, kept.lengths, &kept.intervals);
         let mut grid = Self::of(task, Timing::Given, setup);
         grid.stages.clone_from(&kept.stages);
         grid.torque_share = kept.torque_share;
@@ -106,8 +107,8 @@ impl<'a> Grid<'a> {
         (solved && self.timing == Timing::Given).then(|| Kept {
             body: self.setup.srb.stages.clone(),
             contacts: phases.map(|phase| phase.contacts).collect(),
+            lengths: self.setup.lengths,
             intervals: self.setup.phases.iter().map(|p| p.intervals).collect(),
-            lift: self.setup.lift,
             stages: self.stages,
             torque_share: self.torque_share,
             apart: self.apart,
@@ -367,10 +368,12 @@ impl<'a> Grid<'a> {
             }
         }
         let told = |error| format!("task {}: {error}", self.task.name);
+        let whole = |phases: &[_]| self.setup.lengths.whole(self.task, phases);
         if self.timing == Timing::Given {
             let outcome = problem.plan(settings, &mut self.stages, watch);
             let outcome = (outcome.map_err(told)?, self.torque_share);
-            return finish((self.task, &problem), outcome, &self.stages, |state| state);
+            let found = (&problem, whole(problem.phases));
+            return WholeBodyPlan::of(found, outcome, &self.stages, |state| state);
         }
         let free = free_timing(self.task, problem);
         let outcome = free.plan(settings, &mut self.timed, watch);
@@ -383,9 +386,8 @@ impl<'a> Grid<'a> {
             phases: &phases,
             ..problem
         };
-        finish((self.task, &problem), outcome, &self.timed, |state| {
-            &state.state
-        })
+        let found = (&problem, whole(&phases));
+        WholeBodyPlan::of(found, outcome, &self.timed, |state| &state.state)
     }
 }
 
@@ -432,69 +434,4 @@ fn free_timing<'a>(
             .map(|phase| [phase.min_duration, phase.max_duration]),
         total: [rigid.min_total, rigid.max_total],
     }
-}
-
-/// What the stages hold, in physical units.
-fn finish<S: Copy, const X: usize>(
-    (task, problem): (&Task, &Problem<'_, f64, N, FOOT_COUNT>),
-    (mut outcome, torque_share): (Solution<f64>, f64),
-    stages: &[SparseStage<f64, S, X, NU, NI>],
-    state: impl Fn(&S) -> &State<f64, N>,
-) -> Result<WholeBodyPlan, String> {
-    let strongest = problem
-        .robot
-        .limits
-        .iter()
-        .skip(BASE)
-        .map(|limit| limit.effort);
-    let nodes = stages
-        .iter()
-        .map(|stage| (state(&stage.state), &stage.control));
-    let starts = times(problem.phases);
-    let intervals = stages[..problem.intervals()]
-        .iter()
-        .zip(&starts)
-        .enumerate();
-    let intervals = intervals.map(|(k, (stage, start))| {
-        let at = state(&stage.state);
-        Interval {
-            start: *start,
-            dt: problem.dt(k),
-            state: *at,
-            sample: problem.sample(k, at, &stage.control),
-            gains: problem.gains(k, at, &stage.control, stage.gain()),
-        }
-    });
-    let blocking = blocking_rows::<4, _, _, _, _, _, _>(stages);
-    let blocked = blocking.iter().flatten().filter_map(|found| {
-        let (row, unit) = problem.row(found.stage, found.row)?;
-        let violation = (found.violation * unit).abs();
-        Some(Blocked { row, violation })
-    });
-    let end = *state(&stages.last().ok_or("no nodes")?.state);
-    let off = so3::log(&(problem.goal.rot_wc.inverse() * end.rot_wc)).norm();
-    let blocked = if outcome.status != Status::Solved {
-        blocked.collect()
-    } else if off > core::f64::consts::FRAC_PI_2 {
-        // The goal's rows are sines of the angle from it, which are small half a turn away, too.
-        outcome.status = Status::Stalled;
-        let turn = Row::Goal { axis: BASE - 1 };
-        vec![Blocked {
-            row: turn,
-            violation: off,
-        }]
-    } else {
-        Vec::new()
-    };
-    Ok(WholeBodyPlan {
-        end,
-        torque_share,
-        stronger: None,
-        blocked,
-        outcome,
-        judged: problem.judge(nodes),
-        torque_limit: strongest.fold(0.0, f64::max),
-        intervals: intervals.collect(),
-        phases: whole(task, problem.phases),
-    })
 }

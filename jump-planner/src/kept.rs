@@ -4,6 +4,7 @@ use super::FOOT_COUNT;
 use super::setup::{N, NI, NU, NX};
 use super::task::{SrbStage, Task};
 use crate::apart::Separation;
+use crate::lengths::Lengths;
 use crate::tightening::Tightening;
 use ocp_solver::SparseStage;
 use wb_opt::State;
@@ -17,10 +18,10 @@ pub struct Kept {
     pub(crate) body: Vec<SrbStage>,
     /// Feet on the ground in every phase.
     pub(crate) contacts: Vec<[bool; FOOT_COUNT]>,
+    /// Lengths of the intervals.
+    pub(crate) lengths: Lengths,
     /// Number of intervals of every part of the phases.
     pub(crate) intervals: Vec<usize>,
-    /// Height over the ground that feet keep on their way, m.
-    pub(crate) lift: f64,
     /// Nodes of the whole body's plan.
     pub(crate) stages: Vec<SparseStage<f64, State<f64, N>, NX, NU, NI>>,
     /// Share of the torque limits.

@@ -9,6 +9,7 @@ pub mod file;
 mod folding;
 mod grid;
 mod kept;
+mod lengths;
 mod pace;
 mod plan;
 pub mod planned;

@@ -11,18 +11,23 @@ const NEAR: f64 = 0.05;
 #[derive(Debug, Default)]
 pub(crate) struct Pace {
     violations: Vec<f64>,
+    /// Whether the rows were met once, which answers the question: a smaller µ drives the iterates away from them for a while, but not
+    /// from the motion that was found.
+    arrived: bool,
 }
 
 impl Pace {
-    /// Counts an iterate; whether its violation, which falls about geometrically, will be near zero within `patience` iterations in all.
+    /// Counts an iterate; whether its violation, which falls about geometrically, has been near zero or will be within `patience`
+    /// iterations in all.
     pub(crate) fn keeps_up(&mut self, violation: f64, patience: usize) -> bool {
         self.violations.push(violation);
+        self.arrived |= violation <= NEAR;
         let done = self.violations.len();
         let Some(before) = done.checked_sub(WINDOW + 1) else {
             return true;
         };
         let (then, now) = (self.violations[before], violation);
-        if done <= 2 * WINDOW || now <= NEAR {
+        if done <= 2 * WINDOW || self.arrived {
             return true;
         }
         let per_iteration = log(then / now) / WINDOW as f64;
@@ -52,6 +57,11 @@ mod tests {
         // Hard for long, then fast.
         assert_eq!(
             lasts((0..150).map(|k| if k < 100 { 0.04 } else { 1e-9 })),
+            150
+        );
+        // There once, and driven away by a smaller µ.
+        assert_eq!(
+            lasts((0..150).map(|k| if k == 31 { 1e-3 } else { 5.0 })),
             150
         );
         assert_eq!(lasts(core::iter::repeat_n(f64::NAN, 150)), 40);

@@ -10,6 +10,7 @@
 
 use crate::Observe;
 use crate::grid::Grid;
+use crate::lengths::Lengths;
 use crate::task::{SrbPlan, Task};
 use crate::whole_body::{Timing, WholeBodyPlan};
 use core::ops::ControlFlow;
@@ -37,7 +38,12 @@ pub(crate) fn searched<'a>(
     timing: Timing,
     observer: Observe<'_>,
 ) -> Found<'a> {
-    let mut grid = Grid::new(task, srb, timing, 1.0);
+    let lengths = match timing {
+        Timing::Given => Lengths::Graded,
+        // Parts of a phase have no durations of their own.
+        Timing::Free => Lengths::Even(1.0),
+    };
+    let mut grid = Grid::new(task, srb, timing, lengths);
     let is_alone = crate::threads() == 1;
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
@@ -122,7 +128,7 @@ fn on_long_intervals<'a>(
 ) -> Found<'a> {
     let is_given = timing == Timing::Given && task.has_given_durations();
     let own = if is_given { timing } else { Timing::Free };
-    let long = |timing| Grid::new(task, srb, timing, LONG as f64);
+    let long = |timing| Grid::new(task, srb, timing, Lengths::Even(LONG as f64));
     let (mut grid, mut plan) = split(long(own), Grid::with_most_torque, observer)?;
     if !is_decided(&plan) && own != timing {
         let (given, again) = split(long(timing), Grid::with_most_torque, observer)?;

@@ -5,11 +5,11 @@ use core::f64::consts::FRAC_PI_8;
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::edge::cautious;
+use crate::lengths::Lengths;
 use crate::robot::State;
 use crate::stops::keep_away;
 use crate::tightening::Tightening;
 use crate::track::Track;
-use crate::whole_body::Timing;
 use nalgebra::Vector3;
 use rbd_core::Transform;
 use so3::math;
@@ -27,21 +27,6 @@ const CLEARANCES: usize = 12;
 pub(crate) const PAIRS: usize = 12;
 pub(crate) const NI: usize = wb_opt::row_capacity(N, FOOT_COUNT, SIDES, CLEARANCES + PAIRS, true);
 
-/// Length of the intervals that the weights of tasks are for, s, and the longest one where the motion is fast. With twice the length throughout,
-/// plans pass their audit, but fewer of them survive the lab.
-const FAST_DT: f64 = 0.005;
-/// Longest interval in the crouch, s, where forces hardly change. With 10 ms far jumps take twice the iterations.
-const CROUCH_DT: f64 = 0.0075;
-/// Longest interval in flight, s, where there are no forces.
-const FLIGHT_DT: f64 = 0.01;
-/// Share of the first phase, at its end, in which the robot pushes off.
-const PUSHING: f64 = 0.4;
-/// Share of the flight, at its beginning, in which the legs are drawn up: in long intervals a light shank would turn faster between nodes than
-/// it may.
-const LEAVING: f64 = 0.3;
-/// Farthest that a plan turns in a long interval of its flight, rad: what its end is wrong by grows with the square of that, to 1 degree of
-/// two turns.
-const MOST_TURN: f64 = 0.08;
 /// Time before touchdown in which the legs rest in the landing posture, s.
 pub const POSED: f64 = 0.05;
 /// Height over the ground that feet keep on their way, m: ground that gives way would catch what hovers.
@@ -65,78 +50,13 @@ pub const FRICTION_SMOOTHING: f64 = 0.3;
 /// [`goal`](crate::task::file::WeightsTable::goal) weight: at a robot's limit all, otherwise millimetres.
 pub const GOAL_TOLERANCE: [f64; BASE] = [0.02, 0.02, 0.02, 0.05, 0.05, 0.05];
 
-/// A part of a task's time with intervals of one length.
-struct Span {
-    contacts: [bool; FOOT_COUNT],
-    duration: f64,
-    /// Longest interval, s.
-    longest: f64,
-}
-
-impl Span {
-    /// On this many intervals.
-    fn phase(&self, intervals: usize) -> Phase<f64, FOOT_COUNT> {
-        let dt = self.duration / intervals as f64;
-        Phase {
-            contacts: self.contacts,
-            intervals,
-            dt,
-            weight: dt / FAST_DT,
-        }
-    }
-}
-
-/// The phases of a task in order, all with intervals of one length; or the first and the last one in two parts, of which the slow one has longer
-/// ones: the robot crouches and pushes off, draws up its legs and flies.
-fn spans(task: &Task, srb: &SrbPlan, is_graded: bool) -> Vec<Span> {
-    let phases = task.problem.used_phases();
-    let is_graded = is_graded && phases.len() > 1;
-    let last = phases.len().saturating_sub(1);
-    let spans = phases.iter().zip(durations(srb)).enumerate();
-    let parts = spans.flat_map(|(i, (phase, duration))| {
-        let span = |share: f64, longest: f64| Span {
-            contacts: phase.contacts,
-            duration: share * duration,
-            longest,
-        };
-        let flying = FLIGHT_DT.min(MOST_TURN * duration / task.problem.angle.abs());
-        if is_graded && i == 0 {
-            vec![span(1.0 - PUSHING, CROUCH_DT), span(PUSHING, FAST_DT)]
-        } else if is_graded && i == last {
-            let leaving = span(LEAVING, FAST_DT.min(flying));
-            vec![leaving, span(1.0 - LEAVING, flying)]
-        } else {
-            vec![span(1.0, FAST_DT)]
-        }
-    });
-    parts.collect()
-}
-
-/// The phases of a task that these parts are of, with the mean length of their intervals.
-pub(crate) fn whole(task: &Task, parts: &[Phase<f64, FOOT_COUNT>]) -> Vec<Phase<f64, FOOT_COUNT>> {
-    if parts.len() <= task.problem.used_phases().len() {
-        return parts.to_vec();
-    }
-    let (first, others) = parts.split_at(2);
-    let (middle, last) = others.split_at(others.len() - 2);
-    let phases = [first].into_iter().chain(middle.chunks(1)).chain([last]);
-    let together = phases.map(|parts| {
-        let intervals = parts.iter().map(|part| part.intervals).sum();
-        let duration: f64 = parts.iter().map(|p| p.dt * p.intervals as f64).sum();
-        Phase {
-            intervals,
-            dt: duration / intervals as f64,
-            ..parts[0]
-        }
-    });
-    together.collect()
-}
-
 /// What the problem borrows, and the guess that comes with it.
 pub(crate) struct Setup<'a> {
     task: &'a Task,
     pub(crate) srb: &'a SrbPlan,
     track: Track<Transform<f64>>,
+    pub(crate) lengths: Lengths,
+    /// Those of the task, or their parts.
     pub(crate) phases: Vec<Phase<f64, FOOT_COUNT>>,
     /// Times of the nodes, s.
     pub(crate) times: Vec<f64>,
@@ -147,7 +67,7 @@ pub(crate) struct Setup<'a> {
     goal: Pose<f64, N>,
     landing_intervals: usize,
     /// Height over the ground that feet keep on their way, m.
-    pub(crate) lift: f64,
+    lift: f64,
 }
 
 fn pose(base: &Transform<f64>, joints: &[f64; JOINTS]) -> Pose<f64, N> {
@@ -172,36 +92,19 @@ pub(crate) fn times(phases: &[Phase<f64, FOOT_COUNT>]) -> Vec<f64> {
 }
 
 impl<'a> Setup<'a> {
-    /// On intervals of this many usual lengths.
-    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, timing: Timing, lengths: f64) -> Self {
-        let rigid = &task.problem;
-        let phases = spans(task, srb, lengths == 1.0 && timing == Timing::Given)
-            .into_iter()
-            .map(|span| {
-                let intervals = (span.duration / (lengths * span.longest)).ceil().max(1.0);
-                span.phase(intervals as usize)
-            });
-        // On long intervals begins the search for a jump that has no room for it.
-        let lift = if rigid.edge.is_some_and(|edge| edge.drop < 0.0) {
-            ONTO_LIFT
-        } else if lengths > 1.0 {
-            0.0
-        } else {
-            LIFT
-        };
-        Self::along(task, srb, phases.collect(), lift)
+    /// On intervals of these lengths.
+    pub(crate) fn new(task: &'a Task, srb: &'a SrbPlan, lengths: Lengths) -> Self {
+        Self::along(task, srb, lengths, lengths.phases(task, srb))
     }
 
-    /// In given durations, on as many intervals as there were in every part of them, with feet that keep so high, m.
-    pub(crate) fn on(task: &'a Task, srb: &'a SrbPlan, intervals: &[usize], lift: f64) -> Self {
-        let spans = spans(
-            task,
-            srb,
-            intervals.len() > task.problem.used_phases().len(),
-        );
-        let phases = spans.iter().zip(intervals);
-        let phases = phases.map(|(span, intervals)| span.phase(*intervals));
-        Self::along(task, srb, phases.collect(), lift)
+    /// As [`Setup::new`], with so many intervals in every part.
+    pub(crate) fn on(
+        task: &'a Task,
+        srb: &'a SrbPlan,
+        lengths: Lengths,
+        intervals: &[usize],
+    ) -> Self {
+        Self::along(task, srb, lengths, lengths.phases_of(task, srb, intervals))
     }
 
     /// On intervals that are these, each split into equal parts, in phases of these durations. References stay at their intervals.
@@ -213,7 +116,7 @@ impl<'a> Setup<'a> {
             ..*phase
         };
         let phases = self.phases.iter().map(shorter).collect();
-        let mut split = Self::along(self.task, self.srb, phases, self.lift);
+        let mut split = Self::along(self.task, self.srb, self.lengths, phases);
         split.landing_intervals = parts * self.landing_intervals;
         for (phase, duration) in split.phases.iter_mut().zip(durations) {
             phase.dt = duration / phase.intervals as f64;
@@ -221,20 +124,26 @@ impl<'a> Setup<'a> {
         split
     }
 
-    /// Along the motion of the rigid body, on the intervals of these phases, with feet that keep so high, m.
+    /// Along the motion of the rigid body, on the intervals of these phases.
     fn along(
         task: &'a Task,
         srb: &'a SrbPlan,
+        lengths: Lengths,
         phases: Vec<Phase<f64, FOOT_COUNT>>,
-        lift: f64,
     ) -> Self {
         let rigid = &task.problem;
+        let lift = match lengths {
+            _ if rigid.edge.is_some_and(|edge| edge.drop < 0.0) => ONTO_LIFT,
+            // On long intervals begins the search for a jump that has no room for it.
+            Lengths::Even(times) if times > 1.0 => 0.0,
+            Lengths::Even(_) | Lengths::Graded => LIFT,
+        };
         let track = track(task, srb);
         let times = times(&phases);
         let flying = phases.iter().rev();
         let flying = flying.take_while(|phase| !phase.contacts.contains(&true));
         let flight: usize = flying.map(|phase| phase.intervals).sum();
-        let dt = phases.last().map_or(FLIGHT_DT, |phase| phase.dt);
+        let dt = phases.last().map_or(POSED, |phase| phase.dt);
         let take_off = times.len() - 1 - flight;
         let ends = [times[take_off], times[times.len() - 1]];
         let mut nodes: Vec<Pose<f64, N>> = Vec::with_capacity(times.len());
@@ -262,6 +171,7 @@ impl<'a> Setup<'a> {
             task,
             srb,
             track,
+            lengths,
             reference: nodes.windows(2).map(middle).collect(),
             phases,
             times,
@@ -389,11 +299,6 @@ fn clearances(task: &Task) -> Vec<Clearance<f64>> {
     corners.chain((0..FOOT_COUNT).map(knee)).collect()
 }
 
-fn durations(srb: &SrbPlan) -> impl Iterator<Item = f64> {
-    let state = srb.stages.first().map(|stage| stage.state.durations);
-    state.into_iter().flatten()
-}
-
 /// The single-rigid-body plan over time, as motion of the robot's base: the rigid body's frame sits at the centre of mass.
 fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
     let com_b = task.robot.com(&task.start) - task.start.base.translation;
@@ -413,7 +318,7 @@ fn track(task: &Task, srb: &SrbPlan) -> Track<Transform<f64>> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
-    use super::{BASE, FOOT_COUNT, N, Phase, Setup, Timing};
+    use super::{BASE, FOOT_COUNT, Lengths, N, Phase, Setup};
     use crate::task::Task;
     use crate::tightening::Tightening;
     use wb_opt::Pose;
@@ -424,7 +329,7 @@ mod tests {
         let srb = task.guess().unwrap();
         let planned = task.problem.friction;
         let friction = |task: &Task| {
-            let setup = Setup::new(task, &srb, Timing::Given, 4.0);
+            let setup = Setup::new(task, &srb, Lengths::Even(4.0));
             setup.problem(&Tightening::default()).friction
         };
         // The eight sides of a regular octagon are as far out along the axes as between them.
@@ -444,7 +349,7 @@ mod tests {
         for (name, folds) in [("a1/barrel-roll", true), ("a1/lateral", false)] {
             let task = Task::load(name).unwrap();
             let srb = task.guess().unwrap();
-            let setup = Setup::new(&task, &srb, Timing::Given, 1.0);
+            let setup = Setup::new(&task, &srb, Lengths::Even(1.0));
             let flies = |phase: &&Phase<f64, FOOT_COUNT>| !phase.contacts.contains(&true);
             let flight = setup
                 .phases
@@ -472,7 +377,7 @@ mod tests {
     fn heights_that_are_drawn_in_are_higher() {
         let task = Task::load("a1/lateral").unwrap();
         let srb = task.guess().unwrap();
-        let setup = Setup::new(&task, &srb, Timing::Given, 4.0);
+        let setup = Setup::new(&task, &srb, Lengths::Even(4.0));
         let drawn = Tightening {
             height: 0.1,
             ..Tightening::default()

@@ -1,6 +1,7 @@
 //! The whole-body plan of a task as it is to be executed: timings from the single rigid body, or found on the whole body itself.
 
 pub use super::setup::{FRICTION_SMOOTHING, GOAL_TOLERANCE, N, POSED};
+use super::setup::{NI, NU, times};
 use super::stored::{open, store};
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, Observe};
@@ -11,10 +12,10 @@ use crate::search::searched;
 pub use crate::stronger::Stronger;
 pub use crate::tightening::Tightening;
 use core::ops::ControlFlow;
-use ocp_solver::{Progress, Solution, Status};
+use ocp_solver::{Progress, Solution, SparseStage, Status, blocking_rows};
 use serde_json::{Value, json};
 use std::time::Instant;
-use wb_opt::{Gains, Judgement, Phase, Row, Sample, State};
+use wb_opt::{BASE, Gains, Judgement, Phase, Problem, Row, Sample, State};
 
 /// How often limits are drawn in at most.
 const TIGHTENINGS: usize = 3;
@@ -222,6 +223,74 @@ fn tightened(
 }
 
 impl WholeBodyPlan {
+    /// What the stages hold, in physical units.
+    pub(crate) fn of<S: Copy, const X: usize>(
+        (problem, phases): (
+            &Problem<'_, f64, N, FOOT_COUNT>,
+            Vec<Phase<f64, FOOT_COUNT>>,
+        ),
+        (mut outcome, torque_share): (Solution<f64>, f64),
+        stages: &[SparseStage<f64, S, X, NU, NI>],
+        state: impl Fn(&S) -> &State<f64, N>,
+    ) -> Result<Self, String> {
+        let strongest = problem
+            .robot
+            .limits
+            .iter()
+            .skip(BASE)
+            .map(|limit| limit.effort);
+        let nodes = stages
+            .iter()
+            .map(|stage| (state(&stage.state), &stage.control));
+        let starts = times(problem.phases);
+        let intervals = stages[..problem.intervals()]
+            .iter()
+            .zip(&starts)
+            .enumerate();
+        let intervals = intervals.map(|(k, (stage, start))| {
+            let at = state(&stage.state);
+            Interval {
+                start: *start,
+                dt: problem.dt(k),
+                state: *at,
+                sample: problem.sample(k, at, &stage.control),
+                gains: problem.gains(k, at, &stage.control, stage.gain()),
+            }
+        });
+        let blocking = blocking_rows::<4, _, _, _, _, _, _>(stages);
+        let blocked = blocking.iter().flatten().filter_map(|found| {
+            let (row, unit) = problem.row(found.stage, found.row)?;
+            let violation = (found.violation * unit).abs();
+            Some(Blocked { row, violation })
+        });
+        let end = *state(&stages.last().ok_or("no nodes")?.state);
+        let off = so3::log(&(problem.goal.rot_wc.inverse() * end.rot_wc)).norm();
+        let blocked = if outcome.status != Status::Solved {
+            blocked.collect()
+        } else if off > core::f64::consts::FRAC_PI_2 {
+            // The goal's rows are sines of the angle from it, which are small half a turn away, too.
+            outcome.status = Status::Stalled;
+            let turn = Row::Goal { axis: BASE - 1 };
+            vec![Blocked {
+                row: turn,
+                violation: off,
+            }]
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            end,
+            torque_share,
+            stronger: None,
+            blocked,
+            outcome,
+            judged: problem.judge(nodes),
+            torque_limit: strongest.fold(0.0, f64::max),
+            intervals: intervals.collect(),
+            phases,
+        })
+    }
+
     /// Stores and audits the plan, if it was solved.
     fn audited(self, task: &Task) -> Result<Audited, String> {
         let (mut bytes, mut audit) = (Vec::new(), None);
