@@ -97,15 +97,17 @@ fn words(found: &Found) -> String {
         || "no limit known".to_owned(),
         |limit| format!("of {limit:.0}"),
     );
+    let heat = found
+        .heat_share
+        .map_or_else(|| "unknown".to_owned(), |share| format!("{share:.2}"));
     format!(
         "saturation {push_off:.1}, {flight:.1}, {landing:.1} ms; stops {:.1} ms, {:.1} N m; {:.1} rad/s, {:.1} ms too fast; ground \
-         {:.1} weights; heat {:.2}; supply {:.0} W ({limit}), {:.0} J; {touched}",
+         {:.1} weights; heat {heat}; supply {:.0} W ({limit}), {:.0} J; {touched}",
         1e3 * found.stop_time,
         found.stop_torque,
         found.peak_speed,
         1e3 * found.overspeed,
         found.ground_force,
-        found.heat_share,
         found.supply_power,
         found.supply_energy,
     )

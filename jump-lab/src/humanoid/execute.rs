@@ -6,7 +6,7 @@ use super::{FEET, GRAVITY, JOINTS, Known, OWNERS, ROBOT, SPHERES, Task, World, c
 use super::{on_the_floor, plant, poses, spheres, squat};
 use crate::Sim;
 use crate::closed_loop::{ClosedLoop, Drive, Feet, Recorder, Sensors, Setting, Step, stage};
-use crate::lab::{Disturbance, Interface};
+use crate::lab::{Disturbance, Interface, Key};
 use crate::verdict::{Hardware, Tick};
 use icub_model::profile::{Jump, Machine, Workspace};
 use icub_model::{BUDGETS, LIMITS, SOLES, shapes};
@@ -40,6 +40,8 @@ pub struct Usage {
 pub struct Run {
     /// One per millisecond.
     pub samples: Vec<Sample>,
+    /// By how much the landing's ground was higher than known, m.
+    pub ground_height: f64,
     /// Of the robot that was planned for, N.
     pub weight: f64,
     /// Of the machine, in the end.
@@ -76,6 +78,7 @@ impl Run {
     fn new(task: &Task, jump: &Jump, weight: f64, tick: f64) -> Self {
         Self {
             samples: Vec::new(),
+            ground_height: 0.0,
             weight,
             final_phase: Phase::Hold,
             takeoff: jump.profile.duration,
@@ -231,6 +234,7 @@ fn run_told(
     let end = jump.profile.duration + SETTLE + 0.7;
     closed.run((HOLD, end), &mut keeper, progress)?;
     let mut run = keeper.run;
+    run.ground_height = disturbance.get(Key::GroundHeight);
     run.final_phase = closed.machine.phase();
     run.estimate_error = closed.sensors.worst;
     Ok(run)

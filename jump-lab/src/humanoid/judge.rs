@@ -100,7 +100,8 @@ fn stand(run: &Run, time: f64) -> Option<Stand> {
         time: sample.time,
         feet: so3::math::hypot(feet.x, feet.y),
         heading: so3::math::atan2(ahead.y, ahead.x).abs().to_degrees(),
-        height: (sample.position.z - goal.base.translation.z).abs(),
+        // Over the ground that is there, which may be another than the plan's.
+        height: (sample.position.z - goal.base.translation.z - run.ground_height).abs(),
         rotation: so3::log(&turned).norm().to_degrees(),
         upright: stands(sample) && on_feet(run.final_phase),
     })

@@ -67,6 +67,8 @@ pub struct Run {
     robot: Quadruped,
     /// Of the container whose bytes the machine followed.
     pub plan_checksum: u32,
+    /// By how much the landing's ground was higher than known, m.
+    pub ground_height: f64,
     /// One per millisecond.
     pub samples: Vec<Sample>,
     /// Of the robot that was planned for, N.
@@ -104,6 +106,7 @@ impl Run {
         Self {
             robot: *robot,
             plan_checksum,
+            ground_height: 0.0,
             samples: Vec::new(),
             weight,
             final_phase: Phase::Hold,

@@ -92,7 +92,8 @@ fn stand(task: &Task, run: &Run, time: f64) -> Option<Stand> {
         time: sample.time,
         feet: so3::math::hypot(feet.x, feet.y),
         heading: off.abs().to_degrees(),
-        height: (sample.position.z - goal.z).abs(),
+        // Over the ground that is there, which may be another than the plan's.
+        height: (sample.position.z - goal.z - run.ground_height).abs(),
         rotation: between(&task.rot_goal, &rotation),
         upright: tilt(sample) < FALLEN && stands(run.final_phase),
     })
@@ -200,6 +201,14 @@ mod tests {
         run.samples.push(sample(&task, &there, SETTLE));
         let good = stand(&task, &run, SETTLE).unwrap();
         assert!(good.feet < 1e-12 && good.height < 1e-12 && good.upright);
+        // On ground that is 6 cm higher than known it stands as high over it; over known ground it floats.
+        let mut raised = there;
+        raised.base.translation.z += 0.06;
+        run.samples = vec![sample(&task, &raised, SETTLE)];
+        assert!((stand(&task, &run, SETTLE).unwrap().height - 0.06).abs() < 1e-12);
+        run.ground_height = 0.06;
+        assert!(stand(&task, &run, SETTLE).unwrap().height < 1e-12);
+        run.ground_height = 0.0;
         // Legs turned at the hips, base where it was: the feet move aside.
         let leaning: State = Configuration {
             joints: core::array::from_fn(|i| there.joints[i] + if i % 3 == 0 { 0.5 } else { 0.0 }),

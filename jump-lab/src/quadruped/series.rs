@@ -8,6 +8,7 @@ use super::execute::{Closed, HOLD, Keeper, Run, SETTLE, Tamper, Trial, Watch, cl
 use super::judge::middle_of_feet;
 use super::plant::plant;
 use super::{FOOT_COUNT, JOINTS, Planned, State};
+use crate::lab::Key;
 use core::cell::OnceCell;
 use jump_control::Phase;
 use jump_machine::{Jump, Machine, Settings, Workspace};
@@ -104,6 +105,10 @@ pub(super) fn run_all(
         let end = reference.touchdown + SETTLE + 0.5;
         closed.go_on((start, end), &mut keeper, &mut *progress)?;
         let mut run = keeper.run;
+        if i == 0 {
+            // The next ones begin on that ground.
+            run.ground_height = trial.disturbance.get(Key::GroundHeight);
+        }
         run.final_phase = closed.machine.phase();
         run.fault = closed.machine.fault();
         run.estimate_errors = closed.sensors.worst;

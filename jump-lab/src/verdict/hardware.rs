@@ -236,7 +236,7 @@ impl<const N: usize> Hardware<N> {
             overspeed: self.overspeed.value,
             peak_speed: self.peak_speed,
             ground_force: self.ground.value,
-            heat_share: self.heat_share.value,
+            heat_share: b.winding_heat.is_finite().then_some(self.heat_share.value),
             supply_power: self.power.value,
             supply_limit: Some(b.supply_power).filter(|limit| limit.is_finite()),
             supply_energy: self.energy,
@@ -277,8 +277,8 @@ pub struct Found {
     pub peak_speed: f64,
     /// Largest mean over 10 ms.
     pub ground_force: f64,
-    /// Of the hottest winding, over its budget.
-    pub heat_share: f64,
+    /// Of the hottest winding, over its budget; none where nobody has published what a winding bears.
+    pub heat_share: Option<f64>,
     /// Largest mean over 10 ms.
     pub supply_power: f64,
     /// None where nobody has published one: the power is then measured and not judged.
