@@ -1,7 +1,5 @@
 //! The whole-body problem of a task along a motion of the rigid body: the geared A1 on rolling ball feet, with margins.
 
-use core::f64::consts::FRAC_PI_8;
-
 use super::task::{SrbPlan, Task};
 use super::{FOOT_COUNT, JOINTS};
 use crate::edge::cautious;
@@ -12,7 +10,6 @@ use crate::tightening::Tightening;
 use crate::track::Track;
 use nalgebra::Vector3;
 use rbd_core::Transform;
-use so3::math;
 use wb_opt::{BASE, Clearance, Foot, Friction, Phase, Point, Pose, Problem, Robot, Weights};
 
 /// Coordinates of the robot.
@@ -212,8 +209,7 @@ impl<'a> Setup<'a> {
         let rigid = &task.problem;
         let build = task.robot.build(&task.start);
         // A regular octagon: forces keep to the planned share of friction whichever way they point, not along the axes alone.
-        let octagon = rigid.friction / math::cos(FRAC_PI_8);
-        let cone = octagon.min(CONE_SHARE * rigid.friction / task.limits.friction_share);
+        let cone = rigid.friction.min(CONE_SHARE * task.limits.friction);
         let mut problem = Problem {
             robot: Robot::on_free_base(&task.robot),
             feet: core::array::from_fn(|i| Foot {
@@ -239,7 +235,7 @@ impl<'a> Setup<'a> {
             friction_smoothing: FRICTION_SMOOTHING,
             friction: Friction {
                 apex: drawn.friction * rigid.max_force,
-                ..Friction::within_cone(rigid.friction, cone)
+                ..Friction::within_cone(cone, cone)
             },
             drift: ROLL,
             weights: Weights {
@@ -327,21 +323,19 @@ mod tests {
     fn forces_keep_to_the_planned_share_of_friction_whichever_way_they_point() {
         let mut task = Task::load("a1/lateral").unwrap();
         let srb = task.guess().unwrap();
-        let planned = task.problem.friction;
-        let friction = |task: &Task| {
+        let corner = |task: &Task| {
             let setup = Setup::new(task, &srb, Lengths::Even(4.0));
-            setup.problem(&Tightening::default()).friction
+            let friction = setup.problem(&Tightening::default()).friction;
+            // The eight sides of a regular octagon are as far out along the axes as between them.
+            assert!((friction.axes - friction.diagonals.unwrap()).abs() < 1e-12);
+            friction.axes / so3::math::cos(core::f64::consts::FRAC_PI_8)
         };
-        // The eight sides of a regular octagon are as far out along the axes as between them.
-        let octagon = friction(&task);
-        assert!((octagon.axes - planned).abs() < 1e-12);
-        assert!((octagon.diagonals.unwrap() - planned).abs() < 1e-12);
-        // A task that uses all of it keeps its corners, too, within the cone.
-        task.problem.friction = planned / task.limits.friction_share;
+        let planned = task.limits.friction_share * task.limits.friction;
+        assert!((corner(&task) - planned).abs() < 1e-12);
+        // A task that uses all of it keeps room for what forces do between nodes.
         task.limits.friction_share = 1.0;
-        let all = friction(&task);
-        let corner = all.axes / so3::math::cos(core::f64::consts::FRAC_PI_8);
-        assert!(corner < 0.96 * task.problem.friction, "{corner}");
+        task.problem.friction = task.limits.friction;
+        assert!((corner(&task) - 0.95 * task.limits.friction).abs() < 1e-12);
     }
 
     #[test]
