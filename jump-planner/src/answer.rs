@@ -141,11 +141,12 @@ impl Answer {
     /// With the changes of the task that give the rigid body a plan. `observe` hears every iteration of the easier tasks, and stops by
     /// `Break`: what was found until then is told.
     #[must_use]
-    pub fn with_easier_tasks(self, task: &Task, mut observe: impl Observer) -> Self {
-        Self {
-            relaxations: relaxations(task, &mut observe),
-            ..self
+    pub fn with_easier_tasks(mut self, task: &Task, mut observe: impl Observer) -> Self {
+        self.relaxations = relaxations(task, &mut observe);
+        if !self.relaxations.is_empty() {
+            self.because += "; what would help was tried on the body alone, without its legs";
         }
+        self
     }
 }
 
@@ -306,7 +307,10 @@ const EASINGS: [Easing; 5] = [
             eased.problem.friction += share * (1.5 - task.problem.friction).max(0.0);
             eased
         },
-        tell: |_, eased, _| format!("friction would have to be {:.2}", eased.problem.friction),
+        tell: |_, eased, _| {
+            let ground = eased.problem.friction / eased.limits.friction_share;
+            format!("the ground's friction would have to be {ground:.3}")
+        },
     },
     Easing {
         applies: |_| true,
@@ -316,9 +320,11 @@ const EASINGS: [Easing; 5] = [
             eased
         },
         tell: |_, eased, _| {
+            let problem = &eased.problem;
             format!(
-                "the legs would have to push with {:.0} N per foot",
-                eased.problem.max_force
+                "the legs would have to push with {:.0} N per foot, {:.3} weights of the robot",
+                problem.max_force,
+                problem.max_force / (problem.mass * problem.gravity)
             )
         },
     },

@@ -59,18 +59,22 @@ const SLACK: f64 = 1e-6;
 #[must_use]
 pub fn impossible(task: &Task) -> Option<Impossible> {
     let places = core::array::from_fn(|foot| task.robot.place(foot));
-    rigid_body(&task.problem, places)
+    rigid_body(&task.problem, places, task.limits.friction_share)
         .or_else(|| places::landing(task))
         .or_else(|| power(task))
 }
 
-/// The first bound that a problem on the rigid body breaks, whose feet have these names.
+/// The first bound that a problem on the rigid body breaks, whose feet have these names, and whose friction is this share of the ground's.
 #[must_use]
 pub fn rigid_body<const P: usize>(
     problem: &Body<P>,
     places: [&'static str; FOOT_COUNT],
+    friction_share: f64,
 ) -> Option<Impossible> {
-    let facts = Facts::of(problem, places);
+    let facts = Facts {
+        friction_share,
+        ..Facts::of(problem, places)
+    };
     let bounds: [fn(&Body<P>, &Facts) -> Option<Impossible>; 12] = [
         motion::durations,
         motion::falling,

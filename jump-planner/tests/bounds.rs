@@ -94,6 +94,28 @@ fn the_solver_agrees_with_every_bound() {
     }
 }
 
+/// What is told of friction is the ground's, which a task gives, and not the share of it that a plan may use.
+#[test]
+fn the_friction_that_is_told_is_the_grounds() {
+    let on = |friction: f64| {
+        let mut file = TaskFile::load("a1/lateral").unwrap().0;
+        file.limits.friction = friction;
+        impossible(&Task::from_file("slippery", &file, Quadruped::a1().unwrap()).unwrap())
+    };
+    let proof = on(0.02).unwrap();
+    assert_eq!(proof.bound, "sideways", "{proof}");
+    assert!(proof.because.contains("friction of 0.020"), "{proof}");
+    let least: f64 = proof
+        .relaxation
+        .rsplit(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!(on(least - 2e-3).is_some());
+    assert_eq!(on(least + 1e-3), None);
+}
+
 /// A goal that friction and force alone would allow, but not within reach of feet that stand.
 #[test]
 fn speed_is_gained_where_feet_stand() {

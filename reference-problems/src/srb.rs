@@ -29,8 +29,8 @@ impl File {
     /// No such task, or what `srb-opt` says of it.
     pub fn impossible(&self, name: &str) -> Result<Option<Impossible>, String> {
         Ok(match self.task(name)?.phase_count() {
-            0..=4 => rigid_body(&self.problem::<4>(name)?, LEGS),
-            _ => rigid_body(&self.problem::<12>(name)?, LEGS),
+            0..=4 => rigid_body(&self.problem::<4>(name)?, LEGS, 1.0),
+            _ => rigid_body(&self.problem::<12>(name)?, LEGS, 1.0),
         })
     }
 

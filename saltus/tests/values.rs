@@ -238,6 +238,12 @@ fn impossible_tasks() -> Vec<(String, &'static [&'static str])> {
         ),
         (turn("inf"), &["turn.angle_deg", "finite"]),
         (
+            LATERAL
+                .replace("guess_s = 0.5", "guess_s = 0.5\nturn_deg = 0.0")
+                .replace("guess_s = 0.3", "guess_s = 0.3\nturn_deg = 90.0"),
+            &["phase 2", "turn_deg", "0 degrees", "turn.angle_deg"],
+        ),
+        (
             limit("friction_share = 2.0"),
             &["limits.friction_share", "2", "up to 1"],
         ),

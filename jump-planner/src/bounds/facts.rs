@@ -9,6 +9,8 @@ use srb_opt::Foot;
 pub(super) struct Facts {
     /// Names of the feet.
     pub(super) places: [&'static str; FOOT_COUNT],
+    /// Share of the ground's friction that the problem has.
+    pub(super) friction_share: f64,
     /// Longest plan, s.
     pub(super) total: f64,
     /// Longest time with feet on the ground, s.
@@ -65,6 +67,7 @@ impl Facts {
         };
         Self {
             places,
+            friction_share: 1.0,
             total,
             stance: stance.min(total - air).max(0.0),
             flight: last.fold([0.0, 0.0], |[least, most], phase| {

@@ -57,10 +57,15 @@ pub(super) fn sideways<const P: usize>(problem: &Body<P>, facts: &Facts) -> Opti
     (far > reached + SLACK).then(|| Impossible {
         bound: "sideways",
         because: format!(
-            "with friction {:.3} the ground pushes the robot at most {reached:.3} m sideways in {:.3} s, the goal is {far:.3} m away",
-            problem.friction, facts.total
+            "with {:.2} of the ground's friction of {:.3} it pushes the robot at most {reached:.3} m sideways in {:.3} s, the goal is {far:.3} m away",
+            facts.friction_share,
+            problem.friction / facts.friction_share,
+            facts.total
         ),
-        relaxation: format!("friction would have to be at least {:.3}", far / (push * coasting)),
+        relaxation: format!(
+            "the ground's friction would have to be at least {:.3}",
+            far / (push * coasting * facts.friction_share)
+        ),
     })
 }
 

@@ -377,6 +377,13 @@ fn phases(file: &TaskFile, robot: &Quadruped, edge: Option<Edge<f64>>) -> Result
         "phase.turn_deg",
         "must be in all phases or in none",
     )?;
+    let turned = file.turn.map_or(0.0, |turn| turn.angle_deg);
+    let last = file.phases.last().and_then(|phase| phase.turn_deg);
+    require(
+        last.is_none_or(|last| (last - turned).abs() < 1e-9),
+        &format!("phase {count}: turn_deg"),
+        &format!("the last phase ends with the whole turn, {turned} degrees by `turn.angle_deg`"),
+    )?;
     let drop = edge.map_or(0.0, |edge| edge.drop.clamp(0.0, LOW_BOX));
     let mut phases = [Phase {
         contacts: [false; FOOT_COUNT],
