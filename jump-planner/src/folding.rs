@@ -26,7 +26,7 @@ const WHOLLY: f64 = core::f64::consts::PI;
 const TIME: f64 = 0.12;
 
 /// The legs' reference in flight.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct Folding {
     /// Joints of the landing posture, rad.
     landing: [f64; JOINTS],

@@ -1,5 +1,8 @@
 //! Studies of many runs: shards, resumption, and what is refused.
 
+use crate::command::saltus;
+use crate::refused::refused;
+use core::time::Duration;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -88,6 +91,37 @@ fn shards_and_a_stopped_study_make_the_same_table_as_one_run() {
     assert!(!other.status.success());
     assert!(String::from_utf8_lossy(&other.stderr).contains("another study"));
     assert_eq!(std::fs::read_to_string(&file).unwrap(), now);
+}
+
+/// A task file that has been changed since is another task, although its path is the same.
+#[test]
+fn a_study_of_a_task_that_was_changed_is_another_study() {
+    let folder = crate::command::folder("changed");
+    let task = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+    let write = |text: &str| std::fs::write(folder.join("t.toml"), text).unwrap();
+    let study = "envelope t.toml --samples 1 --planner kinematics --json --out study";
+    let study: Vec<&str> = study.split(' ').collect();
+    write(task);
+    assert!(saltus(&folder, &study).status.success());
+    let file = "study/shard-1-of-1.csv";
+    let known = read(&folder, file);
+
+    write(&task.replace("[0.0, 0.3, 0.0]", "[0.0, 0.28, 0.0]"));
+    let limit = Duration::from_secs(20);
+    let part = [&study[..], &["--shard", "2/2"]].concat();
+    for again in [&study, &part] {
+        refused(limit, &folder, again, &["shard-1-of-1", "another study"]);
+    }
+    assert_eq!(std::fs::read_dir(folder.join("study")).unwrap().count(), 4);
+    assert_eq!(read(&folder, file), known);
+
+    // What only a reader sees does not count.
+    write(&format!("# words\n{task}"));
+    assert!(saltus(&folder, &study).status.success());
+    let manifest: serde_json::Value =
+        serde_json::from_str(&read(&folder, "study/manifest.json")).unwrap();
+    let content = manifest["content"].as_str().unwrap();
+    assert!(known.contains(&format!("# task t.toml content {content} ")));
 }
 
 #[test]

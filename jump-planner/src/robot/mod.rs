@@ -31,11 +31,11 @@ const UNLIMITED: f64 = 1e3;
 pub const PLACES: [&str; LEGS] = ["FL", "FR", "RL", "RR"];
 
 /// A quadruped. Copies share one description, which lives as long as the program: a session plans for few robots.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Quadruped(&'static Data);
 
 /// What is known about a quadruped. Leg i has joints 3 i to 3 i + 2, from the trunk down.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Data {
     /// Its name in plans and results.
     pub name: &'static str,

@@ -4,6 +4,7 @@
 //! its mass, the composite inertia of the crouch, and margins on friction and force.
 
 mod attempt;
+mod digest;
 pub mod file;
 mod guess;
 mod stance;

@@ -69,8 +69,9 @@ impl Study<'_> {
     /// The first line of its files: files of another study are told by it.
     fn title(&self) -> String {
         let mut title = format!(
-            "# task {} sim {} samples {} seed {}",
+            "# task {} content {} sim {} samples {} seed {}",
             self.task.name,
+            self.content(),
             self.sim.name(),
             self.samples,
             self.seed
@@ -90,6 +91,11 @@ impl Study<'_> {
             title += &names(&self.without);
         }
         title
+    }
+
+    /// What tells the task from another of its name: a task file, or its robot's, may have been changed since.
+    fn content(&self) -> String {
+        format!("{:08x}", self.task.digest())
     }
 
     /// Fails where the folder holds something else.
@@ -125,6 +131,7 @@ impl Study<'_> {
             "version": VERSION,
             "command": std::env::args().collect::<Vec<_>>(),
             "task": self.task.name,
+            "content": self.content(),
             "sim": self.sim.name(),
             "planner": self.planner.name(),
             "samples": self.samples,
