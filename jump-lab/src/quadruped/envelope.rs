@@ -184,10 +184,23 @@ pub fn wilson(good: usize, count: usize) -> [f64; 2] {
     ]
 }
 
-/// Which of the equal parts of the range a value lies in.
-fn bin(value: f64, [low, high]: [f64; 2]) -> usize {
+/// A rate of `good` in `count` with its interval, as the cells `rate,low95,high95` of a file; empty where nothing was tried, of which nothing is
+/// known.
+#[must_use]
+pub fn rate(good: usize, count: usize) -> String {
+    if count == 0 {
+        return ",,".to_owned();
+    }
+    let [low, high] = wilson(good, count);
+    format!("{:.4},{low:.4},{high:.4}", good as f64 / count as f64)
+}
+
+/// Which of the equal parts of the range a value lies in; in none where it is outside, as a `--plant` may have it.
+fn bin(value: f64, [low, high]: [f64; 2]) -> Option<usize> {
     let share = (value - low) / (high - low) * BINS as f64;
-    (share.max(0.0) as usize).min(BINS - 1)
+    // Both ends are inside, and what is not a number is not.
+    let inside = low <= value && value <= high;
+    inside.then(|| (share as usize).min(BINS - 1))
 }
 
 fn edges([low, high]: [f64; 2], bin: usize) -> [f64; 2] {
@@ -195,25 +208,21 @@ fn edges([low, high]: [f64; 2], bin: usize) -> [f64; 2] {
     [low + width * bin as f64, low + width * (bin + 1) as f64]
 }
 
-/// All samples, then the cells of each disturbance, then those of the picture's two together; then what failed first.
+/// All samples, then the cells of each disturbance, then those of the picture's two together; then what failed first. The cells are parts of the lab's
+/// range: a sample that differs by more is in none of that disturbance.
 pub fn table(samples: &[Sample]) -> String {
     let mut out =
         String::from("cell,from,to,cell2,from2,to2,samples,on_target,rate,low95,high95\n");
     let mut row = |name: &str, cell: &[&Sample]| {
         let good = cell.iter().filter(|s| s.good()).count();
-        let [low, high] = wilson(good, cell.len());
-        let rate = good as f64 / cell.len().max(1) as f64;
-        let _ = writeln!(
-            out,
-            "{name},{},{good},{rate:.4},{low:.4},{high:.4}",
-            cell.len()
-        );
+        let rate = rate(good, cell.len());
+        let _ = writeln!(out, "{name},{},{good},{rate}", cell.len());
     };
     row("all,,,,,", &samples.iter().collect::<Vec<_>>());
     for axis in axes() {
         let range = axis.lab[0];
         for k in 0..BINS {
-            let inside = |s: &&Sample| bin(s.value(axis.key), range) == k;
+            let inside = |s: &&Sample| bin(s.value(axis.key), range) == Some(k);
             let cell: Vec<&Sample> = samples.iter().filter(inside).collect();
             let [from, to] = edges(range, k);
             row(&format!("{},{from:.4},{to:.4},,,", axis.name), &cell);
@@ -237,7 +246,8 @@ pub fn grid(samples: &[Sample]) -> impl Iterator<Item = (usize, usize, Vec<&Samp
     (0..BINS).flat_map(move |i| {
         (0..BINS).map(move |j| {
             let inside = |s: &&Sample| {
-                bin(s.value(a.key), a.lab[0]) == i && bin(s.value(b.key), b.lab[0]) == j
+                let [of_a, of_b] = [a, b].map(|row| bin(s.value(row.key), row.lab[0]));
+                of_a == Some(i) && of_b == Some(j)
             };
             (i, j, samples.iter().filter(inside).collect())
         })
@@ -246,7 +256,7 @@ pub fn grid(samples: &[Sample]) -> impl Iterator<Item = (usize, usize, Vec<&Samp
 
 #[cfg(test)]
 mod tests {
-    use super::{Counts, Sample, bin, table, wilson};
+    use super::{BINS, Counts, Sample, bin, grid, table, wilson};
     use crate::lab::Key;
     use crate::lab::keys::ROWS;
 
@@ -293,7 +303,7 @@ mod tests {
         let range = [0.8, 1.2];
         assert_eq!(
             [0.8, 0.85, 0.95, 1.05, 1.15, 1.2].map(|x| bin(x, range)),
-            [0, 0, 1, 2, 3, 3]
+            [0, 0, 1, 2, 3, 3].map(Some)
         );
         let samples: Vec<Sample> = (0..8)
             .map(|i| {
@@ -306,6 +316,22 @@ mod tests {
         assert!(text.contains("ground,2.0000,6.5000,,,,2,2,1.0000,"));
         assert!(text.contains("ground,15.5000,20.0000,,,,2,0,0.0000,"));
         assert!(text.contains("# failed: stand.upright 2"));
+    }
+
+    /// What is outside of the lab's range is no sample of its ends, and a cell without samples has no rate.
+    #[test]
+    fn a_sample_outside_of_the_cells_is_in_none() {
+        for x in [0.79, 1.21, f64::NAN, f64::INFINITY] {
+            assert_eq!(bin(x, [0.8, 1.2]), None, "{x}");
+        }
+        let samples = [1.0, 30.0].map(|ground| sample(0, ground, "target"));
+        let text = table(&samples);
+        assert!(text.contains("\nall,,,,,,2,2,1.0000,"), "{text}");
+        let cells = text.lines().filter(|line| line.starts_with("ground,"));
+        let cells: Vec<&str> = cells.collect();
+        assert!(cells.len() > BINS && cells.iter().all(|line| line.ends_with(",0,0,,,")));
+        assert!(grid(&samples).all(|(_, _, cell)| cell.is_empty()));
+        assert!(table(&[]).contains("\nall,,,,,,0,0,,,\n"));
     }
 
     #[test]

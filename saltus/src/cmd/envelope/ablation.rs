@@ -6,7 +6,7 @@ use crate::cmd::folder::write;
 use crate::cmd::interrupt;
 use core::fmt::Write;
 use indicatif::ProgressBar;
-use jump_lab::quadruped::envelope::{Counts, wilson};
+use jump_lab::quadruped::envelope::{Counts, rate, wilson};
 use jump_lab::quadruped::measure::Measure;
 use serde_json::{Map, Value, json};
 
@@ -68,12 +68,11 @@ fn csv(rows: &[Row]) -> String {
                 let Counts {
                     samples, on_target, ..
                 } = counts;
-                let rate = *on_target as f64 / (*samples).max(1) as f64;
-                let [low, high] = wilson(*on_target, *samples);
+                let rate = rate(*on_target, *samples);
                 let failed = counts.failures();
                 writeln!(
                     out,
-                    "{without},{samples},{on_target},{rate:.4},{low:.4},{high:.4},\"{failed}\","
+                    "{without},{samples},{on_target},{rate},\"{failed}\","
                 )
             }
             Err(error) => {

@@ -3,7 +3,8 @@
 use core::fmt::Write;
 use jump_lab::quadruped::envelope::{BINS, PICTURE, Sample, grid};
 
-/// Cells of ground and torque as a picture: darker is better, with the rate and the number of samples.
+/// Cells of ground and torque as a picture: darker is better, with the rate and the number of samples. Of a cell without samples nothing is
+/// known, and nothing is drawn.
 pub(super) fn picture(samples: &[Sample], title: &str) -> String {
     let side = 90;
     let (left, top) = (90, 50);
@@ -14,23 +15,19 @@ pub(super) fn picture(samples: &[Sample], title: &str) -> String {
         top + side * BINS + 60,
         title.trim_start_matches("# ")
     );
-    for (i, j, cell) in grid(samples) {
+    for (i, j, cell) in grid(samples).filter(|(_, _, cell)| !cell.is_empty()) {
         let good = cell.iter().filter(|s| s.good()).count();
-        let rate = good as f64 / cell.len().max(1) as f64;
+        let rate = good as f64 / cell.len() as f64;
         let (x, y) = (left + side * i, top + side * (BINS - 1 - j));
-        let (fill, text) = if cell.is_empty() {
-            ("#ffffff".to_owned(), "none".to_owned())
-        } else {
-            let light = (235.0 - 150.0 * rate) as u8;
-            let fill = format!("#{light:02x}e0{light:02x}");
-            (fill, format!("{:.0} % of {}", 100.0 * rate, cell.len()))
-        };
+        let light = (235.0 - 150.0 * rate) as u8;
         let _ = writeln!(
             out,
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" fill=\"{fill}\" stroke=\"#888\"/>\
-             <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{side}\" height=\"{side}\" fill=\"#{light:02x}e0{light:02x}\" stroke=\"#888\"/>\
+             <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{:.0} % of {}</text>",
             x + side / 2,
-            y + side / 2 + 5
+            y + side / 2 + 5,
+            100.0 * rate,
+            cell.len()
         );
     }
     for k in 0..=BINS {
