@@ -10,6 +10,7 @@ mod folding;
 mod grid;
 mod kept;
 mod lengths;
+mod no_plan;
 mod pace;
 mod plan;
 pub mod planned;
@@ -29,6 +30,7 @@ pub mod track;
 pub mod whole_body;
 
 pub use kept::Kept;
+pub use no_plan::NoPlan;
 pub use plan::{Options, Outcome, Step, plan, replan};
 pub use whole_body::Timing;
 

@@ -1,5 +1,8 @@
 //! From a task to what the controller follows: which planner, and its plan node by node.
 
+use super::answer::Answer;
+use super::bounds::impossible;
+use super::no_plan::NoPlan;
 use super::reference::{self, Reference};
 use super::robot::Quadruped;
 use super::stored::{self, open, store};
@@ -8,7 +11,7 @@ use super::whole_body::{self, Interval, N, Timing, WholeBodyPlan};
 use super::{FOOT_COUNT, JOINTS, Node};
 use core::ops::ControlFlow;
 use nalgebra::Vector3;
-use ocp_solver::Status;
+use ocp_solver::{Settings, Status};
 use rbd_core::{Motion, Transform};
 use std::time::Instant;
 use wb_opt::{BASE, State};
@@ -106,31 +109,45 @@ impl Planner {
     /// Plans the legs along a plan of the body.
     ///
     /// # Errors
-    /// A sentence: not solved, or refused by its audit.
-    pub fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+    /// [`NoPlan`]: not solved, or refused by its audit.
+    pub fn plan(self, task: &Task, srb: &SrbPlan) -> Result<Reference, NoPlan> {
         match self {
             Self::WholeBody => whole_body(task, srb),
-            Self::Kinematics => reference::build(task, srb),
+            Self::Kinematics => Ok(reference::build(task, srb)?),
             Self::RigidBody => rigid_body(task, srb),
         }
     }
 }
 
-fn whole_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+/// The motion of the body, which the legs' plans follow.
+///
+/// # Errors
+/// [`NoPlan`]: the proof that there is no plan at all, or what blocks the body and what would have to change.
+pub fn body(task: &Task) -> Result<SrbPlan, NoPlan> {
+    if let Some(proof) = impossible(task) {
+        return Err(Answer::proven(proof).into());
+    }
+    let plan = task.attempt(&Settings::new(), |_| ControlFlow::Continue(()))?;
+    if plan.status != Status::Solved {
+        let blocked = Answer::no_body_plan(task, &plan);
+        let answer = blocked.with_easier_tasks(task, |_| ControlFlow::Continue(()));
+        return Err(answer.into());
+    }
+    Ok(plan)
+}
+
+fn whole_body(task: &Task, srb: &SrbPlan) -> Result<Reference, NoPlan> {
     let whole = whole_body::audited(task, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
     let solved = solved(task, &whole.plan, whole.wall_ms)?;
     if let Some(audit) = whole.audit.filter(|audit| !audit.is_a_motion()) {
-        return Err(format!(
-            "task {}: the plan failed its audit: {}",
-            task.name,
-            audit.complaint()
-        ));
+        return Err(Answer::failed(&audit).into());
     }
-    follow(task, &task.robot, &whole.bytes, Origin::WholeBody(solved))
+    let origin = Origin::WholeBody(solved);
+    Ok(follow(task, &task.robot, &whole.bytes, origin)?)
 }
 
 /// Not audited: it is the plan of another robot.
-fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
+fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, NoPlan> {
     let robot = task.robot.on_massless_legs(&task.start);
     let light = Task {
         robot: robot.map_err(|error| error.to_string())?,
@@ -138,20 +155,17 @@ fn rigid_body(task: &Task, srb: &SrbPlan) -> Result<Reference, String> {
     };
     let clock = Instant::now();
     let plan = whole_body::plan(&light, srb, Timing::Given, |_| ControlFlow::Continue(()))?;
-    let solved = solved(task, &plan, clock.elapsed().as_secs_f64() * 1e3)?;
+    let solved = solved(&light, &plan, clock.elapsed().as_secs_f64() * 1e3)?;
     let bytes = store(&light, &plan)?;
-    follow(task, &light.robot, &bytes, Origin::RigidBody(solved))
+    let origin = Origin::RigidBody(solved);
+    Ok(follow(task, &light.robot, &bytes, origin)?)
 }
 
 /// How a plan was solved; an error if it was not.
-fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, String> {
+fn solved(task: &Task, plan: &WholeBodyPlan, wall_ms: f64) -> Result<Solved, NoPlan> {
     let outcome = &plan.outcome;
     if outcome.status != Status::Solved {
-        return Err(format!(
-            "task {}: the whole-body planner ended with {:?} after {} iterations, violation {:.1e}: \
-             `saltus plan` tells what blocks and what would have to change; ask for less, or try --planner kinematics",
-            task.name, outcome.status, outcome.iterations, plan.judged.max_violation
-        ));
+        return Err(Answer::no_whole_body_plan(task, plan).into());
     }
     Ok(Solved {
         wall_ms,

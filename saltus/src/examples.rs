@@ -73,7 +73,7 @@ Examples:
   saltus envelope a1/diagonal --ablate                 the study beside the same study without each measure
 
 Exit codes: 0 the study or its shard is complete; 130 stopped by Ctrl-C, with the table of the samples so far: the same command goes on;
-2 the task, the folder or an option is refused; 1 the results cannot be written.";
+2 there is no such plan (the output tells why), or the task, the folder or an option is refused; 1 the results cannot be written.";
 
 pub(crate) const VERDICTS: &str = "\
 Examples:

@@ -66,6 +66,14 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     (&["run", "nan.toml"], &["goal_m", "finite"]),
     (&["run", "far.toml"], &["Infeasible", "friction"]),
     (
+        &["envelope", "far.toml"],
+        &["far.toml: Infeasible", "infeasible: with friction"],
+    ),
+    (
+        &["envelope", "far.toml", "--ablate"],
+        &["far.toml: Infeasible", "infeasible: with friction"],
+    ),
+    (
         &["run", "short.bin"],
         &["short.bin", "cut off", "copy the plan again"],
     ),

@@ -3,7 +3,8 @@
 use super::{FOOT_COUNT, JOINTS, Node};
 use core::str::FromStr;
 use jump_machine::Settings;
-use jump_planner::planned::Planner;
+use jump_planner::NoPlan;
+use jump_planner::planned::{self, Planner};
 use jump_planner::reference::Reference;
 use jump_planner::robot::Quadruped;
 use jump_planner::task::Task;
@@ -108,8 +109,8 @@ impl Measure {
     /// Plans a task without these measures.
     ///
     /// # Errors
-    /// Why there is no plan.
-    pub fn plan(task: &Task, planner: Planner, without: &[Self]) -> Result<Reference, String> {
+    /// [`NoPlan`]: what `saltus plan` would answer, or a measure that this planner cannot do without.
+    pub fn plan(task: &Task, planner: Planner, without: &[Self]) -> Result<Reference, NoPlan> {
         let mut task = task.clone();
         if without.contains(&Self::Margins) {
             let limits = &mut task.limits;
@@ -117,11 +118,12 @@ impl Measure {
             limits.torque_shares = [1.0; 3];
             task.problem.friction = limits.friction;
         }
-        let body = task.solve()?;
+        let body = planned::body(&task)?;
         let mut reference = planner.plan(&task, &body)?;
         if without.contains(&Self::Drives) {
             if planner != Planner::WholeBody {
-                return Err("only whole-body plans can do without drives".into());
+                let what = "only whole-body plans can do without drives";
+                return Err(NoPlan::Error(what.to_owned()));
             }
             forget_drives(&task.robot, &mut reference.nodes);
             reference.store_torques()?;

@@ -8,6 +8,7 @@ mod folder;
 pub(crate) mod import;
 mod interrupt;
 mod leftovers;
+mod no_plan;
 pub(crate) mod output;
 pub(crate) mod plan;
 pub(crate) mod reproduce;

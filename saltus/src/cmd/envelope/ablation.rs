@@ -8,6 +8,7 @@ use core::fmt::Write;
 use indicatif::ProgressBar;
 use jump_lab::quadruped::envelope::{Counts, rate, wilson};
 use jump_lab::quadruped::measure::Measure;
+use jump_planner::reference::Reference;
 use serde_json::{Map, Value, json};
 
 /// Name of the row with all measures, and of its folder.
@@ -19,8 +20,11 @@ pub(super) struct Row {
     result: Result<Counts, String>,
 }
 
-/// Runs the study with all measures and without each, in folders of their own, until Ctrl-C.
-pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Failure> {
+/// The study with all measures and without each, in folders of their own, by what is left out.
+pub(super) type Parts<'a> = Vec<(&'static str, Study<'a>)>;
+
+/// The parts of a study. Fails where a folder holds something else.
+pub(super) fn parts<'a>(study: &Study<'a>) -> Result<Parts<'a>, String> {
     let parts = core::iter::once(None).chain(Measure::ALL.map(Some));
     let parts = parts.map(|off| {
         let name = off.map_or(NONE, Measure::name);
@@ -31,13 +35,20 @@ pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Fail
         };
         (name, part)
     });
-    let parts: Vec<_> = parts.collect();
+    let parts: Parts<'_> = parts.collect();
     refuse_strangers(&study.folder, "without-")?;
     for (_, part) in &parts {
         part.refuse_strangers()?;
     }
-    bar.set_message("planning ");
-    let whole = study.plan()?;
+    Ok(parts)
+}
+
+/// Runs the parts, until Ctrl-C; `whole` is the plan with all measures.
+pub(super) fn run(
+    (study, parts): (&Study<'_>, Parts<'_>),
+    whole: &Reference,
+    bar: &ProgressBar,
+) -> Result<Vec<Row>, Failure> {
     let mut rows = Vec::new();
     for (without, part) in parts {
         if interrupt::asked() {
@@ -47,8 +58,8 @@ pub(super) fn run(study: &Study<'_>, bar: &ProgressBar) -> Result<Vec<Row>, Fail
         let replanned = part.without.iter().any(|measure| measure.is_planned());
         let own = replanned.then(|| part.plan()).transpose();
         let result = match own {
-            Ok(own) => Ok(Counts::of(&part.run(own.as_ref().unwrap_or(&whole), bar)?)),
-            Err(error) => Err(error),
+            Ok(own) => Ok(Counts::of(&part.run(own.as_ref().unwrap_or(whole), bar)?)),
+            Err(why) => Err(why.to_string()),
         };
         rows.push(Row { without, result });
     }

@@ -7,6 +7,7 @@ mod study;
 use super::failure::Failure;
 use super::folder::{check_file, check_new};
 use super::interrupt;
+use super::no_plan::refuse;
 use super::output::{Output, whole};
 use crate::cmd::output::{measures, planners, sims};
 use jump_lab::Sim;
@@ -87,7 +88,7 @@ impl Args {
     }
 }
 
-/// Runs the command. Exit code 0 when the study or its shard is complete; Ctrl-C leaves the table of the samples so far.
+/// Runs the command. Exit code 0 when the study or its shard is complete, 2 when there is no plan to study; Ctrl-C leaves the table of the samples so far.
 pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.sim.check()?;
     let task = Task::load(&args.task)?;
@@ -118,16 +119,27 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bar = args
         .output
         .bar(0, "{msg}{pos}/{len} [{bar:40}] {elapsed}, {eta} left")?;
-    let (text, result) = if args.ablate {
-        let rows = ablation::run(&study, &bar)?;
+    let parts = if args.ablate {
+        Some(ablation::parts(&study)?)
+    } else {
+        study.refuse_strangers()?;
+        None
+    };
+    bar.set_message("planning ");
+    let reference = match study.plan() {
+        Ok(reference) => reference,
+        Err(why) => {
+            bar.finish_and_clear();
+            return refuse(args.output, &task.name, why);
+        }
+    };
+    let (text, result) = if let Some(parts) = parts {
+        let rows = ablation::run((&study, parts), &reference, &bar)?;
         (
             ablation::text(&rows),
             json!({ "ablation": ablation::json(&rows) }),
         )
     } else {
-        study.refuse_strangers()?;
-        bar.set_message("planning ");
-        let reference = study.plan()?;
         bar.set_message("");
         let samples = study.run(&reference, &bar)?;
         let mut text = table(&samples);
@@ -138,20 +150,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let complete = !interrupt::asked();
     if args.output.json {
-        let mut report = json!({
-            "task": task.name,
-            "sim": args.sim.name(),
-            "planner": args.planner.name(),
-            "seed": args.seed,
-            "samples": args.samples,
-            "without": study.without.iter().map(|measure| measure.name()).collect::<Vec<_>>(),
-            "complete": complete,
-            "folder": study.folder,
-        });
-        if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
-            report.extend(result);
-        }
-        say!("{report}");
+        say!("{}", report(args, &study, complete, result));
     } else if !args.output.quiet {
         say!("{}\nfolder: {}", text.trim_end(), study.folder.display());
     }
@@ -160,4 +159,23 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
     } else {
         ExitCode::from(interrupt::CODE)
     })
+}
+
+/// The object of `--json`, with the keys of the result.
+fn report(args: &Args, study: &Study<'_>, complete: bool, result: Value) -> Value {
+    let without = study.without.iter().map(|measure| measure.name());
+    let mut report = json!({
+        "task": study.task.name,
+        "sim": args.sim.name(),
+        "planner": args.planner.name(),
+        "seed": args.seed,
+        "samples": args.samples,
+        "without": without.collect::<Vec<_>>(),
+        "complete": complete,
+        "folder": study.folder,
+    });
+    if let (Value::Object(report), Value::Object(result)) = (&mut report, result) {
+        report.extend(result);
+    }
+    report
 }

@@ -14,6 +14,7 @@ use jump_lab::quadruped::envelope::{Sample, table, trial};
 use jump_lab::quadruped::execute;
 use jump_lab::quadruped::judge::Judged;
 use jump_lab::quadruped::measure::Measure;
+use jump_planner::NoPlan;
 use jump_planner::planned::Planner;
 use jump_planner::reference::Reference;
 use jump_planner::task::Task;
@@ -143,7 +144,7 @@ impl Study<'_> {
     }
 
     /// The plan that is executed.
-    pub(super) fn plan(&self) -> Result<Reference, String> {
+    pub(super) fn plan(&self) -> Result<Reference, NoPlan> {
         Measure::plan(self.task, self.planner, &self.without)
     }
 

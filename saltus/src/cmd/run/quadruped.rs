@@ -3,6 +3,7 @@
 use super::{Args, Files, code};
 use crate::cmd::failure::Failure;
 use crate::cmd::folder::{check_file, check_new, describe, write_file};
+use crate::cmd::no_plan::refuse;
 use crate::quadruped::{json as result_json, report, strip};
 use crate::report::{About, Line, words};
 use crate::verdict;
@@ -12,15 +13,13 @@ use jump_lab::quadruped::execute::Trial;
 use jump_lab::quadruped::judge::Judged;
 use jump_lab::quadruped::programs::Programs;
 use jump_lab::quadruped::{Planned, execute, log};
-use jump_planner::answer::Answer;
+use jump_planner::NoPlan;
 use jump_planner::audit::Audit;
-use jump_planner::bounds::impossible;
-use jump_planner::planned::{Origin, Planner};
+use jump_planner::planned::{Origin, Planner, body};
 use jump_planner::reference::Reference;
 use jump_planner::robot::{JOINTS, Quadruped};
 use jump_planner::stored::{Stored, joint_name, open_for};
 use jump_planner::task::{SrbPlan, Task};
-use serde_json::json;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -50,11 +49,18 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     } else {
         let task = Task::load_for(&args.what, args.robot.as_deref(), &args.lock)?;
         args.output.warn_of(&task.robot);
-        if let Some(proof) = impossible(&task) {
-            bar.finish_and_clear();
-            return Ok(refuse(args, &task, &Answer::proven(proof)));
+        match plan(args, &task, &bar) {
+            Ok((srb, reference, complaint)) => Made {
+                task,
+                srb: Some(srb),
+                reference,
+                complaint,
+            },
+            Err(why) => {
+                bar.finish_and_clear();
+                return refuse(args.output, &task.name, why);
+            }
         }
-        plan(args, task, &bar)?
     };
     let (task, reference) = (&made.task, &made.reference);
     let clock = Instant::now();
@@ -109,26 +115,23 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     Ok(code(judged.verdict.on_target()))
 }
 
-/// Plans the task.
-fn plan(args: &Args, task: Task, bar: &ProgressBar) -> Result<Made, String> {
+/// Plans the task; with the plans what the audit has against a plan that is flown all the same.
+fn plan(
+    args: &Args,
+    task: &Task,
+    bar: &ProgressBar,
+) -> Result<(SrbPlan, Reference, Option<String>), NoPlan> {
     bar.set_message("planning the body's motion");
-    let srb = task.solve()?;
+    let srb = body(task)?;
     bar.set_message("planning the legs");
     bar.set_position(50);
-    let reference = args
-        .planner
-        .unwrap_or(Planner::WholeBody)
-        .plan(&task, &srb)?;
+    let planner = args.planner.unwrap_or(Planner::WholeBody);
+    let reference = planner.plan(task, &srb)?;
     let complaint = match reference.origin {
         Origin::WholeBody(_) => refusal(&task.robot, &reference)?,
         _ => None,
     };
-    Ok(Made {
-        task,
-        srb: Some(srb),
-        reference,
-        complaint,
-    })
+    Ok((srb, reference, complaint))
 }
 
 /// Why `saltus plan` would refuse this plan, if it does.
@@ -171,17 +174,6 @@ fn own_robot(bytes: &[u8], args: &Args) -> Result<Quadruped, String> {
         Some(task) => Ok(task.robot),
         None => Quadruped::a1().map_err(|error| error.to_string()),
     }
-}
-
-/// Tells why there is nothing to execute.
-fn refuse(args: &Args, task: &Task, answer: &Answer) -> ExitCode {
-    if args.output.json {
-        let report = json!({ "task": task.name, "status": answer.status, "answer": answer.json() });
-        say!("{report}");
-    } else if !args.output.quiet {
-        say!("{}: {}\n{}", task.name, answer.status, answer.text());
-    }
-    code(false)
 }
 
 /// The result for people.

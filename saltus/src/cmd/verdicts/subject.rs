@@ -11,9 +11,7 @@ use jump_lab::lab::{Interface, Lab, PlantArgument};
 use jump_lab::quadruped::execute::{self, Trial};
 use jump_lab::quadruped::judge::Judged;
 use jump_lab::verdict::{TARGET, Verdict};
-use jump_planner::answer::Answer;
-use jump_planner::bounds::impossible;
-use jump_planner::planned::Planner;
+use jump_planner::planned::{Planner, body};
 use jump_planner::reference::Reference;
 use jump_planner::task::Task;
 use rbd_core::Transform;
@@ -137,15 +135,10 @@ impl Subject {
 }
 
 fn planned(task: Task) -> Kind {
-    if let Some(proof) = impossible(&task) {
-        return Kind::NoPlan(Answer::proven(proof).text());
-    }
-    let planned = task
-        .solve()
-        .and_then(|srb| Planner::WholeBody.plan(&task, &srb));
+    let planned = body(&task).and_then(|srb| Planner::WholeBody.plan(&task, &srb));
     match planned {
         Ok(reference) => Kind::Quadruped(Box::new(task), Box::new(reference)),
-        Err(why) => Kind::NoPlan(why),
+        Err(why) => Kind::NoPlan(why.to_string()),
     }
 }
 
