@@ -113,6 +113,16 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
         &["nothing is overwritten"],
     ),
     (
+        &["verdicts", "far.toml", "far.toml", "--out", "gallery"],
+        &["far.toml is given twice"],
+    ),
+    (
+        &[
+            "verdicts", "far.toml", "--sim", "native", "--sim", "native", "--out", "gallery",
+        ],
+        &["native is given twice"],
+    ),
+    (
         &["envelope", "a1/lateral", "--samples", "0"],
         &["--samples"],
     ),

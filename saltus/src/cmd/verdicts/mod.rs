@@ -18,6 +18,7 @@ use jump_lab::Sim;
 use jump_lab::lab::{Interface, PlantArgument};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::json;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use subject::{Cell, Condition, Subject};
@@ -87,6 +88,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     args.sim.iter().try_for_each(|sim| sim.check())?;
+    once(args.tasks.iter().map(String::as_str))?;
+    once(args.sim.iter().map(|sim| sim.name()))?;
     if args.agreement {
         Sim::MUJOCO.check()?;
     }
@@ -145,6 +148,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode, Failure> {
         None if cells.iter().all(Cell::on_target) => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::from(2)),
     }
+}
+
+/// Refuses a name that is given twice: its run would be the same, and have the same place in a gallery.
+fn once<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    let mut known = HashSet::new();
+    for name in names {
+        if !known.insert(name) {
+            return Err(format!("{name} is given twice: its runs would be the same, give it once"));
+        }
+    }
+    Ok(())
 }
 
 /// Every subject in every simulator under one condition.
