@@ -73,7 +73,7 @@ fn meaning(name: &str) -> (&str, &str) {
         "hardware.stop_ms" => ("joints at their stops", " ms"),
         "hardware.stop_torque_nm" => ("a joint hits its stop", " N m"),
         "hardware.overspeed_ms" => ("joints faster than their motors", " ms"),
-        "hardware.ground_force_10ms_weights" => ("the ground pushes too hard", " weights"),
+        "hardware.ground_force_10ms_weights" => ("the ground pushes too hard", " weights (10 ms mean)"),
         "hardware.heat_share" => ("a winding gets too warm", " of what it bears"),
         "hardware.supply_power_w" => ("more power than the supply has", " W"),
         "fault" => ("the machine gave up", ""),
@@ -102,7 +102,7 @@ fn words(found: &Found) -> String {
         .map_or_else(|| "unknown".to_owned(), |share| format!("{share:.2}"));
     format!(
         "saturation {push_off:.1}, {flight:.1}, {landing:.1} ms; stops {:.1} ms, {:.1} N m; {:.1} rad/s, {:.1} ms too fast; ground \
-         {:.1} weights; heat {heat}; supply {:.0} W ({limit}), {:.0} J; {touched}",
+         {:.1} weights (10 ms mean); heat {heat}; supply {:.0} W ({limit}), {:.0} J; {touched}",
         1e3 * found.stop_time,
         found.stop_torque,
         found.peak_speed,
@@ -111,4 +111,20 @@ fn words(found: &Found) -> String {
         found.supply_power,
         found.supply_energy,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Found, words};
+
+    /// A reader of forces would take it for the peak, which is higher.
+    #[test]
+    fn the_force_of_the_ground_is_told_as_the_mean_that_it_is() {
+        let found = Found {
+            ground_force: 5.1,
+            ..Found::default()
+        };
+        let told = words(&found);
+        assert!(told.contains("ground 5.1 weights (10 ms mean);"), "{told}");
+    }
 }

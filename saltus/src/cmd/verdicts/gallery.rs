@@ -43,7 +43,7 @@ const NUMBERS: [Number; 5] = [
     ("turned in the end", |v| {
         Some(format!("{:.1}°", v.stand?.rotation))
     }),
-    ("ground, 10 ms", |v| {
+    ("ground, 10 ms mean", |v| {
         Some(format!("{:.1} weights", v.hardware.ground_force))
     }),
     ("fastest joint", |v| {

@@ -8,7 +8,7 @@ use jump_lab::verdict::Verdict;
 pub(super) fn table(cells: &[Cell]) -> String {
     let mut out = String::from(
         "| task | simulator | flight: m, deg | stand: feet m, heading deg, height m, rotation deg | saturation ms: push-off, flight, landing \
-         | stops ms | too fast ms | ground, weights | touched | verdict |\n|---|---|---|---|---|---|---|---|---|---|\n",
+         | stops ms | too fast ms | ground, weights (10 ms mean) | touched | verdict |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for cell in cells {
         let measures = cell

@@ -41,7 +41,7 @@ const MEASURES: [(&str, &str); 9] = [
         "/verdict/hardware/saturation_ms/landing",
     ),
     (
-        "ground, weights in 10 ms",
+        "ground, weights (10 ms mean)",
         "/verdict/hardware/ground_force_10ms_weights",
     ),
     ("fastest joint, rad/s", "/verdict/hardware/peak_joint_speed"),
