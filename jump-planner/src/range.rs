@@ -17,6 +17,7 @@ impl Range {
     pub fn check(self, x: f64) -> Result<(), String> {
         let (inside, words) = match self {
             Self::From(low, high) => (low <= x && x <= high, format!("from {low} to {high}")),
+            Self::Above(low, f64::INFINITY) => (low < x, format!("above {low}")),
             Self::Above(low, high) => (
                 low < x && x <= high,
                 format!("above {low} and up to {high}"),
@@ -72,5 +73,10 @@ mod tests {
             Above(0.0, 1.0).check(2.0),
             Err("must be above 0 and up to 1, not 2.0".to_owned())
         );
+        assert_eq!(
+            Above(0.0, f64::INFINITY).check(-1.0),
+            Err("must be above 0, not -1.0".to_owned())
+        );
+        assert!(Above(0.0, f64::INFINITY).check(f64::INFINITY).is_ok());
     }
 }
