@@ -89,6 +89,18 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
         &["wind=2", "payload"],
     ),
     (
+        &["run", "a1/lateral", "--plant", ""],
+        &["--plant", "nothing is named", "KEY=VALUE"],
+    ),
+    (
+        &["envelope", "a1/lateral", "--plant", ","],
+        &["--plant", "nothing is named", "KEY=VALUE"],
+    ),
+    (
+        &["verdicts", "a1/lateral", "--plant", ""],
+        &["--plant", "nothing is named", "KEY=VALUE"],
+    ),
+    (
         &["run", "a1/lateral", "--json", "--quiet"],
         &["cannot be used with"],
     ),

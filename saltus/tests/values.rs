@@ -272,6 +272,18 @@ fn impossible_tasks() -> Vec<(String, &'static [&'static str])> {
             &["guess_s", "up to 5"],
         ),
         (
+            LATERAL.replace("guess_s = 0.5", "guess_s = 0.5\nmin_s = 0.51"),
+            &["phase 1: guess_s", "from 0.51 to 0.55, not 0.5", "min_s"],
+        ),
+        (
+            LATERAL.replace("guess_s = 0.3", "guess_s = 0.3\nmax_s = 0.29"),
+            &["phase 2: guess_s", "to 0.29, not 0.3", "max_s"],
+        ),
+        (
+            limit("clearance_m = -1"),
+            &["limits.clearance_m", "from 0 to 10", "-1"],
+        ),
+        (
             LATERAL.replace("intervals = 50", "intervals = 1000000000"),
             &["intervals", "1 to 1000"],
         ),

@@ -148,6 +148,12 @@ impl fmt::Display for PlantArgument {
 }
 
 impl PlantArgument {
+    /// Nothing is named: the nominal plant, whatever the seed.
+    pub const NOTHING: Self = Self {
+        lab: false,
+        over: Disturbance::NOMINAL,
+    };
+
     /// The plant of a seed. A seed alone means the lab; with `--plant` only what is named there differs, unless it names the lab too.
     #[must_use]
     pub fn plant(argument: Option<&Self>, lab: Lab, seed: u64) -> Disturbance {
@@ -164,10 +170,7 @@ impl FromStr for PlantArgument {
 
     /// `lab`, `noise` and `KEY=VALUE`, separated by commas.
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut out = Self {
-            lab: false,
-            over: Disturbance::NOMINAL,
-        };
+        let mut out = Self::NOTHING;
         let all = items(text);
         let name = |item: &String| item.split('=').next().unwrap_or_default().to_owned();
         for (i, item) in all.iter().enumerate() {
@@ -243,6 +246,9 @@ mod tests {
         }
         assert_eq!(read.set_to(Key::JointFriction), None);
         assert_eq!(plant(""), Disturbance::NOMINAL);
+        for nothing in ["", ",,"] {
+            assert_eq!(nothing.parse(), Ok(PlantArgument::NOTHING));
+        }
         for wrong in [
             "mass",
             "mass=x",

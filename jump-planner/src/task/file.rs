@@ -114,7 +114,7 @@ pub struct PhaseTable {
     /// Intervals of the rigid body's plan.
     #[serde(default = "default_intervals")]
     pub intervals: usize,
-    /// Guess of the duration, s.
+    /// Guess of the duration, s: within the bounds that are given, and moved into those that are not.
     pub guess_s: f64,
     /// Shortest duration, s; the default depends on the feet.
     pub min_s: Option<f64>,
@@ -158,7 +158,7 @@ pub struct LimitsTable {
     /// Largest normal force per foot in weights of the robot; by default the rigid body, which knows no torques, has paper A's, and the whole body
     /// what its joints give.
     pub force_weights: Option<f64>,
-    /// Least height of the trunk over the ground, m.
+    /// Least height of the trunk over the ground, m; not negative.
     pub clearance_m: f64,
     /// Shares of the joints' torque limits, rising: the least with which the task is solved.
     pub torque_shares: [f64; 3],

@@ -14,7 +14,7 @@ use self::file::{Across, LimitsTable, PhaseTable, TaskError, TaskFile, WeightsTa
 use self::values::{AXIS, BODY_FORCE, DURATION, LENGTH, TOTAL, TURN};
 use super::FOOT_COUNT;
 use crate::folding::Folding;
-use crate::range::{Unusable, require, within};
+use crate::range::{Range, Unusable, require, within};
 use crate::robot::{JOINTS, PLACES, Quadruped, RobotError, State};
 use nalgebra::Vector3;
 use ocp_solver::{Stage, Status};
@@ -436,6 +436,13 @@ fn phase(
     within(max, DURATION, "max_s")?;
     require(min <= max, "max_s", "must not be below min_s")?;
     within(table.guess_s, DURATION, "guess_s")?;
+    // A bound that is not written down moves the guess instead: that of a flight off a box depends on its height.
+    let low = table.min_s.unwrap_or(min.min(table.guess_s));
+    let high = table.max_s.unwrap_or(max.max(table.guess_s));
+    let what = |what| ("guess_s".to_owned(), format!("{what}: its min_s and max_s"));
+    Range::From(low, high)
+        .check(table.guess_s)
+        .map_err(what)?;
     require(
         (1..=MOST_INTERVALS).contains(&table.intervals),
         "intervals",

@@ -31,7 +31,7 @@ pub(crate) fn limits(limits: &LimitsTable) -> Result<(), Unusable> {
         "limits.force_weights",
     )?;
     within(limits.speed_share, SHARE, "limits.speed_share")?;
-    within(limits.clearance_m, From(-10.0, 10.0), "limits.clearance_m")?;
+    within(limits.clearance_m, From(0.0, 10.0), "limits.clearance_m")?;
     let shares = limits.torque_shares.iter();
     shares
         .copied()

@@ -7,6 +7,7 @@ use core::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use jump_lab::Sim;
 use jump_lab::humanoid::Landing;
+use jump_lab::lab::PlantArgument;
 use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
 use jump_planner::range::Range;
@@ -91,6 +92,17 @@ fn named<T: FromStr<Err = String> + Clone + Send + Sync + 'static>(
 /// A name with what it means.
 fn value(name: &'static str, what: &'static str) -> PossibleValue {
     PossibleValue::new(name).help(what)
+}
+
+/// What differs from the plan; an empty text, as an unset variable of a script leaves it, is none.
+pub(crate) fn plant(text: &str) -> Result<PlantArgument, String> {
+    let plant: PlantArgument = text.parse()?;
+    if plant == PlantArgument::NOTHING {
+        return Err(
+            "nothing is named: give lab, noise or KEY=VALUE, separated by commas, or leave the option out".to_owned(),
+        );
+    }
+    Ok(plant)
 }
 
 /// Simulators by their names.

@@ -9,7 +9,7 @@ use super::folder::{check_file, check_new};
 use super::interrupt;
 use super::no_plan::refuse;
 use super::output::{Output, whole};
-use crate::cmd::output::{measures, planners, sims};
+use crate::cmd::output::{measures, planners, plant, sims};
 use jump_lab::Sim;
 use jump_lab::lab::{Interface, PlantArgument};
 use jump_lab::quadruped::envelope::{Counts, table};
@@ -42,7 +42,7 @@ pub(crate) struct Args {
     #[arg(long, default_value = "whole-body", value_parser = planners())]
     planner: Planner,
     /// What differs from the plan in every run, instead of the lab of the run's seed; as in `saltus run`.
-    #[arg(long)]
+    #[arg(long, value_parser = plant)]
     plant: Option<PlantArgument>,
     /// How the motors are commanded; as in `saltus run`.
     #[arg(long, default_value = "torque")]

@@ -6,7 +6,7 @@ mod quadruped;
 use super::failure::Failure;
 use super::folder::publish;
 use super::output::Output;
-use super::output::{landings, planners, sims, whole};
+use super::output::{landings, planners, plant, sims, whole};
 use jump_lab::Sim;
 use jump_lab::humanoid as icub;
 use jump_lab::lab::{Disturbance, Interface, Lab, PlantArgument};
@@ -54,7 +54,7 @@ pub(crate) struct Args {
     landing: Option<icub::Landing>,
     /// What differs from the plan, instead of a seed's draw: lab, noise or KEY=VALUE, separated by commas, such as
     /// payload=2@0,0,0.05,ground=soft; `saltus verdicts --ranges` lists the keys.
-    #[arg(long)]
+    #[arg(long, value_parser = plant)]
     plant: Option<PlantArgument>,
     /// How the motors are commanded: torque (10 kHz), joint-pd (1 kHz over a link) or joint-pd@500.
     #[arg(long, default_value = "torque")]

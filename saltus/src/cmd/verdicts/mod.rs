@@ -11,7 +11,7 @@ use super::expected::{Expected, Found};
 use super::failure::Failure;
 use super::folder::check_new;
 use super::interrupt;
-use super::output::{Output, sims, whole};
+use super::output::{Output, plant, sims, whole};
 use gallery::Gallery;
 use indicatif::ProgressBar;
 use jump_lab::Sim;
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = sims())]
     sim: Vec<Sim>,
     /// What differs from the plan; as in `saltus run`.
-    #[arg(long)]
+    #[arg(long, value_parser = plant)]
     plant: Option<PlantArgument>,
     /// Seed of the lab; as in `saltus run`.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = whole(0..=u64::MAX))]
