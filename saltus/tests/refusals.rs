@@ -148,7 +148,12 @@ fn what_cannot_be_is_said_before_the_work() {
                 .contains("cargo xtask mujoco build")
         );
     }
-    for (package, words) in [("std", "another crate"), ("1", "a letter first")] {
+    for (package, words) in [
+        ("std", "another crate"),
+        ("1", "a letter first"),
+        ("fn", "a keyword of Rust"),
+        ("Self", "a keyword of Rust"),
+    ] {
         let arguments = ["import", robot, "--out", "new", "--package", package];
         refused(&folder, &arguments, &[package, words]);
     }

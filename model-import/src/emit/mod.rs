@@ -6,4 +6,4 @@ mod names;
 
 pub use krate::{Crate, Dependency, commands, write_crate};
 pub use module::{Provenance, module};
-pub use names::{constant, type_name};
+pub use names::{constant, is_keyword, type_name};

@@ -2,6 +2,14 @@
 
 use std::collections::BTreeSet;
 
+/// Strict and reserved keywords of all editions (The Rust Reference, "Keywords").
+const KEYWORDS: [&str; 53] = [
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
+    "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod", "move",
+    "mut", "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type",
+    "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "_",
+];
+
 /// `FL_hip-joint` to `FL_HIP_JOINT`: an upper-case identifier.
 #[must_use]
 pub fn constant(name: &str) -> String {
@@ -34,6 +42,12 @@ pub fn type_name(name: &str) -> String {
     }
 }
 
+/// Whether a word belongs to Rust, of whichever edition, so that no crate of that name can be used.
+#[must_use]
+pub fn is_keyword(word: &str) -> bool {
+    KEYWORDS.contains(&word)
+}
+
 /// One identifier per name; names that would collide get a number.
 pub(super) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = BTreeSet::new();
@@ -53,7 +67,7 @@ pub(super) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> 
 
 #[cfg(test)]
 mod tests {
-    use super::{constant, distinct, type_name};
+    use super::{constant, distinct, is_keyword, type_name};
 
     #[test]
     fn names_become_identifiers() {
@@ -63,6 +77,10 @@ mod tests {
         assert_eq!(type_name("icub-23 arm_v2"), "Icub23ArmV2");
         assert_eq!(type_name("7dof"), "Robot7dof");
         assert_eq!(type_name("self"), "RobotSelf");
+        for word in ["fn", "self", "gen", "typeof"] {
+            assert!(is_keyword(word), "{word}");
+        }
+        assert!(!is_keyword("robot") && !is_keyword("fn-model"));
         let names = distinct(["a-b", "a_b", "a.b"].into_iter());
         assert_eq!(names, ["A_B", "A_B_2", "A_B_3"]);
     }

@@ -11,7 +11,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use model_import::emit::{Crate, Dependency, Provenance, commands, type_name, write_crate};
+use model_import::emit::{Crate, Dependency, Provenance, commands, is_keyword, type_name, write_crate};
 use model_import::limbs::{expression, structure};
 use model_import::options::AXIS_EXACT;
 use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, mjcf, parse_lock};
@@ -143,6 +143,11 @@ fn about(args: &Args, robot: &Robot) -> Result<Crate, String> {
     if !package.starts_with(|c: char| c.is_ascii_alphabetic()) || !package.chars().all(word) {
         return Err(format!(
             "--package {package}: not a package name: letters, digits, - and _, a letter first"
+        ));
+    }
+    if is_keyword(&package) {
+        return Err(format!(
+            "--package {package}: a keyword of Rust, so that no program can use the crate: choose one such as {package}-model"
         ));
     }
     if TAKEN.contains(&package.as_str()) {
