@@ -234,12 +234,13 @@ pub fn open<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, Contai
     Container::open(bytes, hash(robot))
 }
 
-/// As [`open`], for people: of a plan for another robot it tells which, and what to do.
+/// As [`open`], of a whole file and for people: of a plan for another robot it tells which, and what to do. Bytes behind the plan, which a page
+/// of flash has, are refused: a file that has them was not written so.
 ///
 /// # Errors
 /// A sentence.
 pub fn open_for<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, String> {
-    open(bytes, robot).map_err(|error| match (error, Stored::read(bytes)) {
+    let plan = open(bytes, robot).map_err(|error| match (error, Stored::read(bytes)) {
         (ContainerError::Robot { planned, given }, Ok(plan)) => format!(
             "a plan for another robot, {} (model {planned:016x}), and not for {} (model {given:016x}): \
              give the URDF or profile that it was planned for, with --robot",
@@ -247,7 +248,14 @@ pub fn open_for<'a>(bytes: &'a [u8], robot: &Quadruped) -> Result<Stored<'a>, St
             robot.name
         ),
         (error, _) => error.to_string(),
-    })
+    })?;
+    match bytes.len() - plan.bytes().len() {
+        0 => Ok(plan),
+        behind => Err(format!(
+            "{behind} bytes stand behind the plan's own {}, which no planner wrote: copy the plan again",
+            plan.bytes().len()
+        )),
+    }
 }
 
 fn hash(robot: &Quadruped) -> u64 {

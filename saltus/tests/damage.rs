@@ -109,6 +109,17 @@ fn damage_of_a_node_under_a_mended_checksum_is_refused() {
     // As it is, it passes, so that what follows is the change's doing.
     plan.write(plan.node_word(5, 0), |x| x);
     assert_eq!(saltus(&plan.folder, &["verify", "damaged.bin"]).0, Some(0));
+    // Nothing sums up what stands behind a plan.
+    fs::write(
+        plan.folder.join("damaged.bin"),
+        [&plan.bytes[..], b"more"].concat(),
+    )
+    .unwrap();
+    for command in ["verify", "run"] {
+        plan.refuses(command, "bytes behind it");
+    }
+    let (_, said) = saltus(&plan.folder, &["verify", "damaged.bin"]);
+    assert!(said.contains("4 bytes stand behind"), "{said}");
     for i in 0..100 {
         let (node, word) = (i * (plan.nodes - 1) / 99, i * 37 % WORDS);
         let at = plan.node_word(node, word);
