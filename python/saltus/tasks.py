@@ -57,7 +57,7 @@ class Phase:
     feet: Sequence[str]
     """Feet on the ground, of FL, FR, RL and RR; none in a flight."""
     guess_s: float
-    """Guess of the duration, s."""
+    """Guess of the duration, s, from min_s to max_s where these are given."""
     intervals: int | None = None
     """Intervals of the rigid body's plan."""
     min_s: float | None = None
@@ -89,7 +89,7 @@ class Limits:
     force_weights: float | None = None
     """Normal force per foot in weights of the robot."""
     clearance_m: float | None = None
-    """Least height of the trunk over the ground, m."""
+    """Least height of the trunk over the ground, m; not negative."""
     torque_shares: Sequence[float] | None = None
     """Three shares of the joints' torque limits: the first with which the task is solved."""
     speed_share: float | None = None

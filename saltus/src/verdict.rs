@@ -73,7 +73,9 @@ fn meaning(name: &str) -> (&str, &str) {
         "hardware.stop_ms" => ("joints at their stops", " ms"),
         "hardware.stop_torque_nm" => ("a joint hits its stop", " N m"),
         "hardware.overspeed_ms" => ("joints faster than their motors", " ms"),
-        "hardware.ground_force_10ms_weights" => ("the ground pushes too hard", " weights (10 ms mean)"),
+        "hardware.ground_force_10ms_weights" => {
+            ("the ground pushes too hard", " weights (10 ms mean)")
+        }
         "hardware.heat_share" => ("a winding gets too warm", " of what it bears"),
         "hardware.supply_power_w" => ("more power than the supply has", " W"),
         "fault" => ("the machine gave up", ""),

@@ -55,3 +55,29 @@ fn what_the_images_have_in_flash_is_what_is_planned_now() {
         "the plan of a1/double-backflip is another now: `cargo xtask flash-plan`"
     );
 }
+
+/// A jump that is not found: what `plan` answers, every command that would have executed it does.
+#[test]
+#[ignore = "long: cargo xtask suites"]
+fn what_is_not_found_is_told_alike_by_all() {
+    let folder = folder("one-answer");
+    let task = include_str!("../../jump-planner/tasks/a1/lateral.toml");
+    let far = task.replace("[0.0, 0.3, 0.0]", "[0.0, 0.8, 0.0]");
+    std::fs::write(
+        folder.join("t.toml"),
+        format!("{far}\n[limits]\nforce_weights = 0.3\n"),
+    )
+    .unwrap();
+    let planned = result(&folder, &["plan", "t.toml", "--json"]);
+    assert_eq!(planned["status"], "NotFound", "{planned}");
+    let because = planned["answer"]["because"].as_str().unwrap();
+    for command in ["run", "envelope"] {
+        let told = result(&folder, &[command, "t.toml", "--json"]);
+        assert_eq!(told["status"], planned["status"], "{command}");
+        assert_eq!(told["answer"], planned["answer"], "{command}");
+    }
+    let told = result(&folder, &["verdicts", "t.toml", "--json"]);
+    let told = told["verdicts"][0]["error"].as_str().unwrap();
+    assert!(told.starts_with(&format!("not found: {because}")), "{told}");
+    assert!(!folder.join("out").exists());
+}

@@ -63,7 +63,10 @@ mod tests {
     fn a_digest_tells_tasks_apart_by_all_but_their_names() {
         let (name, text) = BUILT_IN[0];
         let known = task(name, text).digest();
-        assert_eq!(task("other.toml", &format!("# words\n{text}")).digest(), known);
+        assert_eq!(
+            task("other.toml", &format!("# words\n{text}")).digest(),
+            known
+        );
         let changed = [
             text.replacen("0.3, 0.0]", "0.31, 0.0]", 1),
             format!("trunk_may_touch = true\n{text}"),
@@ -86,7 +89,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("digest-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::copy(a1.with_file_name("a1.urdf"), folder.join("a1.urdf")).unwrap();
-        let mut digest = |from: &str, to: &str| {
+        let digest = |from: &str, to: &str| {
             assert!(profile.contains(from), "{from}");
             let path = folder.join("a1.toml");
             std::fs::write(&path, profile.replacen(from, to, 1)).unwrap();

@@ -440,9 +440,7 @@ fn phase(
     let low = table.min_s.unwrap_or(min.min(table.guess_s));
     let high = table.max_s.unwrap_or(max.max(table.guess_s));
     let what = |what| ("guess_s".to_owned(), format!("{what}: its min_s and max_s"));
-    Range::From(low, high)
-        .check(table.guess_s)
-        .map_err(what)?;
+    Range::From(low, high).check(table.guess_s).map_err(what)?;
     require(
         (1..=MOST_INTERVALS).contains(&table.intervals),
         "intervals",

@@ -11,7 +11,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use model_import::emit::{Crate, Dependency, Provenance, commands, is_keyword, type_name, write_crate};
+use model_import::emit::{
+    Crate, Dependency, Provenance, commands, is_keyword, type_name, write_crate,
+};
 use model_import::limbs::{expression, structure};
 use model_import::options::AXIS_EXACT;
 use model_import::{ImportError, InertiaPolicy, MimicPolicy, Options, Robot, mjcf, parse_lock};

@@ -81,10 +81,7 @@ fn csv(rows: &[Row]) -> String {
                 } = counts;
                 let rate = rate(*on_target, *samples);
                 let failed = counts.failures();
-                writeln!(
-                    out,
-                    "{without},{samples},{on_target},{rate},\"{failed}\","
-                )
+                writeln!(out, "{without},{samples},{on_target},{rate},\"{failed}\",")
             }
             Err(error) => {
                 let error = error.replace('"', "'").replace('\n', " ");

@@ -155,7 +155,9 @@ fn once<'a>(names: impl Iterator<Item = &'a str>) -> Result<(), String> {
     let mut known = HashSet::new();
     for name in names {
         if !known.insert(name) {
-            return Err(format!("{name} is given twice: its runs would be the same, give it once"));
+            return Err(format!(
+                "{name} is given twice: its runs would be the same, give it once"
+            ));
         }
     }
     Ok(())
