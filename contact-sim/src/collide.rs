@@ -39,13 +39,34 @@ fn are_neighbours<T: Scalar, M: Tree<T, N>, const N: usize>(model: &M, a: Link, 
 }
 
 /// Pairs of shapes that may touch each other: bit j of number i stands for the pair i < j. Left out are shapes of one link, of links that
-/// hang from each other, and those that overlap in the `reference` posture, where the robot is known to stand free. Shapes beyond
-/// [`MOST_SHAPES`] touch the ground only.
+/// hang from each other, and those that overlap in the `reference` posture, where the robot is known to stand free ([`overlaps`]). Shapes
+/// beyond [`MOST_SHAPES`] touch the ground only.
 #[must_use]
 pub fn self_contacts<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
     model: &M,
     shapes: &[Shape<T>; S],
     reference: &Configuration<T, N>,
+) -> [u64; S] {
+    pairs(model, shapes, reference, |gap| gap > T::ZERO)
+}
+
+/// Pairs that [`self_contacts`] leaves out although their links do not hang from each other: they overlap in the `reference` posture, and
+/// pass through each other unseen.
+#[must_use]
+pub fn overlaps<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
+    model: &M,
+    shapes: &[Shape<T>; S],
+    reference: &Configuration<T, N>,
+) -> [u64; S] {
+    pairs(model, shapes, reference, |gap| gap <= T::ZERO)
+}
+
+/// Pairs of shapes of links that do not hang from each other, whose gap in a posture is `wanted`.
+fn pairs<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
+    model: &M,
+    shapes: &[Shape<T>; S],
+    reference: &Configuration<T, N>,
+    wanted: impl Fn(T) -> bool,
 ) -> [u64; S] {
     let mut kinematics = Kinematics::IDENTITY;
     forward_kinematics(model, &Posture::new(model, reference), &mut kinematics);
@@ -53,7 +74,7 @@ pub fn self_contacts<T: Scalar, M: Tree<T, N>, const N: usize, const S: usize>(
     for (i, (bits, a)) in pairs.iter_mut().zip(shapes).enumerate() {
         for (j, b) in shapes.iter().enumerate().take(MOST_SHAPES).skip(i + 1) {
             let gap = place(&kinematics, a).gap(&place(&kinematics, b));
-            if gap > T::ZERO && !are_neighbours(model, a.link, b.link) {
+            if wanted(gap) && !are_neighbours(model, a.link, b.link) {
                 *bits |= 1_u64 << j;
             }
         }

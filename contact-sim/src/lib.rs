@@ -22,7 +22,7 @@ mod shape;
 mod simulator;
 mod terrain;
 
-pub use collide::{MOST_SHAPES, effective_mass, gap, gaps, self_contacts};
+pub use collide::{MOST_SHAPES, effective_mass, gap, gaps, overlaps, self_contacts};
 pub use contact::{ContactLaw, ContactMass, ContactState};
 #[cfg(feature = "mjcf")]
 pub use engine::{Compile, ContactPoint, Engine, EngineFailed, NoEngine};

@@ -171,3 +171,29 @@ fn a_placeholder_for_a_limit_is_named() {
         "{said}"
     );
 }
+
+/// Links that are in each other where the robot stands have never touched in any simulator: a trunk of 0.35 m, with the thighs inside it,
+/// jumped on target with "nothing but feet touched". They are told; of A1's own, none are.
+#[test]
+fn links_that_nobody_sees_collide_are_named() {
+    let folder = folder("overlap");
+    fs::write(folder.join("a1.urdf"), urdf()).unwrap();
+    let a1 = include_str!("../../models/a1.toml");
+    let size = a1.lines().find(|line| line.starts_with("size_m")).unwrap();
+    // A goal that is refused before anything is planned.
+    let far =
+        include_str!("../../jump-planner/tasks/a1/lateral.toml").replace("0.3, 0.0]", "60.0, 0.0]");
+    fs::write(folder.join("far.toml"), far).unwrap();
+    for (size_now, are_named) in [(size, false), ("size_m = [0.8, 0.6, 0.35]", true)] {
+        fs::write(folder.join("robot.toml"), a1.replace(size, size_now)).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_saltus"))
+            .args(["plan", "far.toml", "--robot", "robot.toml"])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        for word in ["in each other", "FL_thigh and trunk", "correct the sizes"] {
+            assert_eq!(said.contains(word), are_named, "{said}");
+        }
+    }
+}

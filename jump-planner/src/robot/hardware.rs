@@ -77,6 +77,23 @@ impl Quadruped {
         let speed = named("velocity", "rad/s", &|i| limits[i].speed, NO_GEAR);
         effort.into_iter().chain(speed).collect()
     }
+
+    /// Links that are in each other where the robot stands, though neither hangs from the other: no plan, audit or simulator sees them
+    /// collide. Each pair once.
+    #[must_use]
+    pub fn overlapping(&self, standing: &State) -> Vec<[&'static str; 2]> {
+        let mut links: Vec<[&'static str; 2]> = Vec::new();
+        let pairs = contact_sim::overlaps(self, &self.shapes, standing);
+        for (i, others) in pairs.into_iter().enumerate() {
+            for j in (0..self.shapes.len()).filter(|j| (others >> j) & 1 == 1) {
+                let pair = [i, j].map(|shape| self.owners[self.shapes[shape].owner]);
+                if !links.contains(&pair) {
+                    links.push(pair);
+                }
+            }
+        }
+        links
+    }
 }
 
 /// Budgets of a robot of which only the limits are known: times as for any legged robot, stops that bear what its strongest motor

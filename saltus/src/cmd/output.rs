@@ -11,7 +11,7 @@ use jump_lab::lab::PlantArgument;
 use jump_lab::quadruped::measure::Measure;
 use jump_planner::planned::Planner;
 use jump_planner::range::Range;
-use jump_planner::robot::Quadruped;
+use jump_planner::task::Task;
 
 /// Options of every command that prints a result.
 #[derive(clap::Args, Clone, Copy)]
@@ -25,12 +25,24 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Names limits of a robot that are none.
-    pub(crate) fn warn_of(self, robot: &Quadruped) {
-        if !self.quiet {
-            for placeholder in robot.placeholders() {
-                tell!("saltus: warning: {}: {placeholder}", robot.name);
-            }
+    /// Names limits of a robot that are none, and links that no simulator sees collide.
+    pub(crate) fn warn_of(self, task: &Task) {
+        if self.quiet {
+            return;
+        }
+        let robot = &task.robot;
+        for placeholder in robot.placeholders() {
+            tell!("saltus: warning: {}: {placeholder}", robot.name);
+        }
+        let pairs = robot.overlapping(&task.start);
+        let pairs: Vec<String> = pairs.iter().map(|pair| pair.join(" and ")).collect();
+        if !pairs.is_empty() {
+            tell!(
+                "saltus: warning: {}: links are in each other where the robot stands, so nobody sees them collide ({}): correct the sizes of \
+                 its shapes",
+                robot.name,
+                pairs.join(", ")
+            );
         }
     }
 

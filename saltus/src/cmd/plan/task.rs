@@ -53,7 +53,7 @@ fn plan(args: &Args, name: &str, bar: &ProgressBar, report: &mut Report) -> Resu
         task.fix_timing(timing)?;
     }
     let task = report.task.insert(task);
-    args.output.warn_of(&task.robot);
+    args.output.warn_of(task);
     let timing = if args.direct {
         Timing::Free
     } else {

@@ -48,7 +48,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         return Err("--task is for stored plans: give the task alone".into());
     } else {
         let task = Task::load_for(&args.what, args.robot.as_deref(), &args.lock)?;
-        args.output.warn_of(&task.robot);
+        args.output.warn_of(&task);
         match plan(args, &task, &bar) {
             Ok((srb, reference, complaint)) => Made {
                 task,
