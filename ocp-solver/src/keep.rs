@@ -17,9 +17,9 @@ pub trait Keep<T: Scalar, const NX: usize, const NU: usize, const NI: usize>:
     #[doc(hidden)]
     type Linearised: Linearised<T, NX, NU>;
 
-    /// Nothing kept yet.
+    /// Makes ready for the first call of a solve.
     #[doc(hidden)]
-    const EMPTY: Self;
+    fn begin(&mut self);
 
     /// The derivatives of a node of these sizes at the iterate, written by `fill` into `scratch`; `is_new` tells that the
     /// iterate is another one than in the call before.
@@ -41,7 +41,10 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
     for Derivatives<T, NX, NU, NI>
 {
     type Linearised = Self;
-    const EMPTY: Self = Self::new();
+
+    fn begin(&mut self) {
+        *self = Self::new();
+    }
 
     #[inline(always)]
     fn at<'a>(
@@ -67,7 +70,9 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
     for Packed<T, NX, NU, NI>
 {
     type Linearised = Self;
-    const EMPTY: Self = Self::new();
+
+    /// Nothing to do: the first call writes all that is read.
+    fn begin(&mut self) {}
 
     #[inline(always)]
     fn at<'a>(
@@ -78,7 +83,6 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
         fill: impl FnOnce(&mut Derivatives<T, NX, NU, NI>),
     ) -> &'a Self {
         if is_new {
-            scratch.clear(dims.rows());
             fill(scratch);
             self.pack(scratch, dims);
         }
@@ -100,7 +104,8 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Keep<T, NX, N
     for Recomputed
 {
     type Linearised = Derivatives<T, NX, NU, NI>;
-    const EMPTY: Self = Self;
+
+    fn begin(&mut self) {}
 
     #[inline(always)]
     fn at<'a>(

@@ -119,22 +119,34 @@ pub(crate) fn transpose<T: Scalar, const R: usize, const C: usize>(
 ) -> [[T; C]; R] {
     let mut out = [[T::ZERO; C]; R];
     for (j, column) in matrix.iter().enumerate() {
-        for (row, value) in out.iter_mut().zip(column) {
-            if let Some(slot) = row.get_mut(j) {
-                *slot = *value;
-            }
-        }
+        set_column(&mut out, j, column);
     }
     out
+}
+
+/// Writes column `j` of a matrix that is stored by rows.
+#[inline(always)]
+pub(crate) fn set_column<T: Scalar, const R: usize, const C: usize>(
+    rows: &mut [[T; C]; R],
+    j: usize,
+    column: &[T; R],
+) {
+    for (row, value) in rows.iter_mut().zip(column) {
+        if let Some(slot) = row.get_mut(j) {
+            *slot = *value;
+        }
+    }
 }
 
 /// Copies the lower triangle onto the upper one.
 #[inline(always)]
 pub(crate) fn mirror_lower<T: Scalar, const N: usize>(matrix: &mut [[T; N]; N]) {
-    let transposed = transpose(matrix);
-    for (i, (column, other)) in matrix.iter_mut().zip(&transposed).enumerate() {
-        for (upper, lower) in column.iter_mut().zip(other).take(i) {
-            *upper = *lower;
+    for i in 1..N {
+        let (before, rest) = matrix.split_at_mut(i);
+        if let Some(column) = rest.first_mut() {
+            for (upper, other) in column.iter_mut().zip(before) {
+                *upper = other[i];
+            }
         }
     }
 }

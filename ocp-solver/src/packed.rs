@@ -98,9 +98,9 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
         }
     }
 
-    /// Takes the entries of the vectors, each from a place on; vectors behind the given ones have none.
+    /// Takes the entries of the vectors, each from a place on, and leaves zeros there; vectors behind the given ones have none.
     #[inline(always)]
-    fn fill<'a>(&mut self, vectors: impl Iterator<Item = (&'a [T; R], usize)>)
+    fn fill<'a>(&mut self, vectors: impl Iterator<Item = (&'a mut [T; R], usize)>)
     where
         T: 'a,
     {
@@ -110,12 +110,13 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
         );
         let (mut count, mut ends) = (0usize, self.ends.iter_mut());
         for (vector, first) in vectors {
-            for (i, value) in vector.iter().enumerate().skip(first) {
+            vector.iter_mut().take(first).for_each(|x| *x = T::ZERO);
+            for (i, value) in vector.iter_mut().enumerate().skip(first) {
                 if *value != T::ZERO
                     && let (Some(slot), Some(place)) =
                         (values.get_mut(count), places.get_mut(count))
                 {
-                    (*slot, *place) = (*value, i as u16);
+                    (*slot, *place) = (core::mem::replace(value, T::ZERO), i as u16);
                     count = count.wrapping_add(1);
                 }
             }
@@ -189,33 +190,35 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Packed<T, NX,
         }
     }
 
-    /// Takes what a node of these sizes has.
+    /// Takes what a node of these sizes has, and leaves zeros for the next one: there are fewer entries to clear than there is room.
     #[inline(never)]
-    pub(crate) fn pack(&mut self, d: &Derivatives<T, NX, NU, NI>, dims: Dims) {
+    pub(crate) fn pack(&mut self, d: &mut Derivatives<T, NX, NU, NI>, dims: Dims) {
         let (rows, controls) = (dims.rows(), dims.controls);
-        (self.cost_x, self.cost_u) = (d.cost_x, d.cost_u);
-        self.dynamics_x.fill(whole(&d.dynamics_x, NX));
-        self.dynamics_u.fill(whole(&d.dynamics_u, controls));
+        self.cost_x = core::mem::replace(&mut d.cost_x, [T::ZERO; NX]);
+        self.cost_u = core::mem::replace(&mut d.cost_u, [T::ZERO; NU]);
+        self.dynamics_x.fill(first(&mut d.dynamics_x, NX));
+        self.dynamics_u.fill(first(&mut d.dynamics_u, controls));
         let from = |on: bool, end: usize| if on { 0 } else { end };
-        let x = d.rows_x.iter().enumerate().take(rows);
+        let x = d.rows_x.iter_mut().enumerate().take(rows);
         self.rows_x
             .fill(x.map(|(i, row)| (row, from(dims.parts(i).state, NX))));
-        let u = d.rows_u.iter().enumerate().take(rows);
+        let u = d.rows_u.iter_mut().enumerate().take(rows);
         self.rows_u
             .fill(u.map(|(i, row)| (row, from(dims.parts(i).control, NU))));
         self.hessian_xx
-            .fill(d.hessian_xx.iter().enumerate().map(|(j, x)| (x, j)));
-        self.hessian_xu.fill(whole(&d.hessian_xu, controls));
-        self.hessian_uu.fill(whole(&d.hessian_uu, controls));
+            .fill(d.hessian_xx.iter_mut().enumerate().map(|(j, x)| (x, j)));
+        self.hessian_xu.fill(first(&mut d.hessian_xu, controls));
+        self.hessian_uu.fill(first(&mut d.hessian_uu, controls));
     }
 }
 
-/// The first vectors, all of each.
-fn whole<T, const N: usize>(
-    vectors: &[[T; N]],
+/// The first vectors with all their places, the others without any.
+fn first<T, const N: usize>(
+    vectors: &mut [[T; N]],
     count: usize,
-) -> impl Iterator<Item = (&[T; N], usize)> {
-    vectors.iter().take(count).map(|vector| (vector, 0))
+) -> impl Iterator<Item = (&mut [T; N], usize)> {
+    let vectors = vectors.iter_mut().enumerate();
+    vectors.map(move |(j, vector)| (vector, if j < count { 0 } else { N }))
 }
 
 impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Linearised<T, NX, NU>
@@ -335,14 +338,16 @@ mod tests {
 
     #[test]
     fn vectors_come_back_without_their_zeros() {
-        let given = [
+        let mut given = [
             [0.0, 2.0, 0.0],
             [0.0; 3],
             [4.0, 5.0, 6.0],
             [7.0, 0.0, f64::NAN],
         ];
         let mut packed = Vectors::<f64, 3, 4>::new();
-        packed.fill(given.iter().zip([0, 0, 1, 0]));
+        packed.fill(given.iter_mut().zip([0, 0, 1, 0]));
+        // What was there is taken.
+        assert_eq!(given, [[0.0; 3]; 4]);
         assert!(packed.vector(0).eq([(1, 2.0)]));
         assert!(packed.vector(1).eq([]));
         // From place 1 on.
@@ -352,7 +357,8 @@ mod tests {
         assert!(places.eq([0, 2]));
         assert!(packed.vector(4).eq([]));
         // Fewer vectors than before.
-        packed.fill(given.iter().zip([0, 0]));
+        given[0][1] = 2.0;
+        packed.fill(given.iter_mut().zip([0, 0]));
         assert!(packed.vector(0).eq([(1, 2.0)]));
         assert!(packed.vector(2).eq([]) && packed.vector(3).eq([]));
 

@@ -20,7 +20,7 @@
 //! multipliers, the costate of a node is `P dx + p + H_kᵀ ν`.
 
 use crate::keep::Keep;
-use crate::kernel::{add_product, add_scaled, dot, mirror_lower, transpose};
+use crate::kernel::{add_product, add_scaled, dot, mirror_lower, set_column};
 use crate::linearised::Linearised;
 use crate::problem::{Derivatives, Problem};
 use crate::project::{OfControls, Work};
@@ -138,31 +138,33 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Node<T, NX, N
         let n = self.dims.controls.min(NU);
         let (q_xx, q_x) = (&mut self.riccati.hessian, &mut self.riccati.gradient);
         if let Some(next) = next {
-            // v = p + P gap;  W = P A and V = P B as columns; their transposes make Aᵀ P and Bᵀ P.
+            // v = p + P gap;  W = P A and V = P B by rows, which are the columns that Aᵀ and Bᵀ are multiplied with.
             let mut v = next.gradient;
             add_product(&mut v, &next.hessian, &self.values.gap);
             d.pull_back_x(&v, q_x);
             let mut w = [[T::ZERO; NX]; NX];
-            for (j, w) in w.iter_mut().enumerate() {
-                d.combine_x(j, &next.hessian, w);
+            for j in 0..NX {
+                let mut column = [T::ZERO; NX];
+                d.combine_x(j, &next.hessian, &mut column);
+                set_column(&mut w, j, &column);
             }
-            let w = transpose(&w);
             for (j, q) in q_xx.iter_mut().enumerate() {
                 d.combine_x(j, &w, q);
             }
             if n > 0 {
                 let mut of_u = [T::ZERO; NU];
                 d.pull_back_u(&v, &mut of_u);
-                let mut v_u = [[T::ZERO; NX]; NU];
-                let columns = v_u.iter_mut().zip(&mut work.q.xu).zip(&mut work.q.u);
-                for (j, (((v_u, q_xu), q_u), of_u)) in columns.zip(&of_u).enumerate().take(n) {
-                    d.combine_u(j, &next.hessian, v_u);
+                let mut v = [[T::ZERO; NU]; NX];
+                let columns = work.q.xu.iter_mut().zip(&mut work.q.u).zip(&of_u);
+                for (j, ((q_xu, q_u), of_u)) in columns.enumerate().take(n) {
+                    let mut column = [T::ZERO; NX];
+                    d.combine_u(j, &next.hessian, &mut column);
+                    set_column(&mut v, j, &column);
                     d.combine_u(j, &w, q_xu);
                     q_u[0] += *of_u;
                 }
-                let v_u = transpose(&v_u);
                 for (j, q) in work.q.uu.iter_mut().enumerate().take(n) {
-                    d.combine_u(j, &v_u, q);
+                    d.combine_u(j, &v, q);
                 }
             }
         }

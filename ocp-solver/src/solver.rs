@@ -487,7 +487,7 @@ fn prepare<
             }
         }
         node.values = crate::problem::Values::new();
-        stage.kept = K::EMPTY;
+        stage.kept.begin();
         stage.guess = (stage.state, stage.control);
     }
     match iterate::evaluate(problem, stages, workers) {

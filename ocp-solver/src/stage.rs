@@ -13,7 +13,7 @@ use so3::Scalar;
 ///
 /// The caller fills `state` and `control` with the initial guess and reads the solution from the same
 /// fields; all other content is scratch that [`Solver::solve`](crate::Solver::solve) owns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Copy, Debug)]
 pub struct Stage<
     T,
     X,
@@ -46,6 +46,16 @@ pub type LeanStage<T, X, const NX: usize, const NU: usize, const NI: usize> =
 /// iteration have less memory to go through, on small ones finding the zeros costs more than it saves.
 pub type SparseStage<T, X, const NX: usize, const NU: usize, const NI: usize> =
     Stage<T, X, NX, NU, NI, Packed<T, NX, NU, NI>>;
+
+// A derived clone would go through the fields and move each of these large parts several times.
+impl<T: Copy, X: Copy, K: Copy, const NX: usize, const NU: usize, const NI: usize> Clone
+    for Stage<T, X, NX, NU, NI, K>
+{
+    #[inline]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
 
 /// What the solver knows of a node besides where it is.
 ///
