@@ -141,14 +141,14 @@ pub fn atan2<T: Scalar>(y: T, x: T) -> T {
 #[inline(always)]
 #[must_use]
 pub fn copysign<T: Scalar>(x: T, sign: T) -> T {
-    x.libm_copysign(sign)
+    x.core_copysign(sign)
 }
 
 /// Absolute value.
 #[inline(always)]
 #[must_use]
 pub fn abs<T: Scalar>(x: T) -> T {
-    x.libm_copysign(T::ONE)
+    x.core_copysign(T::ONE)
 }
 
 /// √(x² + y²) without overflow or underflow on the way, within 1 unit in the last place.

@@ -77,15 +77,14 @@ pub trait Scalar:
     #[doc(hidden)]
     fn libm_floor(self) -> Self;
     #[doc(hidden)]
-    fn libm_copysign(self, sign: Self) -> Self;
+    fn core_copysign(self, sign: Self) -> Self;
 }
 
 /// `libm` for one scalar: C's suffix hidden, so that one macro serves both.
 mod libm_f32 {
     pub(super) use libm::{
-        acosf as acos, asinf as asin, atan2f as atan2, copysignf as copysign, expf as exp,
-        floorf as floor, hypotf as hypot, logf as log, sincosf as sincos, sqrtf as sqrt,
-        tanf as tan, tanhf as tanh,
+        acosf as acos, asinf as asin, atan2f as atan2, expf as exp, floorf as floor,
+        hypotf as hypot, logf as log, sincosf as sincos, sqrtf as sqrt, tanf as tan, tanhf as tanh,
     };
 }
 
@@ -184,8 +183,9 @@ macro_rules! scalar {
                 $libm::floor(self)
             }
             #[inline(always)]
-            fn libm_copysign(self, sign: Self) -> Self {
-                $libm::copysign(self, sign)
+            fn core_copysign(self, sign: Self) -> Self {
+                // Bits, no arithmetic: the same everywhere, and not a call as that of `libm` is.
+                $t::copysign(self, sign)
             }
         }
     };
