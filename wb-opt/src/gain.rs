@@ -5,7 +5,7 @@ use crate::midpoint::Midpoint;
 use crate::problem::Problem;
 use crate::robot::BASE;
 use crate::state::{Layout, State, Units};
-use rbd_core::second_order::EffortJacobian;
+use rbd_core::second_order::{EffortJacobian, Sweep};
 use so3::Scalar;
 
 /// Changes that the optimum asks for per deviation of the state at the start of an interval, by rows. On SO(3) the
@@ -38,7 +38,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
     ) -> Gains<T, N, FEET> {
         let units = Units::<T>::new();
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = mid.sweep(&self.robot.bodies);
+        let mut sweep = Sweep::zero(&self.robot.bodies);
+        mid.set(&mut sweep);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut jacobian = EffortJacobian::<T, N, FEET>::ZERO;
         sweep.differentiate(&contacts, &mut jacobian);

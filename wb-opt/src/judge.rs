@@ -52,7 +52,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         control: &[T; NU],
     ) -> Sample<T, N, FEET> {
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = mid.sweep(&self.robot.bodies);
+        let mut sweep = Sweep::zero(&self.robot.bodies);
+        mid.set(&mut sweep);
         self.sampled(k, &mid, &sweep)
     }
 
@@ -133,7 +134,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
                 break;
             }
             let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-            let sweep = mid.sweep(&self.robot.bodies);
+            let mut sweep = Sweep::zero(&self.robot.bodies);
+            mid.set(&mut sweep);
             let sample = self.sampled(k, &mid, &sweep);
             let weights = self.interval_weights(k);
             if let Some(reference) = self.reference.get(k) {

@@ -11,7 +11,6 @@ use crate::robot::{BASE, TURN};
 use crate::rotation::{Turn, angular_acceleration, joint_acceleration, set_triple, triple};
 use crate::state::{Layout, State, Units};
 use nalgebra::{Rotation3, Vector3};
-use rbd_core::model::Body;
 use rbd_core::second_order::{Contacts, Sweep};
 use so3::Scalar;
 
@@ -29,14 +28,11 @@ pub(crate) struct Midpoint<T: Scalar, const N: usize, const FEET: usize> {
 }
 
 impl<T: Scalar, const N: usize, const FEET: usize> Midpoint<T, N, FEET> {
-    /// The robot in this motion: the last joint of the base that does not turn carries the rotation that its angles count from.
+    /// Sets the robot in this motion: the last joint of the base that does not turn carries the rotation that its angles count from.
     #[inline(always)]
-    pub(crate) fn sweep<'a>(&self, bodies: &'a [Body<T>; N]) -> Sweep<'a, T, N> {
-        Sweep::new(
-            bodies,
-            [&self.q, &self.v, &self.a],
-            Some((TURN - 1, &self.rot_wc)),
-        )
+    pub(crate) fn set(&self, sweep: &mut Sweep<'_, T, N>) {
+        let chart = Some((TURN - 1, &self.rot_wc));
+        sweep.set([&self.q, &self.v, &self.a], chart);
     }
 }
 

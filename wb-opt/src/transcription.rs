@@ -149,7 +149,8 @@ where
             return;
         };
         let mid: Midpoint<T, N, FEET> = self.midpoint(k, state, control);
-        let sweep = mid.sweep(&self.robot.bodies);
+        let mut sweep = Sweep::zero(&self.robot.bodies);
+        mid.set(&mut sweep);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut effort = [T::ZERO; N];
         sweep.effort(&mid.a, &contacts, &mut effort);
@@ -207,7 +208,8 @@ impl<T: Scalar, const N: usize, const FEET: usize> Problem<'_, T, N, FEET> {
         let stretch =
             free.map(|(column, rate)| Stretch::new(column, rate, self.dt(k), &mid, map.turn()));
         self.differentiate_linear(k, &mid, d);
-        let sweep = mid.sweep(&self.robot.bodies);
+        let mut sweep = Sweep::zero(&self.robot.bodies);
+        mid.set(&mut sweep);
         let contacts = self.contact_motions(k, &sweep, &mid);
         let mut interval = Interval {
             problem: self,

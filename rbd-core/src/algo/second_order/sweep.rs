@@ -37,19 +37,24 @@ pub struct JointMotion<T: Scalar> {
 }
 
 impl<T: Scalar> JointMotion<T> {
-    fn ground() -> Self {
-        let [x, y, z] = GRAVITY;
+    fn zero() -> Self {
         Self {
-            rot: Matrix3::identity(),
+            rot: Matrix3::zeros(),
             pos: Vector3::zeros(),
             axis: Motion::ZERO,
             rate: Motion::ZERO,
             second: Motion::ZERO,
             velocity: Motion::ZERO,
-            acceleration: Motion::new(
-                Vector3::new(T::of(-x), T::of(-y), T::of(-z)),
-                Vector3::zeros(),
-            ),
+            acceleration: Motion::ZERO,
+        }
+    }
+
+    fn ground() -> Self {
+        let up = Vector3::from(GRAVITY.map(|g| T::of(-g)));
+        Self {
+            rot: Matrix3::identity(),
+            acceleration: Motion::new(up, Vector3::zeros()),
+            ..Self::zero()
         }
     }
 
@@ -109,26 +114,38 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
     /// `chart` is for a base on SO(3): where it is `(i, R)`, the axes of body `i` are those of the rotation R from the body to the
     /// world, whatever its joint says, so that the angles of the joints behind it count from R. The body itself has no mass then and no
     /// length, and its parents do not turn.
-    #[inline(never)]
     #[must_use]
     pub fn new(
         bodies: &'a [Body<T>; N],
-        [q, v, a]: [&[T; N]; 3],
+        motion: [&[T; N]; 3],
         chart: Option<(usize, &Rotation3<T>)>,
     ) -> Self {
-        let ground = JointMotion::ground();
-        // Filled in place: the tables are too large to be moved around.
-        let mut sweep = Self {
+        let mut sweep = Self::zero(bodies);
+        sweep.set(motion, chart);
+        sweep
+    }
+
+    /// Tables of zeros, for [`Self::set`].
+    #[inline(always)]
+    #[must_use]
+    pub fn zero(bodies: &'a [Body<T>; N]) -> Self {
+        Self {
             bodies,
-            joints: [ground; N],
+            joints: [JointMotion::zero(); N],
             own: [Moments::zero(); N],
             moments: [Moments::zero(); N],
-        };
+        }
+    }
+
+    /// As [`Self::new`], over whatever is in the tables, which are too large to be moved around where time counts.
+    #[inline(never)]
+    pub fn set(&mut self, [q, v, a]: [&[T; N]; 3], chart: Option<(usize, &Rotation3<T>)>) {
+        let (bodies, ground) = (self.bodies, JointMotion::ground());
         let (sin, cos) = so3::math::sin_cos_array(q);
         for i in 0..N {
             let body = &bodies[i];
             let parent = match body.parent {
-                Link::Joint(p) => sweep.joints.get(p).unwrap_or(&ground),
+                Link::Joint(p) => self.joints.get(p).unwrap_or(&ground),
                 Link::Base => &ground,
             };
             let mut joint = parent.child(body, (sin[i], cos[i]), q[i], v[i], a[i]);
@@ -137,22 +154,24 @@ impl<'a, T: Scalar, const N: usize> Sweep<'a, T, N> {
             {
                 joint.rot = *rot.matrix();
             }
-            if body.mass > T::ZERO {
+            let own = if body.mass > T::ZERO {
                 let (v, a) = (&joint.velocity, &joint.acceleration);
-                let own = Moments::of(body, &joint.rot, &joint.pos, v, a);
-                (sweep.own[i], sweep.moments[i]) = (own, own);
-            }
-            sweep.joints[i] = joint;
+                Moments::of(body, &joint.rot, &joint.pos, v, a)
+            } else {
+                Moments::zero()
+            };
+            self.own[i] = own;
+            self.moments[i] = own;
+            self.joints[i] = joint;
         }
         for i in (0..N).rev() {
             if let Link::Joint(p) = bodies[i].parent {
-                let below = sweep.moments[i];
-                if let Some(slot) = sweep.moments.get_mut(p) {
+                let below = self.moments[i];
+                if let Some(slot) = self.moments.get_mut(p) {
                     *slot = *slot + below;
                 }
             }
         }
-        sweep
     }
 
     #[inline(always)]
