@@ -80,10 +80,9 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         let weights = self.problem.interval_weights(self.k);
         let mut effort = [T::ZERO; N];
         self.sweep.effort(&self.mid.a, self.contacts, &mut effort);
-        self.problem.add_friction(&self.mid.v, &mut effort);
         let mut jacobian = EffortJacobian::<T, N, FEET>::ZERO;
         self.sweep.differentiate(self.contacts, &mut jacobian);
-        let bends = self.differentiate_friction(&mut jacobian);
+        let bends = self.add_friction(&mut effort, &mut jacobian);
 
         let mut hessian = Hessian::<T, N, FEET>::ZERO;
         let mut cost = Gradient::<T, N, FEET>::ZERO;
@@ -139,14 +138,19 @@ impl<T: Scalar, const N: usize, const FEET: usize> Interval<'_, '_, T, N, FEET> 
         }
     }
 
-    /// Adds the slope of the joints' friction to the Jacobian of the efforts; its curvature in each speed.
+    /// Adds the joints' friction to the efforts and its slope to their Jacobian; its curvature in each speed.
     #[inline(always)]
-    fn differentiate_friction(&self, jacobian: &mut EffortJacobian<T, N, FEET>) -> [T; N] {
+    fn add_friction(
+        &self,
+        effort: &mut [T; N],
+        jacobian: &mut EffortJacobian<T, N, FEET>,
+    ) -> [T; N] {
         let mut bends = [T::ZERO; N];
         for (i, bent) in bends.iter_mut().enumerate().skip(BASE) {
             let (limit, v) = (&self.problem.robot.limits[i], self.mid.v[i]);
             let smoothing = self.problem.friction_smoothing;
-            let [_, slope, bend] = crate::drive::friction(limit, v, smoothing);
+            let [friction, slope, bend] = crate::drive::friction(limit, v, smoothing);
+            effort[i] += friction;
             jacobian.by_v[i][i] += slope;
             *bent = bend;
         }
