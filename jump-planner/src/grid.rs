@@ -245,12 +245,15 @@ impl<'a> Grid<'a> {
 
     /// Solves a somewhat harder problem from the motion of the last one, which the stages keep where there is none for it.
     fn harder(&mut self, observer: Observe<'_>) -> Result<WholeBodyPlan, String> {
-        let before = (self.stages.clone(), self.timed.clone());
+        // Of the two kinds the one that is solved.
+        let stages = (self.timing == Timing::Given).then(|| self.stages.clone());
+        let timed = self.timed.clone();
         let plan = self.solve(&warm(), &Tightening::default(), observer, &mut |progress| {
             progress.iteration <= LESS_PATIENCE
         })?;
         if !matches!(plan.outcome.status, Status::Solved | Status::Cancelled) {
-            (self.stages, self.timed) = before;
+            self.stages = stages.unwrap_or_else(|| core::mem::take(&mut self.stages));
+            self.timed = timed;
         }
         Ok(plan)
     }
