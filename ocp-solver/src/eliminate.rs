@@ -208,6 +208,7 @@ impl<T: Scalar, const NX: usize, const NU: usize> Row<T, NX, NU> {
         factors: [T::ZERO; NU],
     };
 
+    #[inline(always)]
     pub(crate) fn new(x: [T; NX], u: [T; NU], constant: T, scale: T, source: Source) -> Self {
         Self {
             x,
@@ -282,7 +283,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
         pivots.whitening.gradients(&mut gradients, self.n);
         for (k, gradient) in gradients.iter().enumerate().take(self.new_count) {
             let mut row = self.new[k];
-            (row.u, row.size) = (*gradient, largest(gradient));
+            row.u = *gradient;
+            row.size = largest(gradient);
             self.eliminate(row, pivots);
         }
         self.new_count = 0;
@@ -366,7 +368,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Elimination<T, NX, NU> {
         ) else {
             return;
         };
-        (*x, *u) = (row.x.map(|v| v * inverse), row.u.map(|v| v * inverse));
+        *x = row.x.map(|v| v * inverse);
+        *u = row.u.map(|v| v * inverse);
         (*constant, *size) = (row.constant * inverse, largest(x));
         if let (Some(slot), Some(free)) = (self.column.get_mut(i), self.free.get_mut(j)) {
             (*slot, *free) = (column, false);

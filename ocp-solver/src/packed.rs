@@ -110,16 +110,28 @@ impl<T: Scalar, const R: usize, const C: usize> Vectors<T, R, C> {
         );
         let (mut count, mut ends) = (0usize, self.ends.iter_mut());
         for (vector, first) in vectors {
-            vector.iter_mut().take(first).for_each(|x| *x = T::ZERO);
-            for (i, value) in vector.iter_mut().enumerate().skip(first) {
-                if *value != T::ZERO
-                    && let (Some(slot), Some(place)) =
-                        (values.get_mut(count), places.get_mut(count))
-                {
-                    (*slot, *place) = (core::mem::replace(value, T::ZERO), i as u16);
-                    count = count.wrapping_add(1);
+            let (unread, read) = vector.split_at_mut(first.min(R));
+            unread.fill(T::ZERO);
+            let mut take = |place: usize, values_here: &mut [T]| {
+                for (i, value) in (place..).zip(values_here) {
+                    if *value != T::ZERO
+                        && let (Some(slot), Some(place)) =
+                            (values.get_mut(count), places.get_mut(count))
+                    {
+                        (*slot, *place) = (core::mem::replace(value, T::ZERO), i as u16);
+                        count = count.wrapping_add(1);
+                    }
                 }
+            };
+            // Most eights are all zeros, which is seen at once.
+            let (mut place, (eights, rest)) = (unread.len(), read.as_chunks_mut::<8>());
+            for eight in eights {
+                if eight.iter().fold(false, |any, x| any | (*x != T::ZERO)) {
+                    take(place, eight);
+                }
+                place = place.wrapping_add(8);
             }
+            take(place, rest);
             if let Some(end) = ends.next() {
                 *end = count as u32;
             }

@@ -268,7 +268,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
         for ((row, y), j) in found.zip(&free.order).take(count) {
             let j = usize::from(*j);
             if let (Some(to), Some(value)) = (gain.get_mut(j), feedforward.get_mut(j)) {
-                (*to, *value) = (*row, *y);
+                *to = *row;
+                *value = *y;
             }
         }
         for (column, i) in elimination.pivots() {
@@ -327,7 +328,8 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
                 self.shifted.get_mut(i),
             ) {
                 *minus = own.map(|value| -value);
-                (*s, *shifted) = (*q_xd, *q_xd);
+                *s = *q_xd;
+                *shifted = *q_xd;
                 add_scaled(s, T::HALF * sign, minus);
                 add_scaled(shifted, sign, minus);
                 add_scaled(x, q_d[0], minus);
@@ -353,7 +355,9 @@ impl<T: Scalar, const NX: usize, const NU: usize> Work<T, NX, NU> {
             else {
                 continue;
             };
-            (*xu, *u, *uu) = (*own, *g, [T::ZERO; NU]);
+            *xu = *own;
+            *u = *g;
+            *uu = [T::ZERO; NU];
             if let Some(value) = uu.get_mut(a) {
                 *value = *own_sign;
             }
