@@ -52,9 +52,76 @@ fn add_combination<T: Scalar, const R: usize, const C: usize>(
     }
 }
 
+/// The next three entries, if there are as many: coordinates of a robot come in threes.
+#[inline(always)]
+fn take_three<T: Scalar>(entries: &mut impl Entries<T>) -> Option<[(usize, T); 3]> {
+    let mut ahead = entries.clone();
+    let three = [ahead.next()?, ahead.next()?, ahead.next()?];
+    *entries = ahead;
+    Some(three)
+}
+
+/// `matrix += weight · x · rowᵀ` in three columns, the entries of the row: what there is of `x` is looked up once for all of them.
+#[inline(always)]
+fn add_to_three<T: Scalar, const R: usize, const C: usize>(
+    matrix: &mut [[T; R]; C],
+    weight: T,
+    row: [(usize, T); 3],
+    x: impl Entries<T>,
+) {
+    let [a, b, c] = row.map(|(_, entry)| weight * entry);
+    let Ok([of_a, of_b, of_c]) = matrix.get_disjoint_mut(row.map(|(j, _)| j)) else {
+        return;
+    };
+    for (i, x) in x {
+        if let (Some(of_a), Some(of_b), Some(of_c)) =
+            (of_a.get_mut(i), of_b.get_mut(i), of_c.get_mut(i))
+        {
+            *of_a += a * x;
+            *of_b += b * x;
+            *of_c += c * x;
+        }
+    }
+}
+
+/// `matrix += weight · x · rowᵀ`.
+#[inline(always)]
+fn add_outer_with<T: Scalar, const R: usize, const C: usize>(
+    matrix: &mut [[T; R]; C],
+    weight: T,
+    mut row: impl Entries<T>,
+    x: impl Entries<T>,
+) {
+    while let Some(three) = take_three(&mut row) {
+        add_to_three(matrix, weight, three, x.clone());
+    }
+    for (j, entry) in row {
+        if let Some(column) = matrix.get_mut(j) {
+            add_entries(column, weight * entry, x.clone());
+        }
+    }
+}
+
 /// The lower triangle of `matrix += weight · row · rowᵀ`.
 #[inline(always)]
 fn add_outer<T: Scalar, const N: usize>(matrix: &mut [[T; N]; N], weight: T, row: impl Entries<T>) {
+    let mut rest = row;
+    loop {
+        let corner = rest.clone().take(3);
+        let three = take_three(&mut rest);
+        add_corner(matrix, weight, corner);
+        let Some(three) = three else { break };
+        add_to_three(matrix, weight, three, rest.clone());
+    }
+}
+
+/// As [`add_outer`], one column after the other.
+#[inline(always)]
+fn add_corner<T: Scalar, const N: usize>(
+    matrix: &mut [[T; N]; N],
+    weight: T,
+    row: impl Entries<T>,
+) {
     let mut rest = row;
     loop {
         let from_here = rest.clone();
@@ -329,12 +396,12 @@ impl<T: Scalar, const NX: usize, const NU: usize, const NI: usize> Linearised<T,
         add_outer(q.xx, weight, x.clone());
         add_entries(q.x, target, x.clone());
         add_outer(q.uu, weight, u.clone());
-        for (j, entry) in u {
-            if let (Some(u), Some(column)) = (q.u.get_mut(j), q.xu.get_mut(j)) {
+        for (j, entry) in u.clone() {
+            if let Some(u) = q.u.get_mut(j) {
                 u[0] += target * entry;
-                add_entries(column, weight * entry, x.clone());
             }
         }
+        add_outer_with(q.xu, weight, u, x);
     }
 
     #[inline(always)]
