@@ -59,7 +59,7 @@ impl<T: Scalar, const NX: usize, const NI: usize> Default for Values<T, NX, NI> 
 /// Derivatives of a node at one point; matrices are column-major.
 ///
 /// The arrays are zero before the first call, and later ones hold zeros or what the problem wrote last at the same
-/// node, so a problem with a fixed pattern writes only that pattern.
+/// node, so a problem with a fixed pattern writes only that pattern. Rows beyond those of the node are to be left alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Derivatives<T, const NX: usize, const NU: usize, const NI: usize> {
     /// Gradient of the cost in the state.
