@@ -78,7 +78,7 @@ pub(crate) fn are_all_there(json: &Value) {
                     let list = value.as_array().unwrap();
                     list.iter().all(Value::is_string)
                 }
-                "supply_limit_w" => value.is_null() || value.is_number(),
+                "supply_limit_w" | "heat_share" => value.is_null() || value.is_number(),
                 _ => value.is_number(),
             };
             assert!(right, "verdict{part}/{name} is {value}");
