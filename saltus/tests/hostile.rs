@@ -67,11 +67,17 @@ const MISTAKES: &[(&[&str], &[&str])] = &[
     (&["run", "far.toml"], &["Infeasible", "friction"]),
     (
         &["envelope", "far.toml"],
-        &["far.toml: Infeasible", "infeasible: with 0.75 of the ground"],
+        &[
+            "far.toml: Infeasible",
+            "infeasible: with 0.75 of the ground",
+        ],
     ),
     (
         &["envelope", "far.toml", "--ablate"],
-        &["far.toml: Infeasible", "infeasible: with 0.75 of the ground"],
+        &[
+            "far.toml: Infeasible",
+            "infeasible: with 0.75 of the ground",
+        ],
     ),
     (
         &["run", "short.bin"],
