@@ -7,9 +7,9 @@ use crate::quadruped::Planned;
 use crate::quadruped::execute::{Run, Trial};
 use crate::quadruped::judge::Judged;
 use core::ops::ControlFlow;
+use jump_planner::NoPlan;
 use jump_planner::answer::Answer;
-use jump_planner::bounds::impossible;
-use jump_planner::planned::Planner;
+use jump_planner::planned::{self, Planner};
 use jump_planner::task::{SrbPlan, Task};
 use jump_planner::whole_body::{self, Timing};
 use ocp_solver::Status;
@@ -231,17 +231,14 @@ fn timing(durations: &[f64], item: &str, theirs: &str) -> Row {
     let answer = || -> Result<Option<(Answer, bool)>, String> {
         let mut task = Task::load("a1/forward-60")?;
         task.fix_timing(durations)?;
-        if let Some(proof) = impossible(&task) {
-            return Ok(Some((Answer::proven(proof), true)));
-        }
-        let srb = task.attempt(&ocp_solver::Settings::new(), |_| ControlFlow::Continue(()))?;
-        if srb.status != Status::Solved {
-            return Ok(Some((
-                Answer::no_body_plan(&task, &srb)
-                    .with_easier_tasks(&task, |_| ControlFlow::Continue(())),
-                false,
-            )));
-        }
+        let srb = match planned::body(&task) {
+            Ok(srb) => srb,
+            Err(NoPlan::Answer(answer)) => {
+                let is_proven = answer.status == "Infeasible";
+                return Ok(Some((answer, is_proven)));
+            }
+            Err(NoPlan::Error(error)) => return Err(error),
+        };
         let plan = whole_body::plan(&task, &srb, Timing::Given, |_| ControlFlow::Continue(()))?;
         Ok((plan.outcome.status != Status::Solved)
             .then(|| (Answer::no_whole_body_plan(&task, &plan), false)))

@@ -95,6 +95,6 @@ pub fn simulator(
 }
 
 /// By how much the landing's ground is higher than known, m.
-fn height_error(disturbance: &Disturbance) -> f64 {
+pub(super) fn height_error(disturbance: &Disturbance) -> f64 {
     disturbance.get(Key::GroundHeight)
 }

@@ -6,9 +6,8 @@
 
 use super::execute::{Closed, HOLD, Keeper, Run, SETTLE, Tamper, Trial, Watch, closed, feet};
 use super::judge::middle_of_feet;
-use super::plant::plant;
+use super::plant::{height_error, plant};
 use super::{FOOT_COUNT, JOINTS, Planned, State};
-use crate::lab::Key;
 use core::cell::OnceCell;
 use jump_control::Phase;
 use jump_machine::{Jump, Machine, Settings, Workspace};
@@ -107,7 +106,7 @@ pub(super) fn run_all(
         let mut run = keeper.run;
         if i == 0 {
             // The next ones begin on that ground.
-            run.ground_height = trial.disturbance.get(Key::GroundHeight);
+            run.ground_height = height_error(&trial.disturbance);
         }
         run.final_phase = closed.machine.phase();
         run.fault = closed.machine.fault();

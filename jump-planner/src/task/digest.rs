@@ -71,6 +71,7 @@ mod tests {
             text.replacen("0.3, 0.0]", "0.31, 0.0]", 1),
             format!("trunk_may_touch = true\n{text}"),
             format!("{text}\n[limits]\nfriction = 0.61\nfriction_share = 0.75\n"),
+            format!("{text}\n[limits]\nspeed_share = 0.71\n"),
             format!("{text}\n[weights]\nomega = 0.0100001\n"),
         ];
         for other in changed {

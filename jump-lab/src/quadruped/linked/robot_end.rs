@@ -2,11 +2,11 @@
 //! be bad.
 
 use super::super::execute::{HOLD, Run, Trial, feet, record};
-use super::super::plant::plant;
+use super::super::plant::{height_error, plant};
 use super::super::{FOOT_COUNT, JOINTS, OWNERS, Planned, World};
 use super::{AFTER, Glance, Linked, TICK};
 use crate::closed_loop::{Actuators, Feet, Imu, RATIO};
-use crate::lab::{Encoders, FootSensors, Key, Link, board_torques};
+use crate::lab::{Encoders, FootSensors, Link, board_torques};
 use crate::noise::Noise;
 use jump_control::{Phase, Plan, sample};
 use jump_machine::Jump;
@@ -76,7 +76,7 @@ impl<'p> RobotEnd<'p> {
         let air = |seed| Link::new(disturbance, 0.5, 0.0, trial.seed.wrapping_add(seed));
         let limits = (Model::limits(robot), robot.drives());
         let mut run = Run::new(task, stored.checksum(), world.plant().tick());
-        run.ground_height = disturbance.get(Key::GroundHeight);
+        run.ground_height = height_error(disturbance);
         // No flight in real time waits for memory.
         run.samples.reserve((1e3 * Self::end(planned)) as usize + 1);
         Ok(Self {
